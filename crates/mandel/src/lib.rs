@@ -1,0 +1,158 @@
+//! Symmetric tensors of R³ in Mandel notation; not a general tensor algebra.
+//!
+//! A symmetric second-order tensor a is the 6-vector `[a11, a22, a33, √2·a23, √2·a13, √2·a12]`,
+//! so that the double contraction a : b is the dot product of the vectors, and a fourth-order
+//! tensor with both minor symmetries is a 6×6 matrix acting by the ordinary product.
+//!
+//! ```
+//! use moreau_mandel::{from_matrix, von_mises};
+//! use nalgebra::Matrix3;
+//!
+//! // Simple shear of 100 MPa has the von Mises stress √3·100 MPa, eq. [5].
+//! let shear = Matrix3::new(0.0, 100.0, 0.0, 100.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+//! assert!((von_mises(&from_matrix(&shear)) - 3f64.sqrt() * 100.0).abs() < 1e-12);
+//! ```
+
+use nalgebra::{Matrix3, SMatrix, SVector};
+use std::f64::consts::SQRT_2;
+
+/// Symmetric second-order tensor: `[11, 22, 33, √2·23, √2·13, √2·12]`, so that a : b = a·b.
+pub type Sym2 = SVector<f64, 6>;
+
+/// Fourth-order tensor with minor symmetries, acting on [`Sym2`] by the matrix product.
+pub type Sym4 = SMatrix<f64, 6, 6>;
+
+/// Row and column of the Mandel components 0..6.
+const INDEX: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
+
+/// The unit tensor δ.
+pub fn identity() -> Sym2 {
+    Sym2::from([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+}
+
+/// tr a = a : δ.
+pub fn trace(a: &Sym2) -> f64 {
+    a[0] + a[1] + a[2]
+}
+
+/// Deviator a − ⅓ tr(a) δ.
+pub fn deviator(a: &Sym2) -> Sym2 {
+    let mean = trace(a) / 3.0;
+    let mut s = *a;
+    for i in 0..3 {
+        s[i] -= mean;
+    }
+    s
+}
+
+/// Von Mises equivalent stress √(3/2 s : s) of a stress [MPa], eq. [5].
+pub fn von_mises(stress: &Sym2) -> f64 {
+    1.5f64.sqrt() * deviator(stress).norm()
+}
+
+/// Equivalent strain √(2/3 e : e) of a deviatoric strain, eq. [60].
+pub fn equivalent_strain(e: &Sym2) -> f64 {
+    (2.0f64 / 3.0).sqrt() * e.norm()
+}
+
+/// The projector on spherical tensors, ⅓ δ ⊗ δ.
+pub fn spherical_projector() -> Sym4 {
+    identity() * identity().transpose() / 3.0
+}
+
+/// The projector on deviators, 1 − ⅓ δ ⊗ δ.
+pub fn deviatoric_projector() -> Sym4 {
+    Sym4::identity() - spherical_projector()
+}
+
+/// Mandel vector of the symmetric part of a 3×3 matrix.
+pub fn from_matrix(a: &Matrix3<f64>) -> Sym2 {
+    Sym2::from_fn(|k, _| {
+        let (i, j) = INDEX[k];
+        if i == j { a[(i, i)] } else { (a[(i, j)] + a[(j, i)]) / SQRT_2 }
+    })
+}
+
+/// The 3×3 matrix of a Mandel vector.
+pub fn to_matrix(a: &Sym2) -> Matrix3<f64> {
+    let mut m = Matrix3::zeros();
+    for (k, &(i, j)) in INDEX.iter().enumerate() {
+        let value = if i == j { a[k] } else { a[k] / SQRT_2 };
+        m[(i, j)] = value;
+        m[(j, i)] = value;
+    }
+    m
+}
+
+/// The 6×6 matrix of a ↦ Q a Qᵀ for an orthogonal Q; itself orthogonal.
+pub fn rotation(q: &Matrix3<f64>) -> Sym4 {
+    let mut r = Sym4::zeros();
+    for k in 0..6 {
+        let mut basis = Sym2::zeros();
+        basis[k] = 1.0;
+        r.set_column(k, &from_matrix(&(q * to_matrix(&basis) * q.transpose())));
+    }
+    r
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use nalgebra::{Rotation3, Vector3};
+    use proptest::prelude::*;
+
+    fn tensor() -> impl Strategy<Value = Sym2> {
+        prop::array::uniform6(-1e3..1e3f64).prop_map(Sym2::from)
+    }
+
+    fn rotation_matrix() -> impl Strategy<Value = Matrix3<f64>> {
+        prop::array::uniform3(-3.0..3.0f64)
+            .prop_map(|a| Rotation3::new(Vector3::from(a)).into_inner())
+    }
+
+    proptest! {
+        #[test]
+        fn contraction_is_the_dot_product(a in tensor(), b in tensor()) {
+            let full = (to_matrix(&a).transpose() * to_matrix(&b)).trace();
+            prop_assert!((full - a.dot(&b)).abs() <= 1e-9 * (1.0 + a.norm() * b.norm()));
+        }
+
+        #[test]
+        fn matrix_round_trip(a in tensor()) {
+            prop_assert!((from_matrix(&to_matrix(&a)) - a).norm() <= 1e-12 * a.norm());
+        }
+
+        #[test]
+        fn rotation_rotates_and_keeps_invariants(a in tensor(), q in rotation_matrix()) {
+            let r = rotation(&q);
+            let rotated = r * a;
+            let expected = from_matrix(&(q * to_matrix(&a) * q.transpose()));
+            prop_assert!((rotated - expected).norm() <= 1e-12 * (1.0 + a.norm()));
+            prop_assert!((r.transpose() * r - Sym4::identity()).norm() <= 1e-12);
+            prop_assert!((von_mises(&rotated) - von_mises(&a)).abs() <= 1e-11 * (1.0 + a.norm()));
+            prop_assert!((trace(&rotated) - trace(&a)).abs() <= 1e-11 * (1.0 + a.norm()));
+        }
+
+        #[test]
+        fn projectors_split_a_tensor(a in tensor()) {
+            let s = deviatoric_projector() * a;
+            prop_assert!((s - deviator(&a)).norm() <= 1e-12 * (1.0 + a.norm()));
+            prop_assert!(trace(&s).abs() <= 1e-12 * (1.0 + a.norm()));
+            prop_assert!((s + spherical_projector() * a - a).norm() <= 1e-12 * (1.0 + a.norm()));
+        }
+    }
+
+    #[test]
+    fn uniaxial_stress_is_its_own_von_mises_stress() {
+        let stress = Sym2::from([-250.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_relative_eq!(von_mises(&stress), 250.0, max_relative = 1e-15);
+        assert_eq!(von_mises(&(identity() * 77.0)), 0.0);
+    }
+
+    #[test]
+    fn equivalent_strain_of_incompressible_tension_is_the_axial_strain() {
+        let e = Sym2::from([0.01, -0.005, -0.005, 0.0, 0.0, 0.0]);
+        assert_relative_eq!(equivalent_strain(&e), 0.01, max_relative = 1e-14);
+    }
+}
