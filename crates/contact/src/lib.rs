@@ -1,1 +1,35 @@
-//! placeholder
+//! The contact problem with Coulomb friction, condensed on the interface, and its solvers; not
+//! the bodies it was condensed from.
+//!
+//! Every method solves the same small dense problem, [`ContactProblem`], and is judged by the
+//! same residual and by the same certificate: the bipotential gap Σ b_c(−u, t) + t·u, which is
+//! zero exactly at the solution.
+//!
+//! ```
+//! use moreau_contact::{Certificate, ContactProblem, ContactSolver, SemismoothNewton};
+//! use moreau_laws::{Coulomb, Local};
+//! use nalgebra::DMatrix;
+//!
+//! // One contact, u = W t + q: pressed by q_n < 0 and dragged by q_t.
+//! let w = DMatrix::from_row_slice(2, 2, &[1.0, 0.2, 0.2, 0.8]);
+//! let problem =
+//!     ContactProblem::<2>::from_delassus(w, &[Local::<2>::new(-1.0, 0.5)], vec![Coulomb::new(0.3)?])?;
+//! let solution = SemismoothNewton::default().solve(&problem, None)?;
+//! let (u, t) = (&solution.displacement, &solution.force);
+//! // It slips against the friction force, and the certificate says that this is the solution.
+//! assert!((t[0][1] + 0.3 * t[0][0]).abs() < 1e-12 && u[0][1] > 0.0);
+//! assert!(Certificate::new(problem.friction(), u, t).bipotential_gap < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod error;
+mod obstacle;
+mod problem;
+mod solvers;
+
+pub use error::ContactError;
+pub use obstacle::{Ball, Obstacle, Plane, frame};
+pub use problem::{Certificate, ContactProblem, Delassus};
+pub use solvers::{
+    ContactSolution, ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Tolerance, Uzawa,
+};

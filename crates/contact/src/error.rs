@@ -1,0 +1,63 @@
+//! Errors of the contact crate; no messages of the driver.
+
+/// What can go wrong when a contact problem is built or solved.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ContactError {
+    /// The parts of a problem do not fit together.
+    #[error("{what} has {found} entries, expected {expected}")]
+    Dimension {
+        /// The part that does not fit.
+        what: &'static str,
+        /// Entries found.
+        found: usize,
+        /// Entries expected: contacts, or components of all contacts.
+        expected: usize,
+    },
+    /// A NaN or an infinity in the data.
+    #[error("{what} of the contact problem is not finite")]
+    NotFinite {
+        /// The part that holds the number.
+        what: &'static str,
+    },
+    /// A datum of an obstacle or of a method is out of its range.
+    #[error("{what} is {value}, expected {expected}")]
+    OutOfRange {
+        /// The datum.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// The admissible range in words.
+        expected: &'static str,
+    },
+    /// The interface stiffness is singular where the method needs its inverse: a body is held
+    /// by contact alone.
+    #[error(
+        "the interface stiffness is not positive definite (pivot of component {component}): \
+         {solver} needs bodies held without contact; semismooth Newton does not"
+    )]
+    Floating {
+        /// The method.
+        solver: &'static str,
+        /// Component at which the factorisation broke down.
+        component: usize,
+    },
+    /// The Newton matrix of the contact problem is singular: no contact holds the body.
+    #[error("the contact problem is singular: no closed contact holds the body")]
+    Singular,
+    /// The iteration ended above its tolerance.
+    #[error(
+        "{solver} left a residual of {residual:.3e} N after {iterations} iterations, \
+         expected at most {tolerance:.3e} N"
+    )]
+    NotConverged {
+        /// The method.
+        solver: &'static str,
+        /// Iterations done.
+        iterations: usize,
+        /// Largest natural-map residual of a contact [N].
+        residual: f64,
+        /// Residual asked for [N].
+        tolerance: f64,
+    },
+}

@@ -1,0 +1,189 @@
+//! Rigid obstacles as signed distances; not their motion, which the driver prescribes.
+
+use crate::ContactError;
+use nalgebra::SVector;
+
+/// A rigid obstacle, known by its signed distance.
+pub trait Obstacle<const D: usize>: Send + Sync {
+    /// Signed distance of a point to the surface [mm], positive outside the obstacle.
+    fn distance(&self, x: &SVector<f64, D>) -> f64;
+
+    /// Gradient of the distance at x: the unit normal that points from the obstacle (Ω_A) into
+    /// the body (Ω_B), so that u_n ≥ 0 opens.
+    fn normal(&self, x: &SVector<f64, D>) -> SVector<f64, D>;
+}
+
+/// A half-space; its surface is a plane (in 2D a straight line).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plane<const D: usize> {
+    point: SVector<f64, D>,
+    normal: SVector<f64, D>,
+}
+
+impl<const D: usize> Plane<D> {
+    /// The plane through `point` whose `normal`, of any length, points out of the obstacle.
+    ///
+    /// # Errors
+    /// [`ContactError::OutOfRange`] for a normal of length zero or numbers that are not finite.
+    pub fn new(point: [f64; D], normal: [f64; D]) -> Result<Self, ContactError> {
+        let (point, normal) = (SVector::from(point), SVector::from(normal));
+        let length = normal.norm();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(ContactError::OutOfRange {
+                what: "length of the plane's normal",
+                value: length,
+                expected: "a positive number",
+            });
+        }
+        finite("point of the plane", &point)?;
+        Ok(Self { point, normal: normal / length })
+    }
+}
+
+impl<const D: usize> Obstacle<D> for Plane<D> {
+    fn distance(&self, x: &SVector<f64, D>) -> f64 {
+        (x - self.point).dot(&self.normal)
+    }
+
+    fn normal(&self, _: &SVector<f64, D>) -> SVector<f64, D> {
+        self.normal
+    }
+}
+
+/// A ball: in 2D a cylinder seen along its axis, in 3D a sphere; or the hollow left by one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ball<const D: usize> {
+    center: SVector<f64, D>,
+    radius: f64,
+    hollow: bool,
+}
+
+impl<const D: usize> Ball<D> {
+    /// A solid ball: the body is outside.
+    ///
+    /// # Errors
+    /// [`ContactError::OutOfRange`] unless the radius is positive and all numbers are finite.
+    pub fn new(center: [f64; D], radius: f64) -> Result<Self, ContactError> {
+        let center = SVector::from(center);
+        if !(radius > 0.0 && radius.is_finite()) {
+            return Err(ContactError::OutOfRange {
+                what: "radius",
+                value: radius,
+                expected: "a positive number",
+            });
+        }
+        finite("center", &center)?;
+        Ok(Self { center, radius, hollow: false })
+    }
+
+    /// The same surface around a hollow: the body is inside.
+    pub fn hollow(self) -> Self {
+        Self { hollow: true, ..self }
+    }
+
+    fn side(&self) -> f64 {
+        if self.hollow { -1.0 } else { 1.0 }
+    }
+}
+
+impl<const D: usize> Obstacle<D> for Ball<D> {
+    fn distance(&self, x: &SVector<f64, D>) -> f64 {
+        self.side() * ((x - self.center).norm() - self.radius)
+    }
+
+    fn normal(&self, x: &SVector<f64, D>) -> SVector<f64, D> {
+        let radial = x - self.center;
+        // At the very center every direction is as good as another.
+        let unit = radial.try_normalize(0.0).unwrap_or_else(|| axis(0));
+        unit * self.side()
+    }
+}
+
+/// Unit vector along coordinate k.
+fn axis<const D: usize>(k: usize) -> SVector<f64, D> {
+    SVector::from_fn(|i, _| if i == k { 1.0 } else { 0.0 })
+}
+
+fn finite<const D: usize>(what: &'static str, x: &SVector<f64, D>) -> Result<(), ContactError> {
+    match x.iter().find(|v| !v.is_finite()) {
+        Some(&value) => {
+            Err(ContactError::OutOfRange { what, value, expected: "finite coordinates" })
+        }
+        None => Ok(()),
+    }
+}
+
+/// An orthonormal frame whose first column is the unit vector n; the other columns span the
+/// tangent plane. In 2D the tangent is n turned by −90°: for n = e_y it is e_x.
+pub fn frame<const D: usize>(n: &SVector<f64, D>) -> nalgebra::SMatrix<f64, D, D> {
+    let mut q = nalgebra::SMatrix::<f64, D, D>::zeros();
+    q.set_column(0, n);
+    if D == 2 {
+        q[(0, 1)] = n[1];
+        q[(1, 1)] = -n[0];
+        return q;
+    }
+    // Gram–Schmidt on the axes, starting from the one least aligned with n.
+    let mut axes: Vec<usize> = (0..D).collect();
+    axes.sort_by(|&a, &b| n[a].abs().total_cmp(&n[b].abs()));
+    for k in 1..D {
+        let mut v = axis::<D>(axes[k - 1]);
+        for j in 0..k {
+            let c = q.column(j).into_owned();
+            v -= c * c.dot(&v);
+        }
+        q.set_column(k, &v.normalize());
+    }
+    q
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn obeys_eikonal(obstacle: &dyn Obstacle<3>, x: SVector<f64, 3>) {
+        let n = obstacle.normal(&x);
+        assert!((n.norm() - 1.0).abs() < 1e-12);
+        let h = 1e-4;
+        let ahead = obstacle.distance(&(x + n * h));
+        let behind = obstacle.distance(&(x - n * h));
+        assert!(((ahead - behind) / (2.0 * h) - 1.0).abs() < 1e-8, "normal is not the gradient");
+    }
+
+    proptest! {
+        #[test]
+        fn normals_are_gradients_of_the_distance(
+            x in prop::array::uniform3(-5.0..5.0f64),
+            center in prop::array::uniform3(6.0..9.0f64),
+        ) {
+            let x = SVector::from(x);
+            obeys_eikonal(&Plane::new(center, [1.0, -2.0, 0.5]).expect("valid"), x);
+            obeys_eikonal(&Ball::new(center, 2.0).expect("valid"), x);
+            obeys_eikonal(&Ball::new(center, 30.0).expect("valid").hollow(), x);
+        }
+
+        #[test]
+        fn frames_are_orthonormal(n in prop::array::uniform3(-1.0..1.0f64)) {
+            prop_assume!(SVector::from(n).norm() > 1e-3);
+            let n = SVector::from(n).normalize();
+            let q = frame(&n);
+            prop_assert!((q.transpose() * q - nalgebra::Matrix3::identity()).norm() < 1e-13);
+            prop_assert!((q.column(0) - n).norm() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn tangent_of_the_floor_is_the_x_axis() {
+        let q = frame(&SVector::<f64, 2>::new(0.0, 1.0));
+        assert_eq!(q.column(1).into_owned(), SVector::<f64, 2>::new(1.0, 0.0));
+    }
+
+    #[test]
+    fn bad_obstacles_are_refused() {
+        assert!(Plane::new([0.0, 0.0], [0.0, 0.0]).is_err());
+        assert!(Plane::new([0.0, f64::NAN], [0.0, 1.0]).is_err());
+        assert!(Ball::new([0.0, 0.0], -1.0).is_err());
+        assert!(Ball::new([0.0, 0.0], f64::INFINITY).is_err());
+    }
+}

@@ -1,0 +1,278 @@
+//! The condensed contact problem, its residual and its certificate; not how it is solved.
+
+use crate::ContactError;
+use moreau_laws::{Bipotential, Coulomb, Local, Status};
+use nalgebra::{DMatrix, DVector};
+
+/// The contact problem of one linearised increment, in the contacts' local frames:
+///
+/// ```text
+/// t = S (u − g) − f,      (−u, t) extremal for [38] at every contact.
+/// ```
+///
+/// u = (u_n, u_t) is the gap at the end of the step and the slip of the step [mm], t the contact
+/// force on the body [N]; S is the stiffness of the structure condensed on the interface [N/mm],
+/// symmetric positive semi-definite, `D·contacts` square; f the condensed load [N] and g the
+/// displacement about which the structure was linearised [mm].
+#[derive(Debug, Clone)]
+pub struct ContactProblem<const D: usize> {
+    stiffness: DMatrix<f64>,
+    load: DVector<f64>,
+    origin: Vec<Local<D>>,
+    friction: Vec<Coulomb>,
+    previous: Vec<Local<D>>,
+}
+
+/// The structure seen from its contacts: u = W t + q, with the Delassus operator W [mm/N].
+#[derive(Debug, Clone)]
+pub struct Delassus<const D: usize> {
+    /// W = S⁻¹, symmetric positive definite.
+    pub operator: DMatrix<f64>,
+    /// Displacement without contact forces, q = g + W f [mm].
+    pub free: DVector<f64>,
+}
+
+/// How far a pair (u, t) is from the contact law: the bipotential gap and what it cannot see.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Certificate {
+    /// Σ b_c(−u, t) + t·u ≥ 0 over the contacts, [38] and [39]: zero exactly at the law [N·mm].
+    pub bipotential_gap: f64,
+    /// Largest penetration ⟨−u_n⟩ [mm], where b_c = +∞; the gap above is taken at max(u_n, 0).
+    pub penetration: f64,
+    /// Largest distance of a force to the Coulomb cone [N], where b_c = +∞; the gap above is
+    /// taken at its projection.
+    pub excess_force: f64,
+}
+
+impl Certificate {
+    /// The certificate of displacements u and forces t under Coulomb's law.
+    pub fn new<const D: usize>(friction: &[Coulomb], u: &[Local<D>], t: &[Local<D>]) -> Self {
+        let mut certificate = Self::default();
+        for ((law, u), t) in friction.iter().zip(u).zip(t) {
+            let admissible = law.project(t);
+            let mut open = *u;
+            open[0] = open[0].max(0.0);
+            certificate.penetration = certificate.penetration.max(open[0] - u[0]);
+            certificate.excess_force = certificate.excess_force.max((t - admissible).norm());
+            certificate.bipotential_gap += law.b(&-open, &admissible) + admissible.dot(&open);
+        }
+        certificate
+    }
+}
+
+impl<const D: usize> ContactProblem<D> {
+    /// A problem from its parts; `previous` are the forces t₀ at the start of the step.
+    ///
+    /// # Errors
+    /// [`ContactError::Dimension`] if sizes disagree, [`ContactError::NotFinite`] for NaN or ∞.
+    pub fn new(
+        stiffness: DMatrix<f64>,
+        load: DVector<f64>,
+        origin: Vec<Local<D>>,
+        friction: Vec<Coulomb>,
+        previous: Vec<Local<D>>,
+    ) -> Result<Self, ContactError> {
+        let contacts = friction.len();
+        for (what, found, expected) in [
+            ("stiffness rows", stiffness.nrows(), D * contacts),
+            ("stiffness columns", stiffness.ncols(), D * contacts),
+            ("load", load.len(), D * contacts),
+            ("origin", origin.len(), contacts),
+            ("previous", previous.len(), contacts),
+        ] {
+            if found != expected {
+                return Err(ContactError::Dimension { what, found, expected });
+            }
+        }
+        let finite = |all: &[Local<D>]| all.iter().flat_map(|v| v.iter()).all(|v| v.is_finite());
+        for (what, ok) in [
+            ("stiffness", stiffness.iter().all(|v| v.is_finite())),
+            ("load", load.iter().all(|v| v.is_finite())),
+            ("origin", finite(&origin)),
+            ("previous", finite(&previous)),
+        ] {
+            if !ok {
+                return Err(ContactError::NotFinite { what });
+            }
+        }
+        Ok(Self { stiffness, load, origin, friction, previous })
+    }
+
+    /// A problem given in the form u = W t + q of discrete frictional contact; t₀ = 0.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`]; [`ContactError::Floating`] if W is not positive definite.
+    pub fn from_delassus(
+        operator: DMatrix<f64>,
+        free: &[Local<D>],
+        friction: Vec<Coulomb>,
+    ) -> Result<Self, ContactError> {
+        let size = D * friction.len();
+        if operator.shape() != (size, size) {
+            return Err(ContactError::Dimension {
+                what: "Delassus operator",
+                found: operator.nrows(),
+                expected: size,
+            });
+        }
+        let stiffness = inverse(operator, "the Delassus form")?;
+        let zero = vec![Local::zeros(); friction.len()];
+        Self::new(stiffness, DVector::zeros(size), free.to_vec(), friction, zero)
+    }
+
+    /// Number of contacts.
+    pub fn contacts(&self) -> usize {
+        self.friction.len()
+    }
+
+    /// S, `D·contacts` square [N/mm].
+    pub fn stiffness(&self) -> &DMatrix<f64> {
+        &self.stiffness
+    }
+
+    /// The friction law of every contact.
+    pub fn friction(&self) -> &[Coulomb] {
+        &self.friction
+    }
+
+    /// Contact forces t₀ at the start of the step [N].
+    pub fn previous(&self) -> &[Local<D>] {
+        &self.previous
+    }
+
+    /// Displacement g about which the structure was linearised [mm].
+    pub fn origin(&self) -> &[Local<D>] {
+        &self.origin
+    }
+
+    /// Forces that displacements u ask of the structure: t = S (u − g) − f [N].
+    pub fn force(&self, u: &[Local<D>]) -> Vec<Local<D>> {
+        let relative = DVector::from_iterator(
+            self.load.len(),
+            u.iter().zip(&self.origin).flat_map(|(u, g)| (0..D).map(move |k| u[k] - g[k])),
+        );
+        split(&(&self.stiffness * relative - &self.load))
+    }
+
+    /// The form u = W t + q.
+    ///
+    /// # Errors
+    /// [`ContactError::Floating`] if S is singular: the bodies are held by contact alone.
+    pub fn delassus(&self, solver: &'static str) -> Result<Delassus<D>, ContactError> {
+        let operator = inverse(self.stiffness.clone(), solver)?;
+        let mut free = &operator * &self.load;
+        for (i, g) in self.origin.iter().enumerate() {
+            for k in 0..D {
+                free[D * i + k] += g[k];
+            }
+        }
+        Ok(Delassus { operator, free })
+    }
+
+    /// Parameter α of [90′] for contact i [N/mm]: the mean stiffness of its own components, so
+    /// that a residual in newtons weighs gaps and forces alike in any system of units.
+    pub fn alpha(&self, i: usize) -> f64 {
+        (0..D).map(|k| self.stiffness[(D * i + k, D * i + k)]).sum::<f64>() / D as f64
+    }
+
+    /// Largest norm over the contacts of the natural map t − proj(t − α ũ), [90′] [N].
+    pub fn residual(&self, u: &[Local<D>], t: &[Local<D>]) -> f64 {
+        (0..self.contacts())
+            .map(|i| self.friction[i].natural_map(&u[i], &t[i], self.alpha(i)).norm())
+            .fold(0.0, f64::max)
+    }
+
+    /// Size of the forces in play, against which a residual is judged [N]: the largest of the
+    /// forces, of the condensed load and of the force that would close the largest gap.
+    pub fn force_scale(&self, t: &[Local<D>]) -> f64 {
+        let forces = t.iter().chain(&self.previous).map(|t| t.norm()).fold(0.0, f64::max);
+        forces.max(self.load.amax()).max(f64::MIN_POSITIVE)
+    }
+
+    /// Status of every contact at (u, t), [35].
+    pub fn statuses(&self, u: &[Local<D>], t: &[Local<D>]) -> Vec<Status> {
+        (0..self.contacts())
+            .map(|i| self.friction[i].status(&u[i], &t[i], self.alpha(i)))
+            .collect()
+    }
+}
+
+/// Splits a vector of all components into contacts.
+pub(crate) fn split<const D: usize>(all: &DVector<f64>) -> Vec<Local<D>> {
+    all.as_slice().chunks_exact(D).map(Local::from_column_slice).collect()
+}
+
+/// Inverse of a symmetric positive definite matrix.
+fn inverse(a: DMatrix<f64>, solver: &'static str) -> Result<DMatrix<f64>, ContactError> {
+    let scale = a.diagonal().amax();
+    match a.clone().cholesky() {
+        // A pivot at rounding level is a rigid motion, not a stiffness.
+        Some(factor) if factor.l_dirty().diagonal().amin().powi(2) > 1e-13 * scale => {
+            Ok(factor.inverse())
+        }
+        Some(factor) => {
+            Err(ContactError::Floating { solver, component: factor.l_dirty().diagonal().imin() })
+        }
+        None => Err(ContactError::Floating { solver, component: a.diagonal().imin() }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn coulomb(mu: f64) -> Coulomb {
+        Coulomb::new(mu).expect("valid")
+    }
+
+    #[test]
+    fn delassus_form_inverts_the_stiffness_form() {
+        let s = DMatrix::from_row_slice(2, 2, &[3.0, 1.0, 1.0, 2.0]);
+        let f = DVector::from_row_slice(&[0.5, -0.25]);
+        let g = vec![Local::<2>::new(0.1, 0.2)];
+        let zero = vec![Local::zeros()];
+        let problem = ContactProblem::new(s, f, g, vec![coulomb(0.3)], zero).expect("valid");
+        let t = Local::<2>::new(0.7, -0.2);
+        let form = problem.delassus("test").expect("definite");
+        let u = &form.operator * DVector::from_column_slice(t.as_slice()) + &form.free;
+        let back = problem.force(&split(&u));
+        assert!((back[0] - t).norm() < 1e-14);
+    }
+
+    #[test]
+    fn certificate_is_zero_on_the_law_and_counts_what_is_lost() {
+        let law = [coulomb(0.5)];
+        // Slip against the force: b_c = t·(−u).
+        let exact = Certificate::new(&law, &[Local::<2>::new(0.0, -0.1)], &[Local::<2>::new(2.0, 1.0)]);
+        assert!(exact.bipotential_gap.abs() < 1e-15 && exact.penetration == 0.0);
+        // Slip along the force dissipates a negative power: the gap is 2 μ t_n |u_t|.
+        let wrong = Certificate::new(&law, &[Local::<2>::new(0.0, 0.1)], &[Local::<2>::new(2.0, 1.0)]);
+        assert!((wrong.bipotential_gap - 0.2).abs() < 1e-15);
+        // An open gap under load: t_n u_n.
+        let open = Certificate::new(&law, &[Local::<2>::new(0.3, 0.0)], &[Local::<2>::new(2.0, 0.0)]);
+        assert!((open.bipotential_gap - 0.6).abs() < 1e-15);
+        let outside =
+            Certificate::new(&law, &[Local::<2>::new(-0.3, 0.0)], &[Local::<2>::new(-1.0, 0.0)]);
+        assert_eq!((outside.penetration, outside.excess_force), (0.3, 1.0));
+    }
+
+    #[test]
+    fn bad_data_is_refused() {
+        let s = DMatrix::identity(2, 2);
+        let one = vec![coulomb(0.1)];
+        let zero = vec![Local::<2>::zeros()];
+        let f = DVector::zeros(2);
+        let nan = DVector::from_element(2, f64::NAN);
+        let new = ContactProblem::new;
+        assert!(matches!(
+            new(s.clone(), nan, zero.clone(), one.clone(), zero.clone()),
+            Err(ContactError::NotFinite { what: "load" })
+        ));
+        assert!(matches!(
+            new(DMatrix::identity(3, 3), f.clone(), zero.clone(), one.clone(), zero.clone()),
+            Err(ContactError::Dimension { found: 3, expected: 2, .. })
+        ));
+        let singular = new(DMatrix::zeros(2, 2), f, zero.clone(), one, zero).expect("valid");
+        assert!(matches!(singular.delassus("test"), Err(ContactError::Floating { .. })));
+    }
+}

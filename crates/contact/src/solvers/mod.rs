@@ -1,0 +1,63 @@
+//! The methods that solve a contact problem, one file each, behind one trait.
+
+mod gauss_seidel;
+mod penalty;
+mod semismooth;
+mod uzawa;
+
+pub use gauss_seidel::GaussSeidel;
+pub use penalty::Penalty;
+pub use semismooth::SemismoothNewton;
+pub use uzawa::Uzawa;
+
+use crate::{Certificate, ContactError, ContactProblem};
+use moreau_laws::{Local, Status};
+
+/// When an iterative method stops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerance {
+    /// Natural-map residual over the size of the forces in play, dimensionless.
+    pub relative: f64,
+    /// Iterations after which the method gives up.
+    pub iterations: usize,
+}
+
+/// Solution of a contact problem.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactSolution<const D: usize> {
+    /// Gap and slip u of every contact [mm].
+    pub displacement: Vec<Local<D>>,
+    /// The part of u that obeys Coulomb's law exactly: u itself, or under the penalty its
+    /// irreversible part Δuᶠ of [81] [mm].
+    pub irreversible: Vec<Local<D>>,
+    /// Force t of every contact on the body [N].
+    pub force: Vec<Local<D>>,
+    /// Status of every contact, [35].
+    pub status: Vec<Status>,
+    /// Iterations of the method.
+    pub iterations: usize,
+    /// Largest natural-map residual of a contact [N].
+    pub residual: f64,
+}
+
+impl<const D: usize> ContactSolution<D> {
+    /// Bipotential gap, penetration and excess force of the solution under the exact law, taken
+    /// at the irreversible displacement.
+    pub fn certificate(&self, problem: &ContactProblem<D>) -> Certificate {
+        Certificate::new(problem.friction(), &self.irreversible, &self.force)
+    }
+}
+
+/// A method for contact problems. All solve the same problem and report the same residual.
+pub trait ContactSolver<const D: usize>: std::fmt::Debug + Send + Sync {
+    /// Solves a problem, starting from `guess` if there is one.
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`] with the residual left, [`ContactError::Floating`] where
+    /// the method needs an invertible stiffness, [`ContactError::Singular`].
+    fn solve(
+        &self,
+        problem: &ContactProblem<D>,
+        guess: Option<&ContactSolution<D>>,
+    ) -> Result<ContactSolution<D>, ContactError>;
+}

@@ -1,0 +1,204 @@
+//! Semismooth Newton method on the natural map; not a regularisation: its zeros are the law.
+
+use super::{ContactSolution, ContactSolver, GaussSeidel, Tolerance};
+use crate::{ContactError, ContactProblem};
+use moreau_laws::Local;
+use nalgebra::{DMatrix, DVector, SMatrix};
+
+/// Newton's method on t − proj(t − α ũ) = 0, [90′], with t = S (u − g) − f.
+///
+/// It works on S, not on its inverse, so that it also treats bodies which only contact holds.
+/// The map is piecewise smooth and, once the statuses are right, almost linear: it ends after a
+/// handful of iterations. Steps are damped on the norm of the map; where that stalls, another α
+/// is tried, which moves the kinks and not the zeros, and then Gauss–Seidel sweeps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SemismoothNewton {
+    /// When to stop.
+    pub tolerance: Tolerance,
+}
+
+impl Default for SemismoothNewton {
+    fn default() -> Self {
+        Self { tolerance: Tolerance { relative: 1e-12, iterations: 300 } }
+    }
+}
+
+impl<const D: usize> ContactSolver<D> for SemismoothNewton {
+    fn solve(
+        &self,
+        problem: &ContactProblem<D>,
+        guess: Option<&ContactSolution<D>>,
+    ) -> Result<ContactSolution<D>, ContactError> {
+        let rigid = vec![Local::zeros(); problem.contacts()];
+        newton(problem, &rigid, guess, self.tolerance)
+    }
+}
+
+/// α of the map, in parts of the stiffness of the contact's own components, and the parts to try
+/// where Newton stalls. A tenth is about the inverse of a diagonal of W on a structure; there
+/// damped Newton solved all of 1 000 random problems with μ < 0.35, at ten times the value nine
+/// of ten.
+const PARTS: [f64; 3] = [0.1, 1.0, 0.01];
+
+/// Iterations for one of the parts.
+const ATTEMPT: usize = 30;
+
+/// The state of the iteration: displacements and all that follows from them.
+struct Iterate<const D: usize> {
+    u: Vec<Local<D>>,
+    t: Vec<Local<D>>,
+    /// u + C (t − t₀*): the part that obeys the law.
+    irreversible: Vec<Local<D>>,
+    map: Vec<Local<D>>,
+    residual: f64,
+    merit: f64,
+}
+
+/// Newton on the natural map at u + C (t − t₀*), with a diagonal compliance C [mm/N] per contact
+/// (zero: the exact law) and t₀* = (0, t₀ₜ), the penalty of [81]–[82] as a spring in series.
+pub(super) fn newton<const D: usize>(
+    problem: &ContactProblem<D>,
+    compliance: &[Local<D>],
+    guess: Option<&ContactSolution<D>>,
+    tolerance: Tolerance,
+) -> Result<ContactSolution<D>, ContactError> {
+    let mut start = match guess {
+        Some(g) => g.displacement.clone(),
+        None => problem.origin().to_vec(),
+    };
+    let mut iterations = 0;
+    let mut part = 0;
+    loop {
+        let newton = Newton { problem, compliance, part: PARTS[part % PARTS.len()] };
+        let mut now = newton.iterate(start.clone());
+        for _ in 0..ATTEMPT {
+            // The residual grows with α, at most in proportion: this bounds it for the common α.
+            if now.residual <= newton.part * tolerance.relative * problem.force_scale(&now.t) {
+                return Ok(newton.solution(now, iterations));
+            }
+            if iterations >= tolerance.iterations {
+                let solution = newton.solution(now, iterations);
+                return Err(ContactError::NotConverged {
+                    solver: "semismooth Newton",
+                    iterations,
+                    residual: solution.residual,
+                    tolerance: tolerance.relative * problem.force_scale(&solution.force),
+                });
+            }
+            iterations += 1;
+            let Some(next) = newton.advance(&now) else {
+                break;
+            };
+            now = next;
+        }
+        part += 1;
+        // When all have stalled, sweeps find the statuses; where no inverse exists there are none.
+        let exact = compliance.iter().all(|c| c.norm() == 0.0);
+        if part % PARTS.len() == 0 && exact {
+            if let Ok(swept) = GaussSeidel::sweeps(problem, &now.t, 200) {
+                start = swept.displacement;
+            }
+        } else if part == 1 && iterations < 2 {
+            return Err(ContactError::Singular);
+        }
+    }
+}
+
+struct Newton<'a, const D: usize> {
+    problem: &'a ContactProblem<D>,
+    compliance: &'a [Local<D>],
+    part: f64,
+}
+
+impl<const D: usize> Newton<'_, D> {
+    /// α of [90′]: the stiffness of the structure and of the penalty spring in series.
+    fn alpha(&self, i: usize) -> f64 {
+        let alpha = self.part * self.problem.alpha(i);
+        let compliance = self.compliance[i].mean();
+        alpha / (1.0 + alpha * compliance)
+    }
+
+    fn iterate(&self, u: Vec<Local<D>>) -> Iterate<D> {
+        let p = self.problem;
+        let t = p.force(&u);
+        let irreversible: Vec<Local<D>> = (0..u.len())
+            .map(|i| {
+                let mut origin = p.previous()[i];
+                origin[0] = 0.0;
+                u[i] + self.compliance[i].component_mul(&(t[i] - origin))
+            })
+            .collect();
+        let map: Vec<Local<D>> = (0..u.len())
+            .map(|i| p.friction()[i].natural_map(&irreversible[i], &t[i], self.alpha(i)))
+            .collect();
+        let residual = map.iter().map(|g| g.norm()).fold(0.0, f64::max);
+        // Divided by α a square is an energy: contacts of unlike stiffness weigh alike.
+        let energy = |(i, g): (usize, &Local<D>)| g.norm_squared() / self.alpha(i);
+        let merit = map.iter().enumerate().map(energy).sum();
+        Iterate { u, t, irreversible, map, residual, merit }
+    }
+
+    /// The next iterate: a Newton step, halved until the map decreases; `None` if it does not or
+    /// if the matrix is singular.
+    fn advance(&self, now: &Iterate<D>) -> Option<Iterate<D>> {
+        let step = self.step(now)?;
+        let mut s = 1.0;
+        while s > 1e-4 {
+            let next = self.iterate(add(&now.u, &step, s));
+            if next.merit < (1.0 - 1e-4 * s) * now.merit {
+                return Some(next);
+            }
+            s *= 0.5;
+        }
+        None
+    }
+
+    /// Newton step of the map; `None` if its matrix is singular.
+    fn step(&self, now: &Iterate<D>) -> Option<DVector<f64>> {
+        let p = self.problem;
+        let n = D * p.contacts();
+        let s = p.stiffness();
+        let mut jacobian = DMatrix::zeros(n, n);
+        for (i, law) in p.friction().iter().enumerate() {
+            let alpha = self.alpha(i);
+            let v = &now.irreversible[i];
+            let projector = law.project_jacobian(&(now.t[i] - law.shifted(v) * alpha));
+            let shift = projector * law.shifted_jacobian(v) * alpha;
+            // dG = [(1 − P) + α P A C] S du + α P A du
+            let elastic = SMatrix::<f64, D, D>::identity() - projector
+                + shift * SMatrix::from_diagonal(&self.compliance[i]);
+            let rows = elastic * s.fixed_rows::<D>(D * i);
+            jacobian.fixed_rows_mut::<D>(D * i).copy_from(&rows);
+            let mut own = jacobian.fixed_view_mut::<D, D>(D * i, D * i);
+            own += shift;
+        }
+        let rhs = DVector::from_iterator(n, now.map.iter().flat_map(|g| (0..D).map(|k| -g[k])));
+        let step = jacobian.lu().solve(&rhs)?;
+        step.iter().all(|v| v.is_finite()).then_some(step)
+    }
+
+    fn solution(&self, now: Iterate<D>, iterations: usize) -> ContactSolution<D> {
+        let p = self.problem;
+        // The projection of the last iterate lies in the cone exactly; it differs from t by less
+        // than the residual.
+        let force = (0..p.contacts()).map(|i| now.t[i] - now.map[i]).collect::<Vec<_>>();
+        let status = (0..p.contacts())
+            .map(|i| p.friction()[i].status(&now.irreversible[i], &now.t[i], self.alpha(i)))
+            .collect();
+        ContactSolution {
+            residual: p.residual(&now.irreversible, &force),
+            displacement: now.u,
+            irreversible: now.irreversible,
+            force,
+            status,
+            iterations,
+        }
+    }
+}
+
+fn add<const D: usize>(u: &[Local<D>], step: &DVector<f64>, s: f64) -> Vec<Local<D>> {
+    u.iter()
+        .enumerate()
+        .map(|(i, u)| Local::from_fn(|k, _| u[k] + s * step[D * i + k]))
+        .collect()
+}

@@ -1,0 +1,295 @@
+//! Every solver on problems with known answers, and all of them against each other.
+
+use moreau_contact::{
+    ContactError, ContactProblem, ContactSolution, ContactSolver, GaussSeidel, Penalty,
+    SemismoothNewton, Uzawa,
+};
+use moreau_laws::{Coulomb, Local, RegularisedCoulomb, Status};
+use nalgebra::{DMatrix, DVector, Matrix3};
+use proptest::prelude::*;
+
+fn exact<const D: usize>() -> Vec<Box<dyn ContactSolver<D>>> {
+    vec![
+        Box::new(SemismoothNewton::default()),
+        Box::new(GaussSeidel::default()),
+        Box::new(Uzawa::default()),
+    ]
+}
+
+fn problem<const D: usize>(w: DMatrix<f64>, q: &[Local<D>], mu: f64) -> ContactProblem<D> {
+    let law = Coulomb::new(mu).expect("valid friction");
+    ContactProblem::from_delassus(w, q, vec![law; q.len()]).expect("valid problem")
+}
+
+fn assert_solves<const D: usize>(problem: &ContactProblem<D>, solution: &ContactSolution<D>) {
+    let scale = problem.force_scale(&solution.force);
+    let residual = problem.residual(&solution.displacement, &solution.force);
+    assert!(residual <= 1e-9 * scale, "residual {residual} N at forces of {scale} N");
+    let asked = problem.force(&solution.displacement);
+    for (t, asked) in solution.force.iter().zip(&asked) {
+        assert!((t - asked).norm() <= 1e-8 * scale, "force {t} against structure {asked}");
+    }
+}
+
+/// One contact in 3D with coupled W; answers to ten digits, cross-checked by the bipotential gap.
+#[test]
+fn one_coupled_contact_in_space() {
+    let w = Matrix3::new(1.0, 0.2, -0.1, 0.2, 0.8, 0.05, -0.1, 0.05, 0.6);
+    let w = DMatrix::from_iterator(3, 3, w.iter().copied());
+    let v = Local::<3>::new;
+    let cases = [
+        (v(-1.0, 0.5, -0.3), 0.3, v(1.0715348565, -0.2720533, 0.1712420), v(0.0, 0.5052264, -0.3180110)),
+        (v(-1.0, 0.05, -0.03), 0.3, v(1.0711995704, -0.2653838, 0.1812280), v(0.0, 0.0609942, -0.0416524)),
+        (v(0.2, 0.5, -0.3), 0.3, v(0.0, 0.0, 0.0), v(0.2, 0.5, -0.3)),
+        (v(-1.0, 2.0, 1.0), 0.9, v(1.1518289669, -0.9576284, -0.3969671), v(0.0, 1.4444147, 0.5987554)),
+    ];
+    for (q, mu, force, displacement) in cases {
+        let problem = problem(w.clone(), &[q], mu);
+        for solver in exact() {
+            let s = solver.solve(&problem, None).expect("solvable");
+            assert!((s.force[0] - force).norm() < 1e-7, "{solver:?}: {}", s.force[0]);
+            assert!((s.force[0][0] - force[0]).abs() < 1e-8);
+            assert!((s.displacement[0] - displacement).norm() < 1e-7);
+            assert!(s.certificate(&problem).bipotential_gap.abs() < 1e-9);
+            let expected = if force.norm() == 0.0 { Status::Open } else { Status::Slip };
+            assert_eq!(s.status[0], expected);
+        }
+    }
+}
+
+/// Klarbring's two degrees of freedom at μ below the critical value 2: the unique solutions.
+#[test]
+fn klarbring_below_the_critical_friction() {
+    let k = DMatrix::from_row_slice(2, 2, &[1.0, -0.5, -0.5, 1.0]);
+    let law = vec![Coulomb::new(1.0).expect("valid")];
+    let zero = vec![Local::<2>::zeros()];
+    // (f_t, f_n) → (u_t, u_n; r_t, r_n)
+    let cases = [
+        ((1.9, -1.0), (1.8, 0.0, -0.1, 0.1)),
+        ((2.9, -1.0), (3.2, 0.6, 0.0, 0.0)),
+        ((-3.5, -1.0), (-5.0 / 3.0, 0.0, 11.0 / 6.0, 11.0 / 6.0)),
+    ];
+    for ((f_t, f_n), (u_t, u_n, r_t, r_n)) in cases {
+        let load = DVector::from_row_slice(&[f_n, f_t]);
+        let problem =
+            ContactProblem::new(k.clone(), load, zero.clone(), law.clone(), zero.clone())
+                .expect("valid");
+        for solver in exact() {
+            let s = solver.solve(&problem, None).expect("solvable");
+            assert!((s.displacement[0] - Local::<2>::new(u_n, u_t)).norm() < 1e-9, "{solver:?}");
+            assert!((s.force[0] - Local::<2>::new(r_n, r_t)).norm() < 1e-9, "{solver:?}");
+        }
+    }
+}
+
+/// A random symmetric positive definite matrix with eigenvalues in [0.05, …].
+fn definite(n: usize, entries: &[f64]) -> DMatrix<f64> {
+    let a = DMatrix::from_fn(n, n, |i, j| entries[(i * n + j) % entries.len()]);
+    &a * a.transpose() + DMatrix::identity(n, n) * 0.05
+}
+
+fn agree<const D: usize>(w: DMatrix<f64>, q: &[f64], mu: f64) -> Result<(), TestCaseError> {
+    let contacts = w.nrows() / D;
+    let free: Vec<_> = (0..contacts)
+        .map(|i| Local::<D>::from_fn(|k, _| q[(D * i + k) % q.len()]))
+        .collect();
+    let problem = problem(w, &free, mu);
+    let mut solutions = Vec::new();
+    for solver in exact() {
+        let solution = solver
+            .solve(&problem, None)
+            .map_err(|e| TestCaseError::fail(format!("{solver:?}: {e}")))?;
+        assert_solves(&problem, &solution);
+        let certificate = solution.certificate(&problem);
+        prop_assert!(certificate.bipotential_gap.abs() < 1e-8 * (1.0 + problem.force_scale(&solution.force)));
+        prop_assert!(certificate.penetration < 1e-8);
+        solutions.push(solution);
+    }
+    let scale = problem.force_scale(&solutions[0].force);
+    for s in &solutions[1..] {
+        for (a, b) in solutions[0].force.iter().zip(&s.force) {
+            prop_assert!((a - b).norm() <= 1e-7 * scale, "{} against {}", a, b);
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    /// Friction below 0.35 keeps these random problems in the range of unique solutions.
+    #[test]
+    fn exact_solvers_agree_in_the_plane(
+        contacts in 1usize..7,
+        entries in prop::collection::vec(-1.0..1.0f64, 197),
+        q in prop::collection::vec(-1.0..0.4f64, 14),
+        mu in 0.0..0.35f64,
+    ) {
+        agree::<2>(definite(2 * contacts, &entries), &q, mu)?;
+    }
+
+    #[test]
+    fn exact_solvers_agree_in_space(
+        contacts in 1usize..5,
+        entries in prop::collection::vec(-1.0..1.0f64, 229),
+        q in prop::collection::vec(-1.0..0.4f64, 17),
+        mu in 0.0..0.35f64,
+    ) {
+        agree::<3>(definite(3 * contacts, &entries), &q, mu)?;
+    }
+
+    /// At any friction the Newton method ends at a solution.
+    #[test]
+    fn newton_solves_at_large_friction(
+        contacts in 1usize..6,
+        entries in prop::collection::vec(-1.0..1.0f64, 197),
+        q in prop::collection::vec(-1.0..0.4f64, 14),
+        mu in 0.35..1.2f64,
+    ) {
+        let free: Vec<_> =
+            (0..contacts).map(|i| Local::<2>::new(q[2 * i], q[2 * i + 1])).collect();
+        let problem = problem(definite(2 * contacts, &entries), &free, mu);
+        let solution = SemismoothNewton::default()
+            .solve(&problem, None)
+            .map_err(|e| TestCaseError::fail(e.to_string()))?;
+        assert_solves(&problem, &solution);
+    }
+
+    /// The penalty method is the return mapping of the regularised law, for any k.
+    #[test]
+    fn penalty_obeys_the_regularised_law(
+        contacts in 1usize..6,
+        entries in prop::collection::vec(-1.0..1.0f64, 197),
+        q in prop::collection::vec(-1.0..0.4f64, 14),
+        mu in 0.0..0.35f64,
+        exponent in -1.0..5.0f64,
+    ) {
+        let k = 10f64.powf(exponent);
+        let free: Vec<_> =
+            (0..contacts).map(|i| Local::<2>::new(q[2 * i], q[2 * i + 1])).collect();
+        let problem = problem(definite(2 * contacts, &entries), &free, mu);
+        let s = Penalty::new(k, k)
+            .expect("valid")
+            .solve(&problem, None)
+            .map_err(|e| TestCaseError::fail(e.to_string()))?;
+        let law = RegularisedCoulomb::new(mu, k, k).expect("valid");
+        let scale = problem.force_scale(&s.force);
+        for i in 0..contacts {
+            let response = law.respond(&problem.previous()[i], &s.displacement[i]);
+            // The return mapping multiplies the rounding of u by k.
+            let rounding = k * 1e-13 * (1.0 + s.displacement[i].norm());
+            prop_assert!((response.force - s.force[i]).norm() <= 1e-9 * scale + rounding);
+        }
+    }
+}
+
+/// A fixed problem with open, sticking and slipping contacts.
+fn mixed() -> ContactProblem<2> {
+    let n = 12;
+    let w = DMatrix::from_fn(n, n, |i, j| {
+        let decay = (-((i / 2) as f64 - (j / 2) as f64).abs()).exp();
+        if i == j { 1.2 } else if (i + j) % 2 == 0 { 0.4 * decay } else { 0.05 * decay }
+    });
+    let q: Vec<_> = [(-1.0, 0.02), (-0.8, 0.5), (0.6, 0.3), (-0.7, -0.4), (0.9, 0.0), (-0.5, 0.01)]
+        .iter()
+        .map(|&(n, t)| Local::<2>::new(n, t))
+        .collect();
+    problem(w, &q, 0.3)
+}
+
+#[test]
+fn penalty_error_falls_as_one_over_k() {
+    let problem = mixed();
+    let exact = SemismoothNewton::default().solve(&problem, None).expect("solvable");
+    for status in [Status::Open, Status::Stick, Status::Slip] {
+        assert!(exact.status.contains(&status), "the problem lacks {status:?}");
+    }
+    let error = |k: f64| {
+        let s = Penalty::new(k, k).expect("valid").solve(&problem, None).expect("every k");
+        let difference = |(a, b): (&Local<2>, &Local<2>)| (a - b).norm();
+        s.force.iter().zip(&exact.force).map(difference).fold(0.0, f64::max)
+    };
+    for exponent in 2..9 {
+        let ratio = error(10f64.powi(exponent)) / error(10f64.powi(exponent + 1));
+        assert!((ratio - 10.0).abs() < 0.5, "1e{exponent}: the error fell {ratio} times");
+    }
+    for exponent in [-2, 0, 12, 16] {
+        assert!(error(10f64.powi(exponent)).is_finite());
+    }
+    assert!(error(1e16) < 1e-10);
+}
+
+#[test]
+fn lost_energy_of_the_penalty_halves_when_k_doubles() {
+    let problem = mixed();
+    let lost = |k: f64| {
+        let s = Penalty::new(k, k).expect("valid").solve(&problem, None).expect("every k");
+        assert!(s.certificate(&problem).bipotential_gap.abs() < 1e-12);
+        let energy = |(i, t): (usize, &Local<2>)| t.dot(&(s.irreversible[i] - s.displacement[i]));
+        s.force.iter().enumerate().map(energy).sum::<f64>()
+    };
+    assert!((lost(1e4) / lost(2e4) - 2.0).abs() < 1e-3);
+}
+
+#[test]
+fn the_answer_does_not_depend_on_the_guess() {
+    let problem = mixed();
+    let newton = SemismoothNewton::default();
+    let reference = newton.solve(&problem, None).expect("solvable");
+    let again = newton.solve(&problem, Some(&reference)).expect("solvable");
+    assert_eq!(again.iterations, 0, "a solution is recognised");
+    let mut far = reference.clone();
+    for u in &mut far.displacement {
+        *u = Local::<2>::new(5.0, -7.0);
+    }
+    let from_far = newton.solve(&problem, Some(&far)).expect("solvable");
+    assert_eq!(from_far.status, reference.status);
+    for (a, b) in from_far.force.iter().zip(&reference.force) {
+        assert!((a - b).norm() < 1e-11);
+    }
+}
+
+/// A rigid block on two contacts: only contact holds it. Its weight is shared, and friction stops
+/// it from sliding.
+#[test]
+fn newton_treats_a_body_that_only_contact_holds() {
+    let spring = 100.0;
+    // Two contact nodes tied by a bar along the tangent; free to move and to turn as a whole.
+    let mut s = DMatrix::zeros(4, 4);
+    for (i, j, v) in [(1, 1, spring), (3, 3, spring), (1, 3, -spring), (3, 1, -spring)] {
+        s[(i, j)] = v;
+    }
+    let load = DVector::from_row_slice(&[-10.0, 1.0, -10.0, 1.0]);
+    let zero = vec![Local::<2>::zeros(); 2];
+    let law = vec![Coulomb::new(0.3).expect("valid"); 2];
+    let problem =
+        ContactProblem::new(s, load, zero.clone(), law, zero.clone()).expect("valid");
+    let touching = ContactSolution {
+        displacement: zero.clone(),
+        irreversible: zero,
+        force: vec![Local::<2>::new(10.0, 0.0); 2],
+        status: vec![Status::Stick; 2],
+        iterations: 0,
+        residual: 0.0,
+    };
+    let solution =
+        SemismoothNewton::default().solve(&problem, Some(&touching)).expect("solvable");
+    for t in &solution.force {
+        assert!((t - Local::<2>::new(10.0, -1.0)).norm() < 1e-10);
+    }
+    let refused = Uzawa::default().solve(&problem, None);
+    assert!(matches!(refused, Err(ContactError::Floating { solver: "Uzawa", .. })));
+}
+
+#[test]
+fn a_tolerance_that_cannot_be_met_is_an_error_with_numbers() {
+    let problem = mixed();
+    let mut solver = Uzawa::default();
+    solver.tolerance.iterations = 3;
+    match solver.solve(&problem, None) {
+        Err(ContactError::NotConverged { solver: "Uzawa", iterations: 3, residual, tolerance }) => {
+            assert!(residual > tolerance && residual.is_finite());
+        }
+        other => panic!("expected NotConverged, got {other:?}"),
+    }
+}
