@@ -1,1 +1,48 @@
-//! placeholder
+//! Incremental driver: bodies and their contacts, step by step; not the laws that hold in them.
+//!
+//! A [`Model`] is a mesh with materials, tools and contacts; a [`Step`] is what acts on it; the
+//! [`Driver`] applies steps increment by increment. Every increment is a transaction: it converges
+//! and is committed with a [`StepReport`], or it fails and nothing has changed.
+//!
+//! ```
+//! use moreau_contact::Plane;
+//! use moreau_driver::{Axis, Driver, Model, Settings, Step};
+//! use moreau_laws::{Coulomb, VonMises};
+//! use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
+//!
+//! // A steel block on a rigid foundation with friction, punched by 0.02 mm over half of its top.
+//! let mut mesh =
+//!     block2("block", CellKind::Quad8, &uniform(0.0, 50.0, 10), &uniform(0.0, 20.0, 2))?;
+//! mesh.node_group_where("punch", "block.top", |x| x[0] <= 25.0)?;
+//! let model = Model::new(mesh, PlaneStrain::default())
+//!     .material("block", VonMises::new(210e3, 0.3, 300.0)?, Integration::Reduced)?
+//!     .tool("foundation", Plane::new([0.0, 0.0], [0.0, 1.0])?)?
+//!     .contact("block.bottom", "foundation", Coulomb::new(0.1)?)?;
+//! let mut driver = Driver::new(model, Settings::default())?;
+//! let press = Step::new("press").fix("block.left", &[Axis::X]).displace("punch", Axis::Y, -0.02);
+//! let reports = driver.run(&press, 2, |_, _| {})?;
+//! let load = -driver.reaction("punch")?[1];
+//! assert!((load - 6940.075726).abs() < 1e-5);
+//! assert!(reports[1].relative_gap() < 1e-10);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod block;
+mod cholesky;
+mod driver;
+mod error;
+mod increment;
+mod interface;
+mod load;
+mod model;
+mod nested;
+mod ordering;
+mod report;
+mod system;
+
+pub use block::{Block, BlockEnergy, CellResult, PointState, SolidBlock, Stiffness};
+pub use driver::{Driver, Nesting, Settings};
+pub use error::{Imbalance, ModelError, StepError};
+pub use load::{Axis, Loading, Step};
+pub use model::{Analysis, Model};
+pub use report::{ContactRecord, Energies, StepReport};

@@ -1,1 +1,84 @@
-//! placeholder
+//! Constitutive laws as pure functions, derived from superpotentials and bipotentials; not
+//! meshes, fields or solvers.
+//!
+//! A dissipative law relates a flux x (a rate, or an increment over a step) to the force y
+//! conjugate to it. A *standard* law derives from a convex [`Superpotential`]: y ∈ ∂V(x), \[28\].
+//! Contact with friction is not standard: it derives from a [`Bipotential`], a function of both,
+//! convex in each, with b(x, y) ≥ x·y, and the law is where equality holds, \[29\]-\[34\]. Bracketed
+//! numbers are the equations of Fihri Fassi, Bousshine, de Saxcé, El Harif and Kouam, *Analyse du
+//! problème d'évolution élastoplastique en présence d'une loi non associée de contact avec
+//! frottement*.
+//!
+//! ```
+//! use moreau_laws::{Bipotential, Coulomb, Local};
+//!
+//! # fn main() -> Result<(), moreau_laws::LawError> {
+//! // A contact of friction 0.5 pressed by 10 N, that slips 1 mm along the first tangent.
+//! let law = Coulomb::new(0.5)?;
+//! let u = Local::<3>::new(0.0, 1.0, 0.0);
+//! let gap = |t: &Local<3>| law.b(&-u, t) + t.dot(&u); // b(−u, t) − (−u)·t ≥ 0
+//!
+//! // Friction on the cone and against the slip: the pair obeys the law, the gap is zero.
+//! assert_eq!(gap(&Local::<3>::new(10.0, -5.0, 0.0)), 0.0);
+//! // Too little friction: the gap is what is missing in dissipation, in N·mm.
+//! assert_eq!(gap(&Local::<3>::new(10.0, -3.0, 0.0)), 2.0);
+//! // Friction outside the cone is not admissible.
+//! assert_eq!(gap(&Local::<3>::new(10.0, -6.0, 0.0)), f64::INFINITY);
+//!
+//! // The same law as an equation, for any α > 0: t = proj(t − αũ).
+//! let t = Local::<3>::new(10.0, -5.0, 0.0);
+//! assert!(law.natural_map(&u, &t, 7.0).norm() < 1e-14);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! | law | type | kind |
+//! |---|---|---|
+//! | isotropic elasticity | [`Elastic`] | bulk |
+//! | von Mises, linear hardening | [`VonMises`], [`VonMisesDissipation`] | bulk; superpotential |
+//! | elastic, perfectly plastic bar | [`Uniaxial`] | superpotential |
+//! | unilateral contact | [`Signorini`] | superpotential |
+//! | contact with Tresca friction | [`Tresca`] | superpotential |
+//! | contact with Coulomb friction | [`Coulomb`], [`AnisotropicCoulomb`] | bipotential |
+//! | its penalty regularisation | [`RegularisedCoulomb`] | response |
+//! | soils | [`DruckerPrager`], [`CamClay`] | bipotential |
+//! | non-linear kinematic hardening | [`ArmstrongFrederick`] | bipotential |
+//! | damage | [`Lemaitre`] | bipotential |
+//!
+//! Tensors are in Mandel notation, see `moreau_mandel`; units are N, mm and MPa. Constructors
+//! return [`LawError`] for data that define no law; past them nothing fails, and data that are not
+//! numbers come out as NaN.
+
+mod anisotropic;
+mod armstrong_frederick;
+mod bulk;
+mod cam_clay;
+mod coulomb;
+mod drucker_prager;
+mod duality;
+mod elastic;
+mod error;
+mod lemaitre;
+mod local;
+mod regularised;
+mod signorini;
+mod tresca;
+mod uniaxial;
+mod von_mises;
+
+pub use anisotropic::AnisotropicCoulomb;
+pub use armstrong_frederick::{ArmstrongFrederick, Generalised};
+pub use bulk::{BulkLaw, IncrementalPotential, Response};
+pub use cam_clay::CamClay;
+pub use coulomb::Coulomb;
+pub use drucker_prager::DruckerPrager;
+pub use duality::{Bipotential, Superpotential};
+pub use elastic::Elastic;
+pub use error::LawError;
+pub use lemaitre::{Damaging, Lemaitre};
+pub use local::{Local, Status};
+pub use regularised::{RegularisedCoulomb, RegularisedResponse};
+pub use signorini::Signorini;
+pub use tresca::Tresca;
+pub use uniaxial::{Uniaxial, UniaxialResponse};
+pub use von_mises::{VonMises, VonMisesDissipation, VonMisesState};

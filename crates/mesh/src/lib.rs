@@ -1,1 +1,61 @@
-//! placeholder
+//! Finite elements, quadrature, modelling hypotheses and meshes with named groups; nothing here
+//! knows a constitutive law, an unknown or a file.
+//!
+//! | to … | use |
+//! |---|---|
+//! | interpolate in a cell, `u = N U` \[76\] | [`Element`]: [`Tri3`], [`Tri6`], [`Quad4`], [`Quad8`], [`Quad9`], [`Tet4`], [`Hex8`] |
+//! | integrate over it, \[78\] | [`Element::rule`], [`Rule`], [`Integration`] |
+//! | strain it, `ε = B U` \[77\] | [`Hypothesis`]: [`PlaneStrain`], [`Axisymmetric`], [`Solid`] |
+//! | hold nodes, cells and named groups | [`Mesh`], always valid once constructed |
+//! | make one | [`block2`], [`block3`] on the lines of [`uniform`], [`geometric`], [`refine`] |
+//!
+//! Cells are numbered as in Gmsh, lengths are in millimetres, tensors are Mandel vectors
+//! `[11, 22, 33, √2·23, √2·13, √2·12]`.
+//!
+//! ```
+//! use moreau_mesh::{CellKind, MeshError, PlaneStrain, block2, uniform};
+//!
+//! # fn main() -> Result<(), MeshError> {
+//! // A block of 50 mm by 20 mm with named sides, as 10 × 2 quadratic cells.
+//! let mesh = block2(
+//!     "block",
+//!     CellKind::Quad8,
+//!     &uniform(0.0, 50.0, 10),
+//!     &uniform(0.0, 20.0, 2),
+//! )?;
+//! assert_eq!(mesh.cell_count(), 20);
+//!
+//! // A uniform pressure loads the nodes of one quadratic edge by 1/6, 2/3 and 1/6.
+//! let top = mesh.facet_group("block.top")?;
+//! let shares = mesh.facet_shares(&top[..1], &PlaneStrain::default());
+//! let areas: Vec<f64> = shares.iter().map(|share| share.area / 5.0).collect();
+//! for (area, exact) in areas.iter().zip([1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0]) {
+//!     assert!((area - exact).abs() < 1e-14);
+//! }
+//!
+//! // A misspelt group is an error that names the nearest one.
+//! let error = mesh.node_group("block.botom").unwrap_err();
+//! assert!(error.to_string().contains("block.bottom"));
+//! # Ok(())
+//! # }
+//! ```
+
+pub mod cell;
+pub mod element;
+pub mod error;
+pub mod generate;
+mod geometry;
+pub mod hypothesis;
+pub mod mesh;
+mod nearest;
+pub mod quadrature;
+mod sample;
+
+pub use cell::{CellKind, FacetKind};
+pub use element::{Element, Hex8, Line2, Line3, Mapped, Quad4, Quad8, Quad9, Tet4, Tri3, Tri6};
+pub use error::{GroupKind, MeshError};
+pub use generate::{block2, block3, geometric, refine, uniform};
+pub use hypothesis::{Axisymmetric, Hypothesis, PlaneStrain, Solid};
+pub use mesh::{Facet, Mesh, NodeKind, Share};
+pub use nearest::nearest;
+pub use quadrature::{Integration, Point, Rule, gauss};

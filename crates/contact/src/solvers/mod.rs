@@ -8,7 +8,7 @@ mod uzawa;
 pub use gauss_seidel::GaussSeidel;
 pub use penalty::Penalty;
 pub use semismooth::SemismoothNewton;
-pub use uzawa::Uzawa;
+pub use uzawa::{Uzawa, uzawa_steps};
 
 use crate::{Certificate, ContactError, ContactProblem};
 use moreau_laws::{Local, Status};

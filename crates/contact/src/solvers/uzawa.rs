@@ -94,6 +94,14 @@ fn displacement<const D: usize>(
     split(&(operator * forces + free))
 }
 
+/// Steps α of Uzawa's correction for a problem, one per contact [N/mm].
+///
+/// # Errors
+/// [`ContactError::Floating`] if the stiffness is singular.
+pub fn uzawa_steps<const D: usize>(problem: &ContactProblem<D>) -> Result<Vec<f64>, ContactError> {
+    Ok(steps(problem, &problem.delassus("Uzawa")?.operator))
+}
+
 /// α per contact: 1/W̄_ii over the largest eigenvalue of the scaled operator, by power iteration.
 fn steps<const D: usize>(problem: &ContactProblem<D>, operator: &DMatrix<f64>) -> Vec<f64> {
     let scale: Vec<f64> = (0..problem.contacts())

@@ -1,0 +1,199 @@
+//! Errors of the driver: of setting up a model and of a step; facts with numbers.
+
+use moreau_contact::ContactError;
+use moreau_mesh::MeshError;
+
+/// A model or a step that makes no sense.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ModelError {
+    /// Of the mesh or a group.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// Of an obstacle or the contact problem.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+    /// Cells without a material.
+    #[error("{count} cells have no material, the first is cell {first}: give one to every cell")]
+    MissingMaterial {
+        /// Number of such cells.
+        count: usize,
+        /// The first of them.
+        first: usize,
+    },
+    /// A cell with two materials.
+    #[error("cell {cell} of group {group:?} has a material already: groups must not overlap")]
+    TwoMaterials {
+        /// The cell.
+        cell: usize,
+        /// Group of the second material.
+        group: String,
+    },
+    /// A tool that does not exist.
+    #[error("no tool is named {name:?}{}", nearest_hint(.nearest))]
+    UnknownTool {
+        /// The name asked for.
+        name: String,
+        /// The nearest name that exists.
+        nearest: Option<String>,
+    },
+    /// Two tools of one name.
+    #[error("a tool named {name:?} exists already: names must differ")]
+    DuplicateTool {
+        /// The name.
+        name: String,
+    },
+    /// A node that touches two obstacles.
+    #[error(
+        "node {node} at {position:?} is in contact with {first:?} and with {second:?}: \
+         give each node one obstacle"
+    )]
+    SharedContactNode {
+        /// The node.
+        node: usize,
+        /// Its position [mm].
+        position: Vec<f64>,
+        /// Tool of the first contact.
+        first: String,
+        /// Tool of the second.
+        second: String,
+    },
+    /// A body that could move without resistance.
+    #[error(
+        "the body of cell {cell} is free to move: nothing resists {motion}. \
+         Fix displacements, or add a contact (with friction, if the motion is along its surface)"
+    )]
+    FreeRigidMotion {
+        /// First cell of the body.
+        cell: usize,
+        /// The motion in words.
+        motion: String,
+    },
+    /// Two conditions that prescribe one displacement differently.
+    #[error(
+        "step {step:?} prescribes u_{axis} of node {node} as {first} and as {second} mm: remove one"
+    )]
+    TwoDisplacements {
+        /// The step.
+        step: String,
+        /// The node.
+        node: usize,
+        /// The component, x, y or z.
+        axis: char,
+        /// The first value [mm].
+        first: f64,
+        /// The second value [mm].
+        second: f64,
+    },
+    /// A number that is NaN or infinite, or outside of its range.
+    #[error("{what} is {value}, expected {expected}")]
+    OutOfRange {
+        /// The datum.
+        what: String,
+        /// Its value.
+        value: f64,
+        /// The admissible range in words.
+        expected: &'static str,
+    },
+    /// The factor does not fit into memory or a 32-bit index.
+    #[error("the factorisation of {unknowns} unknowns does not fit into memory")]
+    TooLarge {
+        /// Number of unknowns.
+        unknowns: usize,
+    },
+}
+
+fn nearest_hint(nearest: &Option<String>) -> String {
+    nearest.as_ref().map_or_else(String::new, |n| format!("; did you mean {n:?}?"))
+}
+
+/// A node out of balance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Imbalance {
+    /// The node.
+    pub node: usize,
+    /// Its position in the undeformed body [mm].
+    pub position: Vec<f64>,
+    /// Norm of the force that nothing balances [N].
+    pub force: f64,
+}
+
+/// An increment that failed. The state is what it was before.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StepError {
+    /// The model does not admit this increment.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The contact problem of an iteration has no solution that was found.
+    #[error("in iteration {iteration}: {source}")]
+    Contact {
+        /// Newton iteration.
+        iteration: usize,
+        /// What the contact solver says.
+        source: ContactError,
+    },
+    /// Newton's iteration ended above its tolerance.
+    #[error(
+        "Newton left {out_of_balance:.3e} N out of balance after {iterations} iterations, \
+         expected at most {tolerance:.3e} N; worst at {}; {:.0} % of the volume flows plastically",
+        worst_nodes(.worst), 100.0 * .plastic_fraction
+    )]
+    NotConverged {
+        /// Iterations done.
+        iterations: usize,
+        /// Largest nodal force that nothing balances [N].
+        out_of_balance: f64,
+        /// What was asked for [N].
+        tolerance: f64,
+        /// Up to five nodes with the largest imbalance.
+        worst: Vec<Imbalance>,
+        /// Part of the volume in which plastic strain grew.
+        plastic_fraction: f64,
+    },
+    /// The tangent is not positive definite: a mechanism.
+    #[error(
+        "the stiffness is not positive definite at node {node}, u_{axis} ({position:?}): \
+         the structure is a mechanism there, or collapses"
+    )]
+    Mechanism {
+        /// Node of the bad pivot.
+        node: usize,
+        /// The component, x, y or z.
+        axis: char,
+        /// Position of the node [mm].
+        position: Vec<f64>,
+    },
+    /// The step was cut as far as allowed.
+    #[error(
+        "step {step:?} stopped at {:.4} % of its load: increments were cut to {smallest:.2e} of the \
+         step. {} Last attempt: {cause}", 100.0 * .reached, collapse_hint(*.plastic_fraction)
+    )]
+    Stopped {
+        /// Name of the step.
+        step: String,
+        /// Part of the step that converged, in [0, 1); its state is kept.
+        reached: f64,
+        /// Length of the last attempt, in parts of the step.
+        smallest: f64,
+        /// Part of the volume that flowed plastically in the last attempt that tells, or in the
+        /// last converged increment.
+        plastic_fraction: f64,
+        /// Why the last attempt failed.
+        cause: Box<StepError>,
+    },
+}
+
+fn worst_nodes(worst: &[Imbalance]) -> String {
+    let one = |w: &Imbalance| format!("node {} {:?} ({:.1e} N)", w.node, w.position, w.force);
+    worst.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+fn collapse_hint(plastic_fraction: f64) -> &'static str {
+    if plastic_fraction > 0.02 {
+        "Plastic flow is widespread: the load is probably at the limit load; prescribe \
+         displacements to pass it."
+    } else {
+        "Hardly anything flows plastically: look for a contact that opens or a missing support."
+    }
+}

@@ -1,0 +1,507 @@
+//! One increment by Newton's method with the contact problem solved inside every iteration; not
+//! the sequence of increments.
+
+use crate::block::Stiffness;
+use crate::driver::{Driver, State};
+use crate::error::{Imbalance, StepError};
+use crate::interface::{Condensation, Kinematics};
+use crate::load::{Loading, axis_letter};
+use crate::report::{ContactRecord, StepReport};
+use crate::system::{Assembly, System};
+use moreau_contact::{Certificate, ContactError, ContactSolution};
+use moreau_laws::{Local, Status};
+use nalgebra::SVector;
+
+/// What an increment has counted.
+#[derive(Debug, Default)]
+pub(crate) struct Counts {
+    pub(crate) newton: usize,
+    pub(crate) solves: usize,
+    pub(crate) contact: usize,
+    pub(crate) shortened: usize,
+    pub(crate) factorisations: usize,
+    pub(crate) residuals: Vec<f64>,
+}
+
+/// A converged increment, not yet committed.
+pub(crate) struct Candidate<const D: usize> {
+    pub(crate) d_u: Vec<f64>,
+    pub(crate) internal: Vec<f64>,
+    pub(crate) kinematics: Vec<Kinematics<D>>,
+    /// Forces and statuses; the displacements are those of the linearised problem.
+    pub(crate) solution: ContactSolution<D>,
+    pub(crate) out_of_balance: f64,
+    pub(crate) counts: Counts,
+}
+
+/// Where Newton's iteration stands.
+pub(crate) struct Iterate {
+    /// Displacement increments of the step.
+    pub(crate) d_u: Vec<f64>,
+    pub(crate) assembly: Assembly,
+    /// Contact forces at every degree of freedom [N].
+    pub(crate) contact: Vec<f64>,
+    /// Whether displacements and contact forces are those of a full Newton step, which obeys the
+    /// contact law.
+    pub(crate) full: bool,
+}
+
+/// Step lengths that the line search tries before it takes the last.
+const TRIALS: usize = 12;
+
+/// Slope of ΔΦ at a step length over that at zero, below which the step is accepted.
+const ACCEPTED_SLOPE: f64 = 0.5;
+
+impl<const D: usize> Driver<D> {
+    /// Applies the increment from one loading to another and commits it.
+    pub(crate) fn increment(
+        &mut self,
+        system: &mut System,
+        start: &Loading<D>,
+        end: &Loading<D>,
+    ) -> Result<StepReport, StepError> {
+        let free: Vec<usize> = system.free_dofs();
+        let mut counts = Counts { solves: 1, ..Counts::default() };
+        let factorisations = system.factorisations;
+        let d_u = self.predictor(start, end);
+        let mut missing = self.missing(start, end, &d_u);
+        let mut now = Iterate {
+            assembly: system.assemble(&mut self.blocks, &d_u, &missing, Stiffness::Consistent),
+            d_u,
+            contact: self.committed_contact_forces(),
+            full: false,
+        };
+        let mut solution = self.state.solution.clone();
+        loop {
+            let kinematics = self.kinematics(system, start, end, &now.d_u);
+            if now.full
+                && let Some(s) = &solution
+            {
+                // The normals may have turned with the step.
+                now.contact = self.contact_forces(&kinematics, &s.force);
+            }
+            let residual: Vec<f64> = free
+                .iter()
+                .map(|&d| end.force[d] + now.contact[d] - now.assembly.internal[d])
+                .collect();
+            let out_of_balance = largest(residual.iter().copied());
+            let scale = force_scale(&now.assembly, end, &now.contact);
+            if counts.newton > 0 {
+                counts.residuals.push(out_of_balance);
+            }
+            let balanced = now.full && out_of_balance <= self.settings.tolerance * scale;
+            if balanced
+                && let Some(s) = solution.take_if(|s| self.law_holds(system, &kinematics, s, scale))
+            {
+                counts.factorisations = system.factorisations - factorisations;
+                let candidate = Candidate {
+                    d_u: now.d_u,
+                    internal: now.assembly.internal,
+                    kinematics,
+                    solution: s,
+                    out_of_balance,
+                    counts,
+                };
+                return Ok(self.commit(start, end, candidate));
+            }
+            if counts.newton >= self.settings.iterations || !out_of_balance.is_finite() {
+                return Err(self.not_converged(&free, &residual, counts.newton, scale));
+            }
+            counts.newton += 1;
+
+            self.factorise(system, &now.assembly)?;
+            let load = |d: usize| end.force[d] - now.assembly.internal[d] - now.assembly.coupling[d];
+            let load: Vec<f64> = (0..now.d_u.len()).map(load).collect();
+            let condensed = system.condense(&load);
+            let iteration = counts.newton;
+            let contact = |source: ContactError| StepError::Contact { iteration, source };
+            let previous = self.previous_forces(&kinematics);
+            let condensation =
+                Condensation::new(system, &condensed, &self.points, &kinematics, previous)
+                    .map_err(contact)?;
+            let solved = self
+                .settings
+                .contact
+                .solve(&condensation.problem, solution.as_ref())
+                .map_err(contact)?;
+            counts.contact += solved.iterations;
+            let complete = missing.iter().all(|&m| m == 0.0);
+            let mut step = std::mem::replace(&mut missing, vec![0.0; now.d_u.len()]);
+            let x = condensation.interface(&solved.displacement);
+            system.expand(condensed, &x, &mut step);
+            let target = self.contact_forces(&kinematics, &solved.force);
+            solution = Some(solved);
+            let (next, shortened) = self.search(system, end, &free, now, &step, target, complete);
+            now = next;
+            counts.shortened += usize::from(shortened);
+        }
+    }
+
+    /// Goes along a Newton step as far as ΔΦ decreases: all the way unless the slope of ΔΦ, with
+    /// contact forces between those of both ends, says that the step overshoots.
+    #[allow(clippy::too_many_arguments)]
+    pub(crate) fn search(
+        &mut self,
+        system: &mut System,
+        end: &Loading<D>,
+        free: &[usize],
+        now: Iterate,
+        step: &[f64],
+        target: Vec<f64>,
+        complete: bool,
+    ) -> (Iterate, bool) {
+        let none = vec![0.0; step.len()];
+        let along = |s: f64| -> Vec<f64> { now.d_u.iter().zip(step).map(|(u, v)| u + s * v).collect() };
+        let between = |s: f64| -> Vec<f64> {
+            now.contact.iter().zip(&target).map(|(a, b)| a + s * (b - a)).collect()
+        };
+        let slope = |internal: &[f64], contact: &[f64]| -> f64 {
+            free.iter().map(|&d| step[d] * (internal[d] - end.force[d] - contact[d])).sum()
+        };
+        let d_u = along(1.0);
+        let assembly = system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent);
+        let at_start = slope(&now.assembly.internal, &now.contact);
+        let at_end = slope(&assembly.internal, &target);
+        // While prescribed displacements are missing, ΔΦ is not what the step minimises.
+        if !complete || at_start >= 0.0 || at_end <= ACCEPTED_SLOPE * at_start.abs() {
+            return (Iterate { d_u, assembly, contact: target, full: true }, false);
+        }
+        // Regula falsi on the slope, Illinois variant.
+        let (mut low, mut high) = ((0.0, at_start), (1.0, at_end));
+        let mut s = 1.0;
+        for _ in 0..TRIALS {
+            let margin = 0.05 * (high.0 - low.0);
+            s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            s = s.clamp(low.0 + margin, high.0 - margin);
+            let at = system.assemble(&mut self.blocks, &along(s), &none, Stiffness::None);
+            let value = slope(&at.internal, &between(s));
+            if value.abs() <= ACCEPTED_SLOPE * at_start.abs() {
+                break;
+            }
+            if value > 0.0 {
+                high = (s, value);
+                low.1 *= 0.5;
+            } else {
+                low = (s, value);
+                high.1 *= 0.5;
+            }
+        }
+        let d_u = along(s);
+        let assembly = system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent);
+        (Iterate { d_u, assembly, contact: between(s), full: false }, true)
+    }
+
+    pub(crate) fn factorise(
+        &self,
+        system: &mut System,
+        assembly: &Assembly,
+    ) -> Result<(), StepError> {
+        system.factorise(!assembly.flows).map_err(|dof| StepError::Mechanism {
+            node: dof / D,
+            axis: axis_letter(dof % D),
+            position: self.mesh.nodes()[dof / D].to_vec(),
+        })
+    }
+
+    /// First guess of the displacement increments: the last increment again, as far as the load
+    /// goes on in the same direction, else nothing.
+    pub(crate) fn predictor(&self, start: &Loading<D>, end: &Loading<D>) -> Vec<f64> {
+        let zero = || vec![0.0; self.state.displacement.len()];
+        let Some((last, before)) = &self.state.last else {
+            return zero();
+        };
+        let ratio = end.increment_from(start).ratio(before);
+        let same = end.displacement.keys().eq(before.displacement.keys());
+        if same && ratio > 0.0 && ratio <= 4.0 {
+            last.iter().map(|u| ratio * u).collect()
+        } else {
+            zero()
+        }
+    }
+
+    /// Prescribed displacement increments that `d_u` does not have yet, at every degree of freedom.
+    pub(crate) fn missing(&self, start: &Loading<D>, end: &Loading<D>, d_u: &[f64]) -> Vec<f64> {
+        let mut missing = vec![0.0; d_u.len()];
+        for (&dof, &u) in &end.displacement {
+            let increment = u - start.displacement.get(&dof).copied().unwrap_or(u);
+            missing[dof] = increment - d_u[dof];
+        }
+        missing
+    }
+
+    /// Frames, gaps and slips of the contact points.
+    pub(crate) fn kinematics(
+        &self,
+        system: &System,
+        start: &Loading<D>,
+        end: &Loading<D>,
+        d_u: &[f64],
+    ) -> Vec<Kinematics<D>> {
+        self.points
+            .iter()
+            .map(|p| {
+                let dofs = D * p.node..D * p.node + D;
+                let position = SVector::from(self.mesh.nodes()[p.node]) + self.displacement(p.node);
+                let free = std::array::from_fn(|i| system.is_free(D * p.node + i));
+                Kinematics::new(
+                    self.tools[p.tool].obstacle.as_ref(),
+                    &position,
+                    &SVector::from_column_slice(&d_u[dofs]),
+                    (&start.tools[p.tool], &end.tools[p.tool]),
+                    free,
+                )
+            })
+            .collect()
+    }
+
+    /// Contact forces t₀ at the start of the step, in the frames of now.
+    pub(crate) fn previous_forces(&self, kinematics: &[Kinematics<D>]) -> Vec<Local<D>> {
+        let pairs = kinematics.iter().zip(&self.state.contacts);
+        pairs.map(|(k, c)| k.local_force(&c.force)).collect()
+    }
+
+    /// Contact forces at every degree of freedom [N].
+    pub(crate) fn contact_forces(&self, kinematics: &[Kinematics<D>], t: &[Local<D>]) -> Vec<f64> {
+        let mut forces = vec![0.0; self.state.displacement.len()];
+        for ((p, k), t) in self.points.iter().zip(kinematics).zip(t) {
+            let f = k.force(t);
+            for i in 0..D {
+                forces[D * p.node + i] += f[i];
+            }
+        }
+        forces
+    }
+
+    fn committed_contact_forces(&self) -> Vec<f64> {
+        let mut forces = vec![0.0; self.state.displacement.len()];
+        for c in &self.state.contacts {
+            for i in 0..D {
+                forces[D * c.node + i] += c.force[i];
+            }
+        }
+        forces
+    }
+
+    /// Whether gaps and slips of the displacements themselves obey the law with the forces of the
+    /// linearised problem: they do on a plane, and on a curved obstacle once the step is small.
+    fn law_holds(
+        &self,
+        system: &System,
+        kinematics: &[Kinematics<D>],
+        solution: &ContactSolution<D>,
+        scale: f64,
+    ) -> bool {
+        let reach = largest(self.mesh.bounds().0.iter().chain(&self.mesh.bounds().1).copied());
+        let stiffness = system.shift();
+        // Below this the difference of two positions is rounding.
+        let rounding = 16.0 * f64::EPSILON * reach * stiffness;
+        let tolerance = self.settings.tolerance * scale + rounding;
+        (0..kinematics.len()).all(|i| {
+            let elastic = solution.irreversible[i] - solution.displacement[i];
+            let mut u = kinematics[i].u + elastic;
+            let mut t = solution.force[i];
+            for j in 0..D {
+                if !kinematics[i].active[j] {
+                    (u[j], t[j]) = (0.0, 0.0);
+                }
+            }
+            // α of the size of the structure's stiffness, as in the contact problem.
+            self.points[i].law.natural_map(&u, &t, stiffness).norm() <= tolerance
+        })
+    }
+
+    pub(crate) fn not_converged(
+        &self,
+        free: &[usize],
+        residual: &[f64],
+        iterations: usize,
+        scale: f64,
+    ) -> StepError {
+        let mut force = vec![0.0; self.mesh.nodes().len()];
+        for (&dof, r) in free.iter().zip(residual) {
+            force[dof / D] += r * r;
+        }
+        let mut order: Vec<usize> = (0..force.len()).collect();
+        order.sort_by(|&a, &b| force[b].total_cmp(&force[a]));
+        let worst = order
+            .iter()
+            .take(5)
+            .map(|&node| Imbalance {
+                node,
+                position: self.mesh.nodes()[node].to_vec(),
+                force: force[node].sqrt(),
+            })
+            .collect();
+        StepError::NotConverged {
+            iterations,
+            out_of_balance: largest(residual.iter().copied()),
+            tolerance: self.settings.tolerance * scale,
+            worst,
+            plastic_fraction: self.plastic_fraction(),
+        }
+    }
+
+    fn plastic_fraction(&self) -> f64 {
+        let energies = self.blocks.iter().map(|b| b.energy());
+        let (flow, all) =
+            energies.fold((0.0, 0.0), |(f, a), e| (f + e.plastic_volume, a + e.volume));
+        if all > 0.0 { flow / all } else { 0.0 }
+    }
+
+    /// Makes a converged increment the state of the driver.
+    pub(crate) fn commit(
+        &mut self,
+        start: &Loading<D>,
+        end: &Loading<D>,
+        candidate: Candidate<D>,
+    ) -> StepReport {
+        let Candidate { d_u, internal, kinematics, solution, out_of_balance, counts } = candidate;
+        let laws: Vec<_> = self.points.iter().map(|p| p.law).collect();
+        let mut irreversible = Vec::with_capacity(kinematics.len());
+        let mut contacts = Vec::with_capacity(kinematics.len());
+        let mut friction = 0.0;
+        let mut penalty = 0.0;
+        let (mut open, mut stick, mut slip) = (0, 0, 0);
+        for (i, (p, k)) in self.points.iter().zip(&kinematics).enumerate() {
+            let mut u = k.u;
+            let mut t = solution.force[i];
+            for j in 0..D {
+                if !k.active[j] {
+                    t[j] = 0.0;
+                    if j > 0 {
+                        u[j] = 0.0;
+                    }
+                }
+            }
+            let elastic = solution.irreversible[i] - solution.displacement[i];
+            let obeying = u + elastic;
+            friction -= (1..D).map(|j| t[j] * obeying[j]).sum::<f64>();
+            // Springs in series: ½ t·C t, with C t₀* the part they held before.
+            let before = k.local_force(&self.state.contacts[i].force);
+            penalty += 0.5 * elastic[0] * t[0];
+            penalty += (1..D).map(|j| 0.5 * elastic[j] * (t[j] + before[j])).sum::<f64>();
+            penalty -= 0.5 * self.state.contacts[i].t[0] * self.state.contacts[i].spring[0];
+            irreversible.push(obeying);
+            let held = !(1..D).all(|j| k.active[j]);
+            let status = match solution.status[i] {
+                Status::Slip if held => Status::Stick,
+                other => other,
+            };
+            match status {
+                Status::Open => open += 1,
+                Status::Stick if !held => stick += 1,
+                Status::Slip if !held => slip += 1,
+                _ => {}
+            }
+            contacts.push(ContactRecord {
+                contact: p.contact,
+                node: p.node,
+                position: self.mesh.nodes()[p.node],
+                kind: p.kind,
+                u,
+                t,
+                force: k.force(&t),
+                area: p.area,
+                status,
+                held,
+                spring: elastic,
+            });
+        }
+        let certificate =
+            Certificate::new(&laws, &irreversible, &contacts.iter().map(|c| c.t).collect::<Vec<_>>());
+        let state = &self.state;
+        let mut energies = state.energies;
+        energies.external_work += self.external_work(start, end, &d_u, &internal, &contacts);
+        energies.friction_dissipation += friction;
+        energies.penalty += penalty;
+        energies.stored = 0.0;
+        for block in &mut self.blocks {
+            let energy = block.energy();
+            energies.stored += energy.stored;
+            energies.plastic_dissipation += energy.dissipated;
+        }
+        let plastic_fraction = self.plastic_fraction();
+        for block in &mut self.blocks {
+            block.commit();
+        }
+        let mut displacement = self.state.displacement.clone();
+        for (u, d) in displacement.iter_mut().zip(&d_u) {
+            *u += d;
+        }
+        // Prescribed values exactly, not as sums of increments.
+        for (&dof, &u) in &end.displacement {
+            displacement[dof] = u;
+        }
+        self.state = State {
+            increment: self.state.increment + 1,
+            displacement,
+            last: Some((d_u, end.increment_from(start))),
+            internal,
+            loading: end.clone(),
+            energies,
+            contacts,
+            solution: Some(solution),
+        };
+        StepReport {
+            increment: self.state.increment,
+            fraction: 1.0,
+            newton_iterations: counts.newton,
+            nonlinear_solves: counts.solves,
+            contact_iterations: counts.contact,
+            factorisations: counts.factorisations,
+            shortened_steps: counts.shortened,
+            cuts: 0,
+            open,
+            stick,
+            slip,
+            plastic_fraction,
+            energies,
+            certificate,
+            out_of_balance,
+            residuals: counts.residuals,
+        }
+    }
+
+    /// Work over the increment of applied forces, reactions and tools, by the trapezoidal rule.
+    fn external_work(
+        &self,
+        start: &Loading<D>,
+        end: &Loading<D>,
+        d_u: &[f64],
+        internal: &[f64],
+        contacts: &[ContactRecord<D>],
+    ) -> f64 {
+        let state = &self.state;
+        let mut work = 0.0;
+        for (dof, du) in d_u.iter().enumerate() {
+            work += 0.5 * (start.force[dof] + end.force[dof]) * du;
+        }
+        for &dof in end.displacement.keys() {
+            let on_node = |contacts: &[ContactRecord<D>]| {
+                contacts.iter().find(|c| c.node == dof / D).map_or(0.0, |c| c.force[dof % D])
+            };
+            let before = state.internal[dof] - start.force[dof] - on_node(&state.contacts);
+            let after = internal[dof] - end.force[dof] - on_node(contacts);
+            work += 0.5 * (before + after) * d_u[dof];
+        }
+        for ((p, c), old) in self.points.iter().zip(contacts).zip(&state.contacts) {
+            let motion = end.tools[p.tool] - start.tools[p.tool];
+            work += 0.5 * (old.force + c.force).dot(&motion);
+        }
+        work
+    }
+}
+
+pub(crate) fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |a, v| if v.is_nan() { f64::INFINITY } else { a.max(v.abs()) })
+}
+
+/// Size of the forces in play, against which imbalance is judged [N].
+pub(crate) fn force_scale<const D: usize>(
+    assembly: &Assembly,
+    end: &Loading<D>,
+    contact: &[f64],
+) -> f64 {
+    let all = assembly.internal.iter().chain(&end.force).chain(contact);
+    largest(all.copied()).max(f64::MIN_POSITIVE)
+}

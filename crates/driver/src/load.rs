@@ -1,0 +1,197 @@
+//! Steps as an engineer writes them, and the loading they amount to; not how it is applied.
+
+use crate::ModelError;
+use nalgebra::SVector;
+use std::collections::BTreeMap;
+
+/// A coordinate direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Axis {
+    /// First coordinate (the radius, if axisymmetric).
+    X,
+    /// Second coordinate.
+    Y,
+    /// Third coordinate.
+    Z,
+}
+
+impl Axis {
+    /// 0, 1 or 2.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// Letter of a coordinate direction.
+pub(crate) fn axis_letter(index: usize) -> char {
+    ['x', 'y', 'z'][index.min(2)]
+}
+
+/// One condition of a step. Values are totals at the end of the step.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Condition<const D: usize> {
+    Displace { on: String, axis: Axis, value: f64 },
+    Force { on: String, force: [f64; D] },
+    Pressure { on: String, pressure: f64 },
+    Traction { on: String, traction: [f64; D] },
+    BodyForce { on: String, density: [f64; D] },
+    Tool { name: String, displacement: [f64; D] },
+}
+
+/// A step: all conditions that hold in it, with their totals at its end. They are ramped
+/// linearly from what held at the end of the step before; what is not listed is released, and its
+/// reaction ramped to zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step<const D: usize> {
+    pub(crate) name: String,
+    pub(crate) conditions: Vec<Condition<D>>,
+}
+
+impl<const D: usize> Step<D> {
+    /// A step without conditions.
+    pub fn new(name: &str) -> Self {
+        Self { name: name.into(), conditions: Vec::new() }
+    }
+
+    /// Name of the step.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Holds components of the displacement of a group at zero.
+    pub fn fix(self, on: &str, axes: &[Axis]) -> Self {
+        axes.iter().fold(self, |step, &axis| step.displace(on, axis, 0.0))
+    }
+
+    /// Prescribes one component of the displacement of a group [mm].
+    pub fn displace(self, on: &str, axis: Axis, value: f64) -> Self {
+        self.with(Condition::Displace { on: on.into(), axis, value })
+    }
+
+    /// A force [N], shared equally by the nodes of a group.
+    pub fn force(self, on: &str, force: [f64; D]) -> Self {
+        self.with(Condition::Force { on: on.into(), force })
+    }
+
+    /// A pressure [MPa] on a group of facets, positive towards the body.
+    pub fn pressure(self, on: &str, pressure: f64) -> Self {
+        self.with(Condition::Pressure { on: on.into(), pressure })
+    }
+
+    /// A traction [MPa] on a group of facets, [78].
+    pub fn traction(self, on: &str, traction: [f64; D]) -> Self {
+        self.with(Condition::Traction { on: on.into(), traction })
+    }
+
+    /// A force per volume [N/mm³] in a group of cells.
+    pub fn body_force(self, on: &str, density: [f64; D]) -> Self {
+        self.with(Condition::BodyForce { on: on.into(), density })
+    }
+
+    /// Moves a tool by a total translation from its first position [mm].
+    pub fn tool(self, name: &str, displacement: [f64; D]) -> Self {
+        self.with(Condition::Tool { name: name.into(), displacement })
+    }
+
+    fn with(mut self, condition: Condition<D>) -> Self {
+        self.conditions.push(condition);
+        self
+    }
+}
+
+/// All that acts on the model at an instant: totals, not increments.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loading<const D: usize> {
+    /// Prescribed displacements by degree of freedom, `D·node + axis` [mm].
+    pub displacement: BTreeMap<usize, f64>,
+    /// Applied force at every degree of freedom [N].
+    pub force: Vec<f64>,
+    /// Translation of every tool from its first position [mm].
+    pub tools: Vec<SVector<f64, D>>,
+}
+
+impl<const D: usize> Loading<D> {
+    /// No load on a model of that many degrees of freedom and tools.
+    pub fn none(dofs: usize, tools: usize) -> Self {
+        Self {
+            displacement: BTreeMap::new(),
+            force: vec![0.0; dofs],
+            tools: vec![SVector::zeros(); tools],
+        }
+    }
+
+    /// The loading at the part s of the way from `self` to `end`, both with the same prescribed
+    /// degrees of freedom. At s = 1 it is `end` exactly.
+    pub fn towards(&self, end: &Self, s: f64) -> Self {
+        if s >= 1.0 {
+            return end.clone();
+        }
+        let mix = |a: f64, b: f64| a + s * (b - a);
+        Self {
+            displacement: end
+                .displacement
+                .iter()
+                .map(|(dof, &b)| (*dof, mix(self.displacement.get(dof).copied().unwrap_or(b), b)))
+                .collect(),
+            force: self.force.iter().zip(&end.force).map(|(&a, &b)| mix(a, b)).collect(),
+            tools: self.tools.iter().zip(&end.tools).map(|(a, b)| a + (b - a) * s).collect(),
+        }
+    }
+
+    /// The first number that is not finite.
+    pub(crate) fn check(&self) -> Result<(), ModelError> {
+        let error = |what: String, value: f64| ModelError::OutOfRange {
+            what,
+            value,
+            expected: "a finite number",
+        };
+        for (&dof, &u) in &self.displacement {
+            if !u.is_finite() {
+                let (node, axis) = (dof / D, axis_letter(dof % D));
+                return Err(error(format!("prescribed u_{axis} of node {node}"), u));
+            }
+        }
+        for (dof, &f) in self.force.iter().enumerate() {
+            if !f.is_finite() {
+                let (node, axis) = (dof / D, axis_letter(dof % D));
+                return Err(error(format!("force f_{axis} on node {node}"), f));
+            }
+        }
+        for (k, v) in self.tools.iter().enumerate() {
+            if let Some(&value) = v.iter().find(|v| !v.is_finite()) {
+                return Err(error(format!("displacement of tool {k}"), value));
+            }
+        }
+        Ok(())
+    }
+
+    /// Part of `previous` that this increment repeats: (this, previous) / (previous, previous),
+    /// taken over the prescribed motions, or over the forces if nothing is moved.
+    pub(crate) fn ratio(&self, previous: &Self) -> f64 {
+        let motions = |l: &Self| -> Vec<f64> {
+            let tools = l.tools.iter().flat_map(|v| v.iter().copied().collect::<Vec<_>>());
+            l.displacement.values().copied().chain(tools).collect()
+        };
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let (new, old) = (motions(self), motions(previous));
+        let moved = dot(&old, &old);
+        if moved > 0.0 {
+            return dot(&new, &old) / moved;
+        }
+        let loaded = dot(&previous.force, &previous.force);
+        if loaded > 0.0 { dot(&self.force, &previous.force) / loaded } else { 0.0 }
+    }
+
+    /// `self − start`, for loadings with the same prescribed degrees of freedom.
+    pub(crate) fn increment_from(&self, start: &Self) -> Self {
+        Self {
+            displacement: self
+                .displacement
+                .iter()
+                .map(|(d, &u)| (*d, u - start.displacement.get(d).copied().unwrap_or(u)))
+                .collect(),
+            force: self.force.iter().zip(&start.force).map(|(b, a)| b - a).collect(),
+            tools: self.tools.iter().zip(&start.tools).map(|(b, a)| b - a).collect(),
+        }
+    }
+}

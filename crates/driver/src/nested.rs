@@ -1,0 +1,162 @@
+//! The paper's own nesting: Uzawa's prediction and correction around the nonlinear solve; kept to
+//! be compared with, not to be used.
+
+use crate::block::Stiffness;
+use crate::driver::Driver;
+use crate::error::StepError;
+use crate::increment::{Candidate, Counts, Iterate, force_scale, largest};
+use crate::interface::Condensation;
+use crate::load::Loading;
+use crate::report::StepReport;
+use crate::system::System;
+use moreau_contact::{ContactError, ContactSolution, uzawa_steps};
+use moreau_laws::Local;
+
+impl<const D: usize> Driver<D> {
+    /// Applies an increment as section 7.2 of the paper does: t ← proj(t − α ũ(t)), where u(t)
+    /// takes a nonlinear elastoplastic solve with t frozen.
+    ///
+    /// α comes from the tangent at the start of the increment and is lowered where the body has
+    /// softened so much that a correction overshoots.
+    pub(crate) fn nested_increment(
+        &mut self,
+        system: &mut System,
+        start: &Loading<D>,
+        end: &Loading<D>,
+        tolerance: f64,
+        iterations: usize,
+    ) -> Result<StepReport, StepError> {
+        let free = system.free_dofs();
+        let mut counts = Counts::default();
+        let factorisations = system.factorisations;
+        let d_u = self.predictor(start, end);
+        let mut missing = self.missing(start, end, &d_u);
+        let mut now = Iterate {
+            assembly: system.assemble(&mut self.blocks, &d_u, &missing, Stiffness::Consistent),
+            d_u,
+            contact: Vec::new(),
+            full: true,
+        };
+        let kinematics = self.kinematics(system, start, end, &now.d_u);
+        let mut t = self.previous_forces(&kinematics);
+        let contact = |source: ContactError| StepError::Contact { iteration: 0, source };
+        self.factorise(system, &now.assembly)?;
+        let condensed = system.condense(&vec![0.0; now.d_u.len()]);
+        let condensation =
+            Condensation::new(system, &condensed, &self.points, &kinematics, t.clone())
+                .map_err(contact)?;
+        let mut alpha = uzawa_steps(&condensation.problem).map_err(contact)?;
+        let common: Vec<f64> = (0..t.len()).map(|i| condensation.problem.alpha(i)).collect();
+        let mut before: Option<(Vec<Local<D>>, Vec<Local<D>>)> = None;
+        for _ in 0..iterations {
+            let kinematics = self.kinematics(system, start, end, &now.d_u);
+            now.contact = self.contact_forces(&kinematics, &t);
+            now = self.solve_bulk(system, end, &free, now, &mut missing, &mut counts)?;
+            counts.solves += 1;
+            let kinematics = self.kinematics(system, start, end, &now.d_u);
+            let u: Vec<Local<D>> = kinematics
+                .iter()
+                .map(|k| Local::from_fn(|j, _| if k.active[j] || j == 0 { k.u[j] } else { 0.0 }))
+                .collect();
+            let law = |i: usize| &self.points[i].law;
+            let scale = force_scale(&now.assembly, end, &now.contact);
+            let residual = (0..t.len())
+                .map(|i| law(i).natural_map(&u[i], &t[i], common[i]).norm())
+                .fold(0.0, f64::max);
+            counts.contact += 1;
+            if residual <= tolerance * scale {
+                counts.factorisations = system.factorisations - factorisations;
+                let status =
+                    (0..t.len()).map(|i| law(i).status(&u[i], &t[i], common[i])).collect();
+                let residuals = free
+                    .iter()
+                    .map(|&d| end.force[d] + now.contact[d] - now.assembly.internal[d]);
+                let candidate = Candidate {
+                    out_of_balance: largest(residuals),
+                    d_u: now.d_u,
+                    internal: now.assembly.internal,
+                    kinematics,
+                    solution: ContactSolution {
+                        irreversible: u.clone(),
+                        displacement: u,
+                        force: t,
+                        status,
+                        iterations: counts.contact,
+                        residual,
+                    },
+                    counts,
+                };
+                return Ok(self.commit(start, end, candidate));
+            }
+            let shifted: Vec<Local<D>> = (0..t.len()).map(|i| law(i).shifted(&u[i])).collect();
+            if let Some((old_t, old_shifted)) = &before {
+                // A contraction needs α ‖Δũ‖ < 2 ‖Δt‖; keep away from the limit.
+                let moved = |a: &[Local<D>], b: &[Local<D>], weight: &dyn Fn(usize) -> f64| {
+                    let square = |i: usize| (a[i] - b[i]).norm_squared() * weight(i);
+                    (0..a.len()).map(square).sum::<f64>().sqrt()
+                };
+                let answer = moved(&shifted, old_shifted, &|i| alpha[i]);
+                let change = moved(&t, old_t, &|i| 1.0 / alpha[i]);
+                if change > 0.0 && answer > 1.2 * change {
+                    let factor = 0.8 * change / answer;
+                    alpha.iter_mut().for_each(|a| *a *= factor);
+                }
+            }
+            let corrected = (0..t.len())
+                .map(|i| law(i).project(&(t[i] - shifted[i] * alpha[i])))
+                .collect();
+            before = Some((std::mem::replace(&mut t, corrected), shifted));
+        }
+        let solution = ContactError::NotConverged {
+            solver: "Uzawa around the nonlinear solve",
+            iterations,
+            residual: f64::NAN,
+            tolerance: tolerance * force_scale(&now.assembly, end, &now.contact),
+        };
+        Err(contact(solution))
+    }
+
+    /// Newton on the bulk under frozen contact forces.
+    fn solve_bulk(
+        &mut self,
+        system: &mut System,
+        end: &Loading<D>,
+        free: &[usize],
+        mut now: Iterate,
+        missing: &mut Vec<f64>,
+        counts: &mut Counts,
+    ) -> Result<Iterate, StepError> {
+        for _ in 0..self.settings.iterations {
+            let residual: Vec<f64> = free
+                .iter()
+                .map(|&d| end.force[d] + now.contact[d] - now.assembly.internal[d])
+                .collect();
+            let scale = force_scale(&now.assembly, end, &now.contact);
+            let complete = missing.iter().all(|&m| m == 0.0);
+            let worst = largest(residual.iter().copied());
+            if complete && worst <= self.settings.tolerance * scale {
+                return Ok(now);
+            }
+            if !worst.is_finite() {
+                break;
+            }
+            counts.newton += 1;
+            self.factorise(system, &now.assembly)?;
+            let load = |d: usize| {
+                end.force[d] + now.contact[d] - now.assembly.internal[d] - now.assembly.coupling[d]
+            };
+            let load: Vec<f64> = (0..now.d_u.len()).map(load).collect();
+            let none = vec![0.0; load.len()];
+            let mut step = std::mem::replace(missing, none);
+            system.solve(&load, &mut step);
+            let target = now.contact.clone();
+            now = self.search(system, end, free, now, &step, target, complete).0;
+        }
+        let residual: Vec<f64> = free
+            .iter()
+            .map(|&d| end.force[d] + now.contact[d] - now.assembly.internal[d])
+            .collect();
+        let scale = force_scale(&now.assembly, end, &now.contact);
+        Err(self.not_converged(free, &residual, self.settings.iterations, scale))
+    }
+}

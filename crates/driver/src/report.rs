@@ -1,0 +1,106 @@
+//! What a step tells about itself; not how it is shown.
+
+use moreau_contact::Certificate;
+use moreau_laws::{Local, Status};
+use moreau_mesh::NodeKind;
+use nalgebra::SVector;
+
+/// Energies since the virgin state [N·mm].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Energies {
+    /// Work of applied forces, prescribed displacements and tools, by the trapezoidal rule.
+    pub external_work: f64,
+    /// Stored in the bulk.
+    pub stored: f64,
+    /// Dissipated by plastic flow.
+    pub plastic_dissipation: f64,
+    /// Dissipated by friction, Σ μ t_n ‖Δu_t‖.
+    pub friction_dissipation: f64,
+    /// Held by the springs of the penalty method; zero for the exact methods.
+    pub penalty: f64,
+}
+
+impl Energies {
+    /// External work − stored − dissipated: of the order of the step for implicit Euler.
+    pub fn imbalance(&self) -> f64 {
+        self.external_work
+            - self.stored
+            - self.plastic_dissipation
+            - self.friction_dissipation
+            - self.penalty
+    }
+}
+
+/// Report of a converged increment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StepReport {
+    /// Number of the increment since the virgin state, from 1.
+    pub increment: usize,
+    /// Part of the step that has been done, in (0, 1].
+    pub fraction: f64,
+    /// Newton iterations on the bulk; for the paper's nesting, of all nonlinear solves.
+    pub newton_iterations: usize,
+    /// Nonlinear solves: 1, or the outer iterations of the paper's nesting.
+    pub nonlinear_solves: usize,
+    /// Iterations of the contact solver, summed.
+    pub contact_iterations: usize,
+    /// Sparse factorisations.
+    pub factorisations: usize,
+    /// Newton steps that the line search shortened.
+    pub shortened_steps: usize,
+    /// Times the increment was halved before it converged.
+    pub cuts: usize,
+    /// Contact points that are open, stick and slip; points held by a displacement condition
+    /// along the surface are not counted as sticking or slipping.
+    pub open: usize,
+    /// See `open`.
+    pub stick: usize,
+    /// See `open`.
+    pub slip: usize,
+    /// Part of the volume in which plastic strain grew.
+    pub plastic_fraction: f64,
+    /// Energies at the end of the increment.
+    pub energies: Energies,
+    /// The bipotential gap of the increment and what it cannot see.
+    pub certificate: Certificate,
+    /// Largest nodal force that nothing balances [N].
+    pub out_of_balance: f64,
+    /// Out-of-balance force of every Newton iteration [N].
+    pub residuals: Vec<f64>,
+}
+
+impl StepReport {
+    /// The bipotential gap in parts of the external work done so far.
+    pub fn relative_gap(&self) -> f64 {
+        let work = self.energies.external_work.abs();
+        if work > 0.0 { self.certificate.bipotential_gap / work } else { 0.0 }
+    }
+}
+
+/// A contact point at the end of an increment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactRecord<const D: usize> {
+    /// Index of the contact, in the order in which contacts were added to the model.
+    pub contact: usize,
+    /// The node.
+    pub node: usize,
+    /// Its position in the undeformed body [mm].
+    pub position: [f64; D],
+    /// Corner or mid-side node of the surface.
+    pub kind: NodeKind,
+    /// Gap and slip of the increment [mm].
+    pub u: Local<D>,
+    /// Force on the body, normal and tangential [N].
+    pub t: Local<D>,
+    /// Force on the body in space [N].
+    pub force: SVector<f64, D>,
+    /// Consistent share of the surface [mm²]: t over it is a traction.
+    pub area: f64,
+    /// Status; for a point held along the surface, `Open` or `Stick`.
+    pub status: Status,
+    /// Whether a displacement condition holds the point along the surface.
+    pub held: bool,
+    /// Displacement in the springs of the penalty method [mm]: total across the gap, of the
+    /// increment along the surface; zero for the exact methods.
+    pub spring: Local<D>,
+}

@@ -1,0 +1,335 @@
+//! The linear system of a mesh: numbering, pattern, assembly and static condensation on the
+//! interface; not the iteration that uses it.
+
+use crate::ModelError;
+use crate::block::{Block, Stiffness};
+use crate::cholesky::{Cholesky, NotPositiveDefinite, Pattern};
+use crate::ordering::nested_dissection;
+use moreau_mesh::Mesh;
+use nalgebra::{DMatrix, DVector};
+
+/// Marks a degree of freedom whose displacement is prescribed.
+const FIXED: u32 = u32::MAX;
+
+/// K of the free degrees of freedom, ordered so that those of the interface come last.
+///
+/// K + σE is what is factorised, with E the identity on the interface: it is positive definite as
+/// soon as holding the interface holds the bodies, and the Schur complement of K itself is
+/// L_cc L_ccᵀ − σ 1 exactly, even where only contact holds a body and K is singular.
+#[derive(Debug)]
+pub(crate) struct System {
+    /// Position of a degree of freedom in the system, or [`FIXED`].
+    position: Vec<u32>,
+    /// Degree of freedom at a position.
+    dofs: Vec<usize>,
+    /// Number of interface unknowns: the last of the system.
+    interface: usize,
+    /// Where the cells of every block go.
+    scatter: Vec<Scatter>,
+    values: Vec<f64>,
+    shift: f64,
+    cholesky: Cholesky,
+    /// Whether the factor held is that of the elastic stiffness.
+    elastic_factor: bool,
+    /// Factorisations done since the system was set up.
+    pub(crate) factorisations: usize,
+}
+
+/// Where the forces and stiffness of the cells of a block go.
+#[derive(Debug)]
+struct Scatter {
+    /// Unknowns of a cell.
+    size: usize,
+    /// Degree of freedom of the mesh of every unknown of every cell.
+    dofs: Vec<u32>,
+    /// Slot among the values of every entry of the upper triangle of every cell, or [`FIXED`].
+    slots: Vec<u32>,
+}
+
+/// Internal forces of an assembly.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Assembly {
+    /// ∫ Bᵀσ dΩ at every degree of freedom [N].
+    pub(crate) internal: Vec<f64>,
+    /// K times the prescribed displacements that are still missing [N].
+    pub(crate) coupling: Vec<f64>,
+    /// Whether plastic strain grows anywhere.
+    pub(crate) flows: bool,
+}
+
+/// The system condensed on its interface: S = L_cc L_ccᵀ − σ 1 and the condensed load.
+#[derive(Debug)]
+pub(crate) struct Condensed {
+    factor: DMatrix<f64>,
+    /// S [N/mm], in the order of the interface unknowns.
+    pub(crate) stiffness: DMatrix<f64>,
+    /// f̃ [N].
+    pub(crate) load: DVector<f64>,
+    /// L⁻¹ of the load of the system.
+    forward: Vec<f64>,
+}
+
+impl System {
+    /// Numbers the free degrees of freedom, orders them and does the symbolic factorisation.
+    pub(crate) fn new<const D: usize>(
+        mesh: &Mesh<D>,
+        blocks: &[Box<dyn Block<D>>],
+        fixed: impl Fn(usize) -> bool,
+        interface_nodes: &[usize],
+    ) -> Result<Self, ModelError> {
+        let nodes = mesh.nodes().len();
+        let adjacency = adjacency(mesh);
+        let neighbours =
+            |a: usize| &adjacency.entries[adjacency.start[a]..adjacency.start[a + 1]];
+        let mut is_interface = vec![false; nodes];
+        for &a in interface_nodes {
+            is_interface[a] = true;
+        }
+        let interior: Vec<usize> = (0..nodes).filter(|&a| !is_interface[a]).collect();
+        let mut order = nested_dissection(&interior, mesh.nodes(), neighbours);
+        order.extend((0..nodes).filter(|&a| is_interface[a]));
+        let mut position = vec![FIXED; D * nodes];
+        let mut dofs = Vec::new();
+        let mut interface = 0;
+        for &a in &order {
+            for dof in D * a..D * a + D {
+                if !fixed(dof) {
+                    position[dof] = dofs.len() as u32;
+                    dofs.push(dof);
+                    interface += usize::from(is_interface[a]);
+                }
+            }
+        }
+        let mut column_start = Vec::with_capacity(dofs.len() + 1);
+        column_start.push(0u32);
+        let mut row: Vec<u32> = Vec::new();
+        let mut column = Vec::new();
+        for (p, &dof) in dofs.iter().enumerate() {
+            column.clear();
+            let own = dof / D;
+            for &b in neighbours(own).iter().chain(std::iter::once(&own)) {
+                let rows = position[D * b..D * b + D].iter();
+                column.extend(rows.copied().filter(|&q| q != FIXED && q as usize >= p));
+            }
+            column.sort_unstable();
+            row.extend_from_slice(&column);
+            column_start.push(row.len() as u32);
+        }
+        let pattern = Pattern { column_start, row };
+        let scatter = blocks.iter().map(|b| scatter(b.as_ref(), &position, &pattern)).collect();
+        let values = vec![0.0; pattern.row.len()];
+        let unknowns = dofs.len();
+        let cholesky = Cholesky::analyse(pattern).ok_or(ModelError::TooLarge { unknowns })?;
+        Ok(Self {
+            position,
+            dofs,
+            interface,
+            scatter,
+            values,
+            shift: 0.0,
+            cholesky,
+            elastic_factor: false,
+            factorisations: 0,
+        })
+    }
+
+    /// Number of unknowns.
+    pub(crate) fn size(&self) -> usize {
+        self.dofs.len()
+    }
+
+    /// Whether a displacement is unknown.
+    pub(crate) fn is_free(&self, dof: usize) -> bool {
+        self.position[dof] != FIXED
+    }
+
+    /// Index of a degree of freedom among the interface unknowns; `None` if it is prescribed.
+    pub(crate) fn interface_index(&self, dof: usize) -> Option<usize> {
+        let first = self.size() - self.interface;
+        self.is_free(dof).then(|| self.position[dof] as usize - first)
+    }
+
+    /// The free degrees of freedom, ascending.
+    pub(crate) fn free_dofs(&self) -> Vec<usize> {
+        (0..self.position.len()).filter(|&dof| self.is_free(dof)).collect()
+    }
+
+    /// σ [N/mm]: of the size of the elastic stiffness of an interface node.
+    pub(crate) fn shift(&self) -> f64 {
+        self.shift
+    }
+
+    /// Internal forces under the displacement increments `d_u`, and the stiffness if asked for.
+    /// `missing` are the prescribed increments still to come, at every degree of freedom.
+    pub(crate) fn assemble<const D: usize>(
+        &mut self,
+        blocks: &mut [Box<dyn Block<D>>],
+        d_u: &[f64],
+        missing: &[f64],
+        stiffness: Stiffness,
+    ) -> Assembly {
+        let mut internal = vec![0.0; d_u.len()];
+        let mut coupling = vec![0.0; d_u.len()];
+        let mut flows = false;
+        if stiffness != Stiffness::None {
+            self.values.fill(0.0);
+        }
+        let (position, values) = (&self.position, &mut self.values);
+        for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
+            let size = scatter.size;
+            let triangle = size * (size + 1) / 2;
+            flows |= block.evaluate(d_u, stiffness, &mut |result| {
+                let dofs = &scatter.dofs[result.cell * size..(result.cell + 1) * size];
+                for (&dof, f) in dofs.iter().zip(result.force) {
+                    internal[dof as usize] += f;
+                }
+                if result.stiffness.is_empty() {
+                    return;
+                }
+                let slots = &scatter.slots[result.cell * triangle..(result.cell + 1) * triangle];
+                let mut next = 0;
+                for i in 0..size {
+                    for j in i..size {
+                        let slot = slots[next];
+                        next += 1;
+                        let k = result.stiffness[i * size + j];
+                        if slot != FIXED {
+                            values[slot as usize] += k;
+                            continue;
+                        }
+                        let (a, b) = (dofs[i] as usize, dofs[j] as usize);
+                        match (position[a] == FIXED, position[b] == FIXED) {
+                            (false, true) => coupling[a] += k * missing[b],
+                            (true, false) => coupling[b] += k * missing[a],
+                            _ => {}
+                        }
+                    }
+                }
+            });
+        }
+        Assembly { internal, coupling, flows }
+    }
+
+    /// Chooses σ: the largest diagonal of the assembled (elastic) stiffness on the interface.
+    pub(crate) fn set_shift(&mut self) {
+        let first = self.size() - self.interface;
+        let pattern = self.cholesky.pattern();
+        self.shift = (first..self.size())
+            .map(|p| self.values[pattern.range(p as u32).start])
+            .fold(0.0, f64::max);
+    }
+
+    /// Factorises the assembled K + σE, unless the factor held is already that of the elastic
+    /// stiffness and the stiffness assembled is elastic too.
+    ///
+    /// # Errors
+    /// The degree of freedom at which K + σE is not positive definite.
+    pub(crate) fn factorise(&mut self, elastic: bool) -> Result<(), usize> {
+        if elastic && self.elastic_factor {
+            return Ok(());
+        }
+        let first = self.size() - self.interface;
+        for p in first..self.size() {
+            let diagonal = self.cholesky.pattern().range(p as u32).start;
+            self.values[diagonal] += self.shift;
+        }
+        self.elastic_factor = false;
+        self.factorisations += 1;
+        self.cholesky
+            .factorise(&self.values)
+            .map_err(|NotPositiveDefinite { row }| self.dofs[row])?;
+        self.elastic_factor = elastic;
+        Ok(())
+    }
+
+    /// Condenses the factorised system under a load given at every degree of freedom [N].
+    pub(crate) fn condense(&mut self, load: &[f64]) -> Condensed {
+        let mut forward: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
+        self.cholesky.forward(&mut forward);
+        let first = self.size() - self.interface;
+        let factor = self.cholesky.trailing(self.interface);
+        let mut stiffness = &factor * factor.transpose();
+        for i in 0..self.interface {
+            stiffness[(i, i)] -= self.shift;
+        }
+        let load = &factor * DVector::from_column_slice(&forward[first..]);
+        Condensed { factor, stiffness, load, forward }
+    }
+
+    /// Solves the factorised system, without a shift, for a load at every degree of freedom [N];
+    /// prescribed displacements in `d_u` are left as they are.
+    pub(crate) fn solve(&mut self, load: &[f64], d_u: &mut [f64]) {
+        let mut solution: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
+        self.cholesky.forward(&mut solution);
+        self.cholesky.backward(&mut solution);
+        for (&dof, u) in self.dofs.iter().zip(solution) {
+            d_u[dof] = u;
+        }
+    }
+
+    /// Displacement of all free degrees of freedom for the interface displacements x, written to
+    /// `d_u` at every degree of freedom; prescribed ones are left as they are.
+    pub(crate) fn expand(&mut self, condensed: Condensed, x: &DVector<f64>, d_u: &mut [f64]) {
+        let first = self.size() - self.interface;
+        let mut solution = condensed.forward;
+        // (K + σE) u = f + t + σx has L⁻¹ of its right-hand side equal to L_ccᵀ x down here.
+        let tail = condensed.factor.tr_mul(x);
+        solution[first..].copy_from_slice(tail.as_slice());
+        self.cholesky.backward(&mut solution);
+        for (&dof, u) in self.dofs.iter().zip(solution) {
+            d_u[dof] = u;
+        }
+    }
+}
+
+struct Adjacency {
+    start: Vec<usize>,
+    entries: Vec<usize>,
+}
+
+/// Nodes that share a cell with each node, without the node itself, sorted.
+fn adjacency<const D: usize>(mesh: &Mesh<D>) -> Adjacency {
+    let nodes = mesh.nodes().len();
+    let mut cells_of = vec![Vec::new(); nodes];
+    for cell in 0..mesh.cell_count() {
+        for &a in mesh.cell_nodes(cell) {
+            cells_of[a].push(cell);
+        }
+    }
+    let mut start = Vec::with_capacity(nodes + 1);
+    start.push(0);
+    let mut entries = Vec::new();
+    let mut row = Vec::new();
+    for (a, cells) in cells_of.iter().enumerate() {
+        row.clear();
+        for &cell in cells {
+            row.extend(mesh.cell_nodes(cell).iter().copied().filter(|&b| b != a));
+        }
+        row.sort_unstable();
+        row.dedup();
+        entries.extend_from_slice(&row);
+        start.push(entries.len());
+    }
+    Adjacency { start, entries }
+}
+
+fn scatter<const D: usize>(block: &dyn Block<D>, position: &[u32], pattern: &Pattern) -> Scatter {
+    let cells = block.cells().len();
+    let size = if cells == 0 { 0 } else { D * block.nodes(0).len() };
+    let mut dofs = Vec::with_capacity(cells * size);
+    let mut slots = Vec::with_capacity(cells * size * (size + 1) / 2);
+    for k in 0..cells {
+        let first = dofs.len();
+        dofs.extend(block.nodes(k).iter().flat_map(|&a| (D * a..D * a + D).map(|d| d as u32)));
+        let cell = &dofs[first..];
+        for (i, &a) in cell.iter().enumerate() {
+            for &b in &cell[i..] {
+                let (p, q) = (position[a as usize], position[b as usize]);
+                let free = p != FIXED && q != FIXED;
+                let slot = free.then(|| pattern.slot(p.max(q), p.min(q))).flatten();
+                slots.push(slot.unwrap_or(FIXED));
+            }
+        }
+    }
+    Scatter { size, dofs, slots }
+}

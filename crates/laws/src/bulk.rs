@@ -1,0 +1,52 @@
+//! What a body asks of the law of its material; not a law.
+
+use moreau_mandel::{Sym2, Sym4};
+
+/// Outcome of a step at a material point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Response<S> {
+    /// Stress at the end of the step, σ₁ \[MPa\].
+    pub stress: Sym2,
+    /// Consistent tangent ∂σ₁/∂Δε \[MPa\], 6×6.
+    pub tangent: Sym4,
+    /// State at the end of the step.
+    pub state: S,
+}
+
+/// A law of the bulk in R³, integrated by backward Euler over the step.
+///
+/// A law is pure: it maps the state at the start of the step and the strain increment of the
+/// *whole* step to the end of the step, and remembers nothing. Plane strain and axisymmetry are
+/// kinematics, not laws. A strain that is not a number gives a stress that is not a number.
+pub trait BulkLaw: 'static + Clone + Send + Sync {
+    /// What the material remembers; the default is the virgin state.
+    type State: Copy + Default + Send + Sync + PartialEq + std::fmt::Debug;
+
+    /// Response to the strain increment Δε of the whole step, from the state at its start.
+    fn respond(&self, old: &Self::State, d_eps: &Sym2) -> Response<Self::State>;
+
+    /// Stress in a state \[MPa\].
+    fn stress(&self, state: &Self::State) -> Sym2;
+
+    /// The elastic tangent \[MPa\], 6×6, symmetric positive definite.
+    fn elastic_tangent(&self) -> Sym4;
+
+    /// Energy stored in a state, elastic and by hardening \[N·mm/mm³\]; non-negative.
+    fn stored_energy(&self, state: &Self::State) -> f64;
+
+    /// Energy dissipated by a step between two states \[N·mm/mm³\]; non-negative.
+    fn dissipation(&self, old: &Self::State, new: &Self::State) -> f64;
+
+    /// Equivalent plastic strain p of a state, \[60\]; never decreases along a path.
+    fn equivalent_plastic_strain(&self, state: &Self::State) -> f64;
+}
+
+/// A bulk law deriving from an incremental potential: ∂ΔV/∂Δε = Δσ = σ₁ − σ₀, \[65\].
+pub trait IncrementalPotential: BulkLaw {
+    /// ΔV(Δε) \[N·mm/mm³\]; convex, continuously differentiable, zero with its gradient at Δε = 0
+    /// when the state at the start is admissible.
+    ///
+    /// It is the work done beyond σ₀ : Δε, stored and dissipated, \[48\]:
+    /// ΔV = ψ₁ − ψ₀ + D − σ₀ : Δε with the stored energy ψ and the dissipation D of the step.
+    fn potential(&self, old: &Self::State, d_eps: &Sym2) -> f64;
+}

@@ -1,0 +1,80 @@
+//! Drucker–Prager plasticity with a dilatancy of its own, as a bipotential; not an integrated bulk
+//! law.
+
+use crate::coulomb::Coulomb;
+use crate::duality::{Bipotential, at_most, restricted};
+use crate::error::{LawError, positive};
+use crate::local::Local;
+use moreau_mandel::{Sym2, deviator, trace};
+
+/// The non-associated Drucker–Prager law between the plastic strain rate ε̇ and the stress σ.
+///
+/// Yield ‖s‖ ≤ k_f (c₀ − σ_m), flow e_v = k_t ‖e‖ and e ∥ s with 0 ≤ k_t ≤ k_f; σ_m = ⅓ tr σ
+/// (tension positive), e_v = tr ε̇; at the apex σ_m = c₀, s = 0 any e_v ≥ k_t ‖e‖. With k_t = k_f
+/// the flow is associated.
+///
+/// It *is* Coulomb contact of coefficient k_f in 1 + 6 dimensions: force (c₀ − σ_m, s),
+/// displacement (e_v − k_t ‖e‖, −e).
+///
+/// Source: A. Berga and G. de Saxcé (1994); M. Hjiaj, J. Fortin and G. de Saxcé (2003).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DruckerPrager {
+    cone: Coulomb,
+    dilatancy: f64,
+    apex: f64,
+}
+
+impl DruckerPrager {
+    /// From the friction k_f ≥ 0, the dilatancy k_t ∈ [0, k_f] and the mean stress c₀ > 0 of the
+    /// apex \[MPa\].
+    ///
+    /// # Errors
+    /// `NegativeFriction`, `DilatancyOutOfRange` or `NotPositive` when these do not hold.
+    pub fn new(friction: f64, dilatancy: f64, apex: f64) -> Result<Self, LawError> {
+        let cone = Coulomb::new(friction)?;
+        if !(0.0..=friction).contains(&dilatancy) {
+            return Err(LawError::DilatancyOutOfRange {
+                dilatancy,
+                friction,
+            });
+        }
+        Ok(Self {
+            cone,
+            dilatancy,
+            apex: positive("apex stress", apex)?,
+        })
+    }
+
+    /// The natural map of the equivalent contact, \[90′\], with ρ > 0 \[MPa\]: zero exactly when
+    /// (ε̇, σ) obeys the law, whatever ρ.
+    pub fn natural_map(&self, rate: &Sym2, stress: &Sym2, rho: f64) -> Local<7> {
+        let dilation = trace(rate) - self.dilatancy * deviator(rate).norm();
+        let u = join(dilation, &-deviator(rate));
+        self.cone.natural_map(&u, &self.force(stress), rho)
+    }
+
+    /// (c₀ − σ_m, s).
+    fn force(&self, stress: &Sym2) -> Local<7> {
+        join(self.apex - trace(stress) / 3.0, &deviator(stress))
+    }
+}
+
+/// b(ε̇, σ) = c₀ e_v + (k_f − k_t)(c₀ − σ_m) ‖e‖ if ‖s‖ ≤ k_f (c₀ − σ_m) and e_v ≥ k_t ‖e‖, else +∞.
+impl Bipotential<Sym2> for DruckerPrager {
+    fn b(&self, x: &Sym2, y: &Sym2) -> f64 {
+        let (e_v, e) = (trace(x), deviator(x).norm());
+        let t = self.force(y);
+        let admissible = self.cone.admits(&t, y.norm() + self.apex)
+            && at_most(self.dilatancy * e, e_v, x.norm());
+        let b = self.apex * e_v + (self.cone.friction() - self.dilatancy) * t[0] * e;
+        restricted(admissible, b)
+    }
+}
+
+/// The vector (normal, deviator) of the contact space.
+fn join(normal: f64, deviator: &Sym2) -> Local<7> {
+    let mut joined = Local::<7>::zeros();
+    joined[0] = normal;
+    joined.fixed_rows_mut::<6>(1).copy_from(deviator);
+    joined
+}

@@ -1,0 +1,168 @@
+//! Kinds of cells and facets, known at run time; the mathematics is in [`element`](crate::element).
+
+use crate::nearest::edit_distance;
+use crate::{Element, Hex8, MeshError, Quad4, Quad8, Quad9, Tet4, Tri3, Tri6};
+use std::{fmt, slice, str};
+
+/// Kind of a cell; each is the [`Element`] of the same name.
+///
+/// Displayed and parsed as the name in lower case, `"quad8"`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum CellKind {
+    /// Linear triangle, [`Tri3`].
+    Tri3,
+    /// Quadratic triangle, [`Tri6`].
+    Tri6,
+    /// Bilinear quadrilateral, [`Quad4`].
+    Quad4,
+    /// Serendipity quadrilateral, [`Quad8`].
+    Quad8,
+    /// Biquadratic quadrilateral, [`Quad9`].
+    Quad9,
+    /// Linear tetrahedron, [`Tet4`].
+    Tet4,
+    /// Trilinear hexahedron, [`Hex8`].
+    Hex8,
+}
+
+/// Kind of a facet, a side of a cell; each is the [`Element`] of the same name, of dimension D − 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum FacetKind {
+    /// Straight edge, [`Line2`](crate::Line2).
+    Line2,
+    /// Quadratic edge, [`Line3`](crate::Line3).
+    Line3,
+    /// Linear triangle, [`Tri3`].
+    Tri3,
+    /// Bilinear quadrilateral, [`Quad4`].
+    Quad4,
+}
+
+/// What an element type knows, as values.
+struct Data {
+    name: &'static str,
+    dimension: usize,
+    corners: usize,
+    facet_kind: FacetKind,
+    nodes: &'static [f64],
+    facets: &'static [&'static [usize]],
+}
+
+const fn data<const D: usize, const N: usize, E: Element<D, N>>(
+    name: &'static str,
+    corners: usize,
+    facet_kind: FacetKind,
+) -> Data {
+    let nodes = const { &E::NODES }.as_flattened();
+    Data {
+        name,
+        dimension: D,
+        corners,
+        facet_kind,
+        nodes,
+        facets: E::FACETS,
+    }
+}
+
+impl CellKind {
+    /// Every kind, in order.
+    pub const ALL: [Self; 7] = [
+        Self::Tri3,
+        Self::Tri6,
+        Self::Quad4,
+        Self::Quad8,
+        Self::Quad9,
+        Self::Tet4,
+        Self::Hex8,
+    ];
+
+    const fn data(self) -> Data {
+        match self {
+            Self::Tri3 => data::<2, 3, Tri3>("tri3", 3, FacetKind::Line2),
+            Self::Tri6 => data::<2, 6, Tri6>("tri6", 3, FacetKind::Line3),
+            Self::Quad4 => data::<2, 4, Quad4>("quad4", 4, FacetKind::Line2),
+            Self::Quad8 => data::<2, 8, Quad8>("quad8", 4, FacetKind::Line3),
+            Self::Quad9 => data::<2, 9, Quad9>("quad9", 4, FacetKind::Line3),
+            Self::Tet4 => data::<3, 4, Tet4>("tet4", 4, FacetKind::Tri3),
+            Self::Hex8 => data::<3, 8, Hex8>("hex8", 8, FacetKind::Quad4),
+        }
+    }
+
+    /// Name in lower case.
+    pub const fn name(self) -> &'static str {
+        self.data().name
+    }
+
+    /// Dimension D of the cell, 2 or 3.
+    pub const fn dimension(self) -> usize {
+        self.data().dimension
+    }
+
+    /// Number of nodes.
+    pub const fn nodes(self) -> usize {
+        self.data().nodes.len() / self.dimension()
+    }
+
+    /// Number of corners; they come first among the nodes.
+    pub const fn corner_count(self) -> usize {
+        self.data().corners
+    }
+
+    /// Nodes of the facets, oriented outwards, corners first: [`Element::FACETS`].
+    pub const fn facets(self) -> &'static [&'static [usize]] {
+        self.data().facets
+    }
+
+    /// Kind of the facets.
+    pub const fn facet_kind(self) -> FacetKind {
+        self.data().facet_kind
+    }
+
+    /// Reference coordinates of the nodes, D each: [`Element::NODES`].
+    pub fn reference_nodes(self) -> slice::ChunksExact<'static, f64> {
+        self.data().nodes.chunks_exact(self.dimension())
+    }
+}
+
+impl FacetKind {
+    /// Number of nodes.
+    pub const fn nodes(self) -> usize {
+        match self {
+            Self::Line2 => 2,
+            Self::Line3 | Self::Tri3 => 3,
+            Self::Quad4 => 4,
+        }
+    }
+
+    /// Number of corners; they come first among the nodes.
+    pub const fn corner_count(self) -> usize {
+        match self {
+            Self::Line2 | Self::Line3 => 2,
+            Self::Tri3 => 3,
+            Self::Quad4 => 4,
+        }
+    }
+}
+
+impl fmt::Display for CellKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl str::FromStr for CellKind {
+    type Err = MeshError;
+
+    fn from_str(name: &str) -> Result<Self, MeshError> {
+        let mut kinds = Self::ALL;
+        kinds.sort_by_key(|kind| edit_distance(name, kind.name()));
+        if kinds[0].name() == name {
+            Ok(kinds[0])
+        } else {
+            Err(MeshError::UnknownKind {
+                name: name.into(),
+                nearest: kinds[0],
+            })
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! A mesh of nodes, cells and named groups, valid by construction; it has no unknowns, no state
+//! and no file format.
+
+mod groups;
+mod integrals;
+mod topology;
+
+pub use integrals::{NodeKind, Share};
+
+use crate::geometry::{bounds, diagonal};
+use crate::sample::{CellSamples, Sample, cell_samples};
+use crate::{CellKind, FacetKind, MeshError};
+use groups::Group;
+use std::collections::BTreeMap;
+
+/// A side of a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Facet {
+    /// Index of the cell in the mesh.
+    pub cell: usize,
+    /// Index of the side in [`CellKind::facets`].
+    pub facet: usize,
+}
+
+/// Nodes, cells and named groups in R^D, D = 2 or 3; always valid once constructed.
+///
+/// Every coordinate is finite, every cell has the nodes of its kind and a positive Jacobian
+/// determinant, every node belongs to a cell, every group is sorted, without repetition and not
+/// empty. Several bodies may live in one mesh: see [`Mesh::bodies`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh<const D: usize> {
+    nodes: Vec<[f64; D]>,
+    kinds: Vec<CellKind>,
+    /// Nodes of cell c: `connectivity[offsets[c]..offsets[c + 1]]`.
+    offsets: Vec<usize>,
+    connectivity: Vec<usize>,
+    groups: BTreeMap<String, Group>,
+}
+
+/// Least admissible Jacobian determinant, relative to the cell's size to the power D.
+const DEGENERATE: f64 = 1e-12;
+
+impl<const D: usize> Mesh<D> {
+    /// A mesh of the given nodes \[mm\] and cells, each a kind and its nodes, without groups.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshError::NoCells`]; [`MeshError::NotFinite`] for a NaN or infinite coordinate;
+    /// [`MeshError::WrongDimension`], [`MeshError::WrongNodeCount`],
+    /// [`MeshError::NodeOutOfRange`], [`MeshError::RepeatedNode`], [`MeshError::UnusedNode`] for
+    /// cells that do not fit the nodes; [`MeshError::InvertedCell`] and
+    /// [`MeshError::DegenerateCell`] where the Jacobian determinant, sampled at the nodes and at
+    /// the points of the full rule, is negative or vanishes to rounding.
+    pub fn new(
+        nodes: Vec<[f64; D]>,
+        cells: Vec<(CellKind, Vec<usize>)>,
+    ) -> Result<Self, MeshError> {
+        if cells.is_empty() {
+            return Err(MeshError::NoCells);
+        }
+        let mut mesh = Self {
+            nodes,
+            kinds: Vec::with_capacity(cells.len()),
+            offsets: vec![0],
+            connectivity: Vec::new(),
+            groups: BTreeMap::new(),
+        };
+        for (cell, (kind, cell_nodes)) in cells.into_iter().enumerate() {
+            check_cell(cell, kind, &cell_nodes, D, mesh.nodes.len())?;
+            mesh.kinds.push(kind);
+            mesh.connectivity.extend(cell_nodes);
+            mesh.offsets.push(mesh.connectivity.len());
+        }
+        let mut used = vec![false; mesh.nodes.len()];
+        for &node in &mesh.connectivity {
+            used[node] = true;
+        }
+        if let Some(node) = used.iter().position(|used| !used) {
+            return Err(MeshError::UnusedNode { node });
+        }
+        mesh.check_geometry()?;
+        Ok(mesh)
+    }
+
+    /// Coordinates of the nodes \[mm\].
+    pub fn nodes(&self) -> &[[f64; D]] {
+        &self.nodes
+    }
+
+    /// Number of cells.
+    pub fn cell_count(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// Kind of a cell.
+    ///
+    /// # Panics
+    ///
+    /// If the mesh has no such cell; so do the other functions of a cell or a facet.
+    pub fn kind(&self, cell: usize) -> CellKind {
+        self.kinds[cell]
+    }
+
+    /// Nodes of a cell, in the order of its kind.
+    pub fn cell_nodes(&self, cell: usize) -> &[usize] {
+        &self.connectivity[self.offsets[cell]..self.offsets[cell + 1]]
+    }
+
+    /// Kind of a facet.
+    pub fn facet_kind(&self, facet: Facet) -> FacetKind {
+        self.kind(facet.cell).facet_kind()
+    }
+
+    /// Nodes of a facet, oriented outwards, corners first.
+    pub fn facet_nodes(&self, facet: Facet) -> impl ExactSizeIterator<Item = usize> + Clone {
+        let nodes = self.cell_nodes(facet.cell);
+        self.kind(facet.cell).facets()[facet.facet]
+            .iter()
+            .map(|&local| nodes[local])
+    }
+
+    /// Least and greatest corner of the box around the nodes \[mm\].
+    pub fn bounds(&self) -> ([f64; D], [f64; D]) {
+        bounds(&self.nodes)
+    }
+
+    /// Diagonal of the box around the nodes \[mm\].
+    pub fn size(&self) -> f64 {
+        diagonal(&self.nodes)
+    }
+
+    /// The mesh with every node moved from x to f(x) \[mm\], groups kept.
+    ///
+    /// Mid-side nodes move like the others, so the edges of quadratic cells follow a curved f.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshError::NotFinite`], [`MeshError::InvertedCell`] (a reflection inverts every cell) and
+    /// [`MeshError::DegenerateCell`], as from [`Mesh::new`].
+    pub fn map(mut self, f: impl Fn([f64; D]) -> [f64; D]) -> Result<Self, MeshError> {
+        for x in &mut self.nodes {
+            *x = f(*x);
+        }
+        self.check_geometry()?;
+        Ok(self)
+    }
+
+    /// Coordinates of the nodes of a cell, in its order.
+    fn cell_positions(&self, cell: usize) -> Vec<[f64; D]> {
+        self.cell_nodes(cell)
+            .iter()
+            .map(|&node| self.nodes[node])
+            .collect()
+    }
+
+    fn check_geometry(&self) -> Result<(), MeshError> {
+        if let Some(node) = self
+            .nodes
+            .iter()
+            .position(|x| x.iter().any(|v| !v.is_finite()))
+        {
+            return Err(MeshError::NotFinite {
+                node,
+                coordinates: self.nodes[node].to_vec(),
+            });
+        }
+        let mut samples = BTreeMap::new();
+        for cell in 0..self.cell_count() {
+            let kind = self.kind(cell);
+            let table = samples.entry(kind).or_insert_with(|| cell_samples(kind));
+            check_shape(cell, &self.cell_positions(cell), table)?;
+        }
+        Ok(())
+    }
+}
+
+/// Checks a cell as a list of nodes of a mesh of the given dimension with `count` nodes.
+fn check_cell(
+    cell: usize,
+    kind: CellKind,
+    nodes: &[usize],
+    dimension: usize,
+    count: usize,
+) -> Result<(), MeshError> {
+    if kind.dimension() != dimension {
+        return Err(MeshError::WrongDimension {
+            cell,
+            kind,
+            dimension,
+        });
+    }
+    if nodes.len() != kind.nodes() {
+        return Err(MeshError::WrongNodeCount {
+            cell,
+            kind,
+            found: nodes.len(),
+        });
+    }
+    for (i, &node) in nodes.iter().enumerate() {
+        if node >= count {
+            return Err(MeshError::NodeOutOfRange { cell, node, count });
+        }
+        if nodes[..i].contains(&node) {
+            return Err(MeshError::RepeatedNode { cell, node });
+        }
+    }
+    Ok(())
+}
+
+/// Checks the Jacobian determinant of a cell, where it is least among its samples.
+fn check_shape<const D: usize>(
+    cell: usize,
+    positions: &[[f64; D]],
+    samples: &CellSamples<D>,
+) -> Result<(), MeshError> {
+    let det = |sample: &Sample<D>| (sample.det(positions), sample.position(positions));
+    let least = samples
+        .nodes
+        .iter()
+        .chain(&samples.rule)
+        .map(det)
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((det, point)) = least else {
+        return Ok(());
+    };
+    let size = diagonal(positions);
+    let tolerance = DEGENERATE * size.powi(D as i32);
+    // Neither comparison holds when the coordinates are so large that the determinant overflows.
+    if det > tolerance {
+        Ok(())
+    } else if det < -tolerance {
+        Err(MeshError::InvertedCell {
+            cell,
+            point: point.to_vec(),
+            det,
+        })
+    } else {
+        Err(MeshError::DegenerateCell {
+            cell,
+            point: point.to_vec(),
+            det,
+            size,
+        })
+    }
+}

@@ -1,0 +1,94 @@
+//! Shape functions tabulated by run-time kind, for what a mesh computes on its own geometry; not
+//! for assembling, which knows its element at compile time.
+
+use crate::geometry::{basis, cofactors, dot, interpolate};
+use crate::quadrature::{Integration, Point, Rule};
+use crate::{
+    CellKind, Element, FacetKind, Hex8, Line2, Line3, Quad4, Quad8, Quad9, Tet4, Tri3, Tri6,
+};
+
+/// Shape functions at one point of a reference cell or facet.
+pub(crate) struct Sample<const D: usize> {
+    pub(crate) weight: f64,
+    pub(crate) shape: Vec<f64>,
+    /// Derivatives along the last coordinates of D; a facet has none along the first.
+    gradient: Vec<[f64; D]>,
+}
+
+impl<const D: usize> Sample<D> {
+    pub(crate) fn position(&self, nodes: &[[f64; D]]) -> [f64; D] {
+        interpolate(&self.shape, nodes)
+    }
+
+    /// Jacobian determinant of a cell.
+    pub(crate) fn det(&self, nodes: &[[f64; D]]) -> f64 {
+        let g = basis(&self.gradient, nodes);
+        dot(&g[0], &cofactors(&g)[0])
+    }
+
+    /// Area vector of a facet, outwards: its length is the factor from reference to physical area.
+    pub(crate) fn area_vector(&self, nodes: &[[f64; D]]) -> [f64; D] {
+        cofactors(&basis(&self.gradient, nodes))[0]
+    }
+}
+
+fn tabulate<const D: usize, const M: usize, const N: usize, E: Element<M, N>>(
+    points: impl IntoIterator<Item = Point<M>>,
+) -> Vec<Sample<D>> {
+    let sample = |p: Point<M>| Sample {
+        weight: p.weight,
+        shape: E::shape(p.xi).to_vec(),
+        gradient: E::shape_gradient(p.xi)
+            .iter()
+            .map(|g| std::array::from_fn(|i| if i < D - M { 0.0 } else { g[i + M - D] }))
+            .collect(),
+    };
+    points.into_iter().map(sample).collect()
+}
+
+fn tabulate_facet<const D: usize, const M: usize, const N: usize, E: Element<M, N>>()
+-> Vec<Sample<D>> {
+    tabulate::<D, M, N, E>(E::rule(Integration::Full).points)
+}
+
+/// The points of the full rule of a kind of facet.
+pub(crate) fn facet_samples<const D: usize>(kind: FacetKind) -> Vec<Sample<D>> {
+    match kind {
+        FacetKind::Line2 => tabulate_facet::<D, 1, 2, Line2>(),
+        FacetKind::Line3 => tabulate_facet::<D, 1, 3, Line3>(),
+        FacetKind::Tri3 => tabulate_facet::<D, 2, 3, Tri3>(),
+        FacetKind::Quad4 => tabulate_facet::<D, 2, 4, Quad4>(),
+    }
+}
+
+/// Where a kind of cell is sampled.
+pub(crate) struct CellSamples<const D: usize> {
+    /// A rule exact for N_a 2πr on straight-sided cells.
+    pub(crate) rule: Vec<Sample<D>>,
+    /// The nodes, with weight 0.
+    pub(crate) nodes: Vec<Sample<D>>,
+}
+
+fn tabulate_cell<const D: usize, const N: usize, const M: usize, E: Element<M, N>>(
+    rule: Rule<M>,
+) -> CellSamples<D> {
+    CellSamples {
+        rule: tabulate::<D, M, N, E>(rule.points),
+        nodes: tabulate::<D, M, N, E>(E::NODES.map(|xi| Point { xi, weight: 0.0 })),
+    }
+}
+
+/// The samples of a kind of cell of dimension D.
+pub(crate) fn cell_samples<const D: usize>(kind: CellKind) -> CellSamples<D> {
+    let full = Integration::Full;
+    match kind {
+        // One point, enough for a constant strain, would miss the product of N_a and r.
+        CellKind::Tri3 => tabulate_cell::<D, 3, 2, Tri3>(Rule::triangle(2)),
+        CellKind::Tri6 => tabulate_cell::<D, 6, 2, Tri6>(Tri6::rule(full)),
+        CellKind::Quad4 => tabulate_cell::<D, 4, 2, Quad4>(Quad4::rule(full)),
+        CellKind::Quad8 => tabulate_cell::<D, 8, 2, Quad8>(Quad8::rule(full)),
+        CellKind::Quad9 => tabulate_cell::<D, 9, 2, Quad9>(Quad9::rule(full)),
+        CellKind::Tet4 => tabulate_cell::<D, 4, 3, Tet4>(Tet4::rule(full)),
+        CellKind::Hex8 => tabulate_cell::<D, 8, 3, Hex8>(Hex8::rule(full)),
+    }
+}
