@@ -1,1 +1,7 @@
-//! placeholder
+//! Verification of moreau: problems with known answers, written once and run by the tests (quick)
+//! and by `cargo xtask verify` (full); not the crates' own unit tests.
+
+pub mod cases;
+pub mod outcome;
+
+pub use outcome::{Case, Check, Figure, Kind, Options, Outcome, Table};

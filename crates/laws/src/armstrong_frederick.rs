@@ -13,7 +13,7 @@ use nalgebra::SVector;
 /// y = (σ, X, R), of dual product σ : ε̇ᵖ − X : α̇ − R ṗ. In monotonic tension
 /// X_eq = (C/γ)(1 − exp(−γ εᵖ)).
 ///
-/// Source: G. de Saxcé (1992); L. Bodovillé and G. de Saxcé (2001).
+/// Source: G. Bodovillé and G. de Saxcé, *European Journal of Mechanics A/Solids* 20 (2001) 99-112.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmstrongFrederick {
     yield_stress: f64,

@@ -11,7 +11,8 @@ use nalgebra::Vector3;
 /// the factor ∂f/∂c would also move. Fluxes x = (e_v, e_q, −ȧ), forces y = (p, q, c) \[MPa\], of
 /// dual product p e_v + q e_q − c ȧ.
 ///
-/// Source: G. de Saxcé (1995); J. Zouain, I. Pontes and J. Vaunat (2010).
+/// Source: N. Zouain, I. Pontes Filho and J. Vaunat, *European Journal of Mechanics A/Solids* 29
+/// (2010) 327-336.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CamClay {
     slope: f64,

@@ -1,5 +1,5 @@
-//! Unilateral contact with Coulomb friction, \[35\]-\[43\] and \[66\]-\[69\], with the projection of
-//! \[90′\]; not the clipping of a tangential force at a given pressure, see
+//! Unilateral contact with Coulomb friction, \[35\]-\[43\] and \[66\]-\[69\], with the projection
+//! of \[90′\]; not the clipping of a tangential force at a given pressure, see
 //! [`RegularisedCoulomb`](crate::RegularisedCoulomb).
 
 use crate::duality::{Bipotential, at_most, restricted};
@@ -120,8 +120,8 @@ impl Coulomb {
         t - self.project(&(t - alpha * self.shifted(u)))
     }
 
-    /// The status that the prediction t − αũ falls in, \[35\]: in the polar cone open, in K_μ stick,
-    /// else slip. Without friction a closed contact slips.
+    /// The status that the prediction t − αũ falls in, \[35\]: in the polar cone open, in K_μ
+    /// stick, else slip. Without friction a closed contact slips.
     #[inline]
     pub fn status<const D: usize>(&self, u: &Local<D>, t: &Local<D>, alpha: f64) -> Status {
         self.branch(&(t - alpha * self.shifted(u)))

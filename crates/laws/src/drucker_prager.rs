@@ -16,7 +16,8 @@ use moreau_mandel::{Sym2, deviator, trace};
 /// It *is* Coulomb contact of coefficient k_f in 1 + 6 dimensions: force (c₀ − σ_m, s),
 /// displacement (e_v − k_t ‖e‖, −e).
 ///
-/// Source: A. Berga and G. de Saxcé (1994); M. Hjiaj, J. Fortin and G. de Saxcé (2003).
+/// Source: M. Hjiaj, J. Fortin and G. de Saxcé, *International Journal of Engineering Science* 41
+/// (2003) 1109-1143.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DruckerPrager {
     cone: Coulomb,
@@ -59,7 +60,8 @@ impl DruckerPrager {
     }
 }
 
-/// b(ε̇, σ) = c₀ e_v + (k_f − k_t)(c₀ − σ_m) ‖e‖ if ‖s‖ ≤ k_f (c₀ − σ_m) and e_v ≥ k_t ‖e‖, else +∞.
+/// b(ε̇, σ) = c₀ e_v + (k_f − k_t)(c₀ − σ_m) ‖e‖ if ‖s‖ ≤ k_f (c₀ − σ_m) and e_v ≥ k_t ‖e‖,
+/// else +∞.
 impl Bipotential<Sym2> for DruckerPrager {
     fn b(&self, x: &Sym2, y: &Sym2) -> f64 {
         let (e_v, e) = (trace(x), deviator(x).norm());

@@ -8,7 +8,8 @@
 /// rate or an increment), y the force conjugate to it, and the values are densities of power.
 ///
 /// Boundaries of domains are thick by a relative 10⁻¹²: a force that rounding has put just outside
-/// its yield surface is on it.
+/// its yield surface is on it. Conditions of sign alone, such as u_n ≥ 0, have no scale and are
+/// exact.
 pub trait Superpotential<X> {
     /// V(x); convex.
     fn v(&self, x: &X) -> f64;

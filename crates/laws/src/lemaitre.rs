@@ -13,7 +13,7 @@ use nalgebra::SVector;
 /// Fluxes x = (ε̇ᵖ, −ṙ, Ḋ), forces y = (σ, R, Y) with the energy release rate Y, of dual product
 /// σ : ε̇ᵖ − R ṙ + Y Ḋ.
 ///
-/// Source: L. Bodovillé, *Comptes Rendus de l'Académie des Sciences* IIb 327 (1999) 715-720.
+/// Source: G. Bodovillé, *Comptes Rendus de l'Académie des Sciences* IIb 327 (1999) 715-720.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lemaitre {
     yield_stress: f64,

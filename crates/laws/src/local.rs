@@ -5,8 +5,8 @@ use nalgebra::SVector;
 /// A vector in the frame of a contact: component 0 along the normal n, from the body Ω_A to the
 /// obstacle Ω_B, the rest tangential, \[10\].
 ///
-/// Displacements u \[mm\] open the contact when u_n > 0; forces t \[N\] compress it when t_n > 0; the
-/// flux conjugate to t is −u.
+/// Displacements u \[mm\] open the contact when u_n > 0; forces t \[N\] compress it when t_n > 0;
+/// the flux conjugate to t is −u.
 pub type Local<const D: usize> = SVector<f64, D>;
 
 /// The three statuses of unilateral contact with friction, \[35\].

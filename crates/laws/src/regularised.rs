@@ -1,5 +1,5 @@
-//! Contact with friction regularised by springs, the penalty law of \[81\]-\[82\]; not the exact law,
-//! to which it tends as 1/k.
+//! Contact with friction regularised by springs, the penalty law of \[81\]-\[82\]; not the exact
+//! law, to which it tends as 1/k.
 
 use crate::coulomb::Coulomb;
 use crate::error::{LawError, positive};
@@ -24,8 +24,8 @@ pub struct RegularisedCoulomb {
 pub struct RegularisedResponse<const D: usize> {
     /// The force t at the end of the step \[N\], in K_μ.
     pub force: Local<D>,
-    /// ∂t/∂u \[N/mm\]; its symmetric part is negative where it sticks, and slip couples t_t to u_n:
-    /// unsymmetric.
+    /// ∂t/∂u \[N/mm\], with respect to u and not −u: diag(−k_n, −k_t) in stick, unsymmetric in
+    /// slip, where the pressure bounds t_t.
     pub tangent: SMatrix<f64, D, D>,
     /// The irreversible displacement uᶠ \[mm\], for which the exact law holds.
     pub irreversible: Local<D>,
@@ -114,7 +114,8 @@ impl RegularisedCoulomb {
 
     /// The regularised incremental bipotential \[82\] at a given pressure t_n ≥ 0 \[N·mm\]:
     ///
-    /// inf over uᶠ, uᶠ_n ≥ 0, of t_t0·uᶠ_t + μ t_n ‖uᶠ_t‖ + ½ k_t ‖Δu_t − uᶠ_t‖² + ½ k_n (u_n − uᶠ_n)².
+    /// inf over uᶠ, uᶠ_n ≥ 0, of
+    /// t_t0·uᶠ_t + μ t_n ‖uᶠ_t‖ + ½ k_t ‖Δu_t − uᶠ_t‖² + ½ k_n (u_n − uᶠ_n)².
     ///
     /// Convex and continuously differentiable in u, with ∂/∂u = t₀* − t for the force t of
     /// [`Self::respond`] if t_n is the pressure found there: a fixed point, not a minimum.
@@ -125,7 +126,8 @@ impl RegularisedCoulomb {
         self.convolved(t0, u, t_n, &self.irreversible(t0, u, &force))
     }
 
-    /// The bracket whose infimum over uᶠ_n ≥ 0 is [`Self::potential`] \[N·mm\]; strictly convex in uᶠ.
+    /// The bracket whose infimum over uᶠ_n ≥ 0 is [`Self::potential`] \[N·mm\]; strictly convex
+    /// in uᶠ.
     pub fn convolved<const D: usize>(
         &self,
         t0: &Local<D>,

@@ -5,8 +5,8 @@ use crate::duality::{Superpotential, at_most, indicator, restricted};
 use crate::error::{LawError, non_negative};
 use crate::local::{Local, tangential_norm};
 
-/// Unilateral contact, \[11\], and friction of given limit g: ‖t_t‖ ≤ g, slip opposed to t_t, \[17\]
-/// with the constant g for μ t_n.
+/// Unilateral contact, \[11\], and friction of given limit g: ‖t_t‖ ≤ g, slip opposed to t_t,
+/// \[17\] with the constant g for μ t_n.
 ///
 /// The bound does not depend on the flux or the pressure, so the law is standard: it has the
 /// superpotential V(−u) = ψ(u_n ≥ 0) + g ‖u_t‖ and the conjugate W(t) = ψ(t_n ≥ 0) + ψ(‖t_t‖ ≤ g).

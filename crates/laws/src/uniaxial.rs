@@ -1,5 +1,5 @@
-//! The elastic, perfectly plastic bar of figure 1, \[1\]-\[4\] and \[50\]-\[56\]; not a law of the bulk:
-//! it is the scalar on which the inf-convolution is learnt.
+//! The elastic, perfectly plastic bar of figure 1, \[1\]-\[4\] and \[50\]-\[56\]; not a law of the
+//! bulk: it is the scalar on which the inf-convolution is learnt.
 
 use crate::duality::{Superpotential, at_most, indicator};
 use crate::error::{LawError, positive};
@@ -56,8 +56,8 @@ impl Uniaxial {
         }
     }
 
-    /// The bracket of \[52\], ½E (Δε − Δεᵖ)² + σ_y |Δεᵖ| − σ₀ Δεᵖ \[N·mm/mm³\]; strictly convex in Δεᵖ.
-    /// Its infimum over Δεᵖ, an inf-convolution, is [`Self::potential`].
+    /// The bracket of \[52\], ½E (Δε − Δεᵖ)² + σ_y |Δεᵖ| − σ₀ Δεᵖ \[N·mm/mm³\]; strictly convex in
+    /// Δεᵖ. Its infimum over Δεᵖ, an inf-convolution, is [`Self::potential`].
     pub fn convolved(&self, stress_0: f64, d_eps: f64, d_eps_p: f64) -> f64 {
         0.5 * self.young * (d_eps - d_eps_p).powi(2) + self.v(&d_eps_p) - stress_0 * d_eps_p
     }

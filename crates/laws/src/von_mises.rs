@@ -1,5 +1,5 @@
-//! Von Mises plasticity with linear hardening, \[5\]-\[9\] and \[57\]-\[65\]; not a finite-strain law,
-//! though logarithmic strains may be fed to it.
+//! Von Mises plasticity with linear hardening, \[5\]-\[9\] and \[57\]-\[65\]; not a law of finite
+//! strain, though logarithmic strains may be fed to it.
 
 use crate::bulk::{BulkLaw, IncrementalPotential, Response};
 use crate::duality::{Superpotential, at_most, indicator, restricted};
@@ -61,6 +61,9 @@ pub struct VonMisesState {
 ///
 /// Backward Euler makes the step a convex minimisation over Δeᵖ, \[62\], solved in closed form by
 /// the radial return Δp = ⟨f_trial⟩₊ / (3G + H + H_k).
+///
+/// Source of the consistent tangent: J. C. Simo and R. L. Taylor, *Computer Methods in Applied
+/// Mechanics and Engineering* 48 (1985) 101-118.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VonMises {
     elastic: Elastic,
@@ -180,7 +183,6 @@ impl VonMises {
         let norm = xi.norm();
         let trial = 1.5f64.sqrt() * norm;
         let f = trial - self.yield_stress - self.isotropic * old.p;
-        // Written so that NaN takes the plastic branch and comes out as NaN.
         if f <= 0.0 {
             return None;
         }

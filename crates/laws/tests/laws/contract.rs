@@ -152,7 +152,8 @@ fn implicit_normality<X: Space>(b: &impl Bipotential<X>, samples: &Samples<X>) {
     });
 }
 
-/// (v) Off the law the gap is positive, and grows at least like ε² and, being convex, at most like ε.
+/// (v) Off the law the gap is positive, and grows at least like ε² and, being convex, at most
+/// like ε.
 fn positive_off_the_law<X: Space>(b: &impl Bipotential<X>, samples: &Samples<X>) {
     for_all(&samples.departure, |(x, y, dx, dy)| {
         let at = |eps: f64| gap(b, &x.plus(eps, &dx), &y.plus(eps, &dy));

@@ -27,7 +27,7 @@ fn samples(m: f64, damage: f64) -> Samples<Damaging> {
         })
     };
     let flow = move |n: Sym2, p: f64, release: f64| {
-        let growth = (release / STRENGTH).powf(m) * p;
+        let growth = (release.max(0.0) / STRENGTH).powf(m) * p;
         Lemaitre::flux(&(1.5f64.sqrt() * p * n), sound * p, growth)
     };
     let yielding = (unit_deviator(), 0.1..2.0f64, 0.0..2.0f64, 0.3..2.0f64);
@@ -54,6 +54,8 @@ fn samples(m: f64, damage: f64) -> Samples<Damaging> {
             yielding
                 .clone()
                 .prop_map(move |(n, p, r, y)| (flow(n, p, y), force(n, 1.0, r, y))),
+            (unit_deviator(), 0.1..2.0f64, -2.0..0.0f64)
+                .prop_map(move |(n, p, y)| (flow(n, p, y), force(n, 1.0, 0.5, y))),
             forces(0.0..1.0).prop_map(|y| (Damaging::zeros(), y)),
         ]
         .boxed(),

@@ -232,7 +232,8 @@ fn linear_kinematic_hardening() -> Result<(), LawError> {
 }
 
 /// The angle left between the stress and a constant deviatoric strain rate, that starts at a
-/// right angle to a stress on the yield surface, after 2G‖Δe‖ = 2R in equal steps of backward Euler.
+/// right angle to a stress on the yield surface, after 2G‖Δe‖ = 2R in equal steps of backward
+/// Euler.
 fn angle_of_krieg(steps: u32) -> Result<f64, LawError> {
     let law = perfect()?;
     let two_g = 2.0 * law.elastic().shear_modulus();

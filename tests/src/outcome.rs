@@ -1,0 +1,116 @@
+//! What a verification case hands to whoever ran it: checks, tables and figures; not how they are
+//! written to files.
+
+use serde::Serialize;
+
+/// How a value is compared with its reference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Kind {
+    /// |value − reference| ≤ tolerance · |reference|.
+    Relative,
+    /// |value − reference| ≤ tolerance.
+    Absolute,
+    /// value ≤ reference; the tolerance is not used.
+    AtMost,
+    /// value ≥ reference; the tolerance is not used.
+    AtLeast,
+}
+
+/// One number that was computed, beside the one that was expected.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Check {
+    /// What it is.
+    pub name: String,
+    /// The number computed.
+    pub value: f64,
+    /// Its unit; "1" for a pure number.
+    pub unit: String,
+    /// The number expected, or the bound.
+    pub reference: f64,
+    /// Tolerance, see [`Kind`].
+    pub tolerance: f64,
+    /// How the two are compared.
+    pub kind: Kind,
+    /// Where the expected number comes from.
+    pub source: String,
+    /// Whether the comparison holds; false for NaN.
+    pub pass: bool,
+}
+
+impl Check {
+    /// Compares a value with its reference.
+    pub fn new(
+        name: impl Into<String>,
+        (value, unit): (f64, &str),
+        kind: Kind,
+        (reference, tolerance): (f64, f64),
+        source: &str,
+    ) -> Self {
+        let pass = match kind {
+            Kind::Relative => (value - reference).abs() <= tolerance * reference.abs(),
+            Kind::Absolute => (value - reference).abs() <= tolerance,
+            Kind::AtMost => value <= reference,
+            Kind::AtLeast => value >= reference,
+        };
+        let (name, unit, source) = (name.into(), unit.into(), source.into());
+        Self { name, value, unit, reference, tolerance, kind, source, pass }
+    }
+}
+
+/// A table of the report, and a CSV file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Table {
+    /// Stem of the file name.
+    pub name: String,
+    /// What the table shows.
+    pub title: String,
+    /// Names of the columns, with units.
+    pub header: Vec<String>,
+    /// The rows, as text.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// A figure of the report, and an SVG file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Figure {
+    /// Stem of the file name.
+    pub name: String,
+    /// What the figure shows, and which figure of the paper it stands for.
+    pub caption: String,
+    /// The picture.
+    pub svg: String,
+}
+
+/// All that a case has to show.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Outcome {
+    /// The numbers that decide.
+    pub checks: Vec<Check>,
+    /// Tables.
+    pub tables: Vec<Table>,
+    /// Figures.
+    pub figures: Vec<Figure>,
+    /// Paragraphs of plain text: what was seen, and what was not run.
+    pub notes: Vec<String>,
+}
+
+/// How thoroughly a case is run, and to whom it tells where it is.
+pub struct Options<'a> {
+    /// Coarse meshes and few variants only.
+    pub quick: bool,
+    /// Receives a short line whenever the case begins something that takes time.
+    pub progress: &'a dyn Fn(&str),
+}
+
+/// A verification case.
+pub struct Case {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// Title in the report.
+    pub title: &'static str,
+    /// What is computed and why: one paragraph.
+    pub description: &'static str,
+    /// Runs the case. An error is a failure of the case: the solver did not do what it should.
+    pub run: fn(&Options<'_>) -> Result<Outcome, Box<dyn std::error::Error>>,
+}
