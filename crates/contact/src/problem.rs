@@ -189,6 +189,14 @@ impl<const D: usize> ContactProblem<D> {
         forces.max(self.load.amax()).max(f64::MIN_POSITIVE)
     }
 
+    /// Rounding of the forces S (u − g) − f [N]: no residual can be expected below it.
+    pub fn rounding(&self, u: &[Local<D>]) -> f64 {
+        let reach = u.iter().zip(&self.origin).map(|(u, g)| (u - g).amax()).fold(0.0, f64::max);
+        let stiffest = self.stiffness.diagonal().amax();
+        let terms = (self.load.len() as f64).sqrt();
+        4.0 * f64::EPSILON * terms * (stiffest * reach + self.load.amax())
+    }
+
     /// Status of every contact at (u, t), [35].
     pub fn statuses(&self, u: &[Local<D>], t: &[Local<D>]) -> Vec<Status> {
         (0..self.contacts())

@@ -295,7 +295,8 @@ impl<const D: usize> Driver<D> {
         let stiffness = system.shift();
         // Below this the difference of two positions is rounding.
         let rounding = 16.0 * f64::EPSILON * reach * stiffness;
-        let tolerance = self.settings.tolerance * scale + rounding;
+        // The residual of the contact solver weighs displacements with a somewhat smaller α.
+        let tolerance = self.settings.tolerance * scale + 10.0 * solution.residual + rounding;
         (0..kinematics.len()).all(|i| {
             let elastic = solution.irreversible[i] - solution.displacement[i];
             let mut u = kinematics[i].u + elastic;

@@ -67,7 +67,6 @@ impl Bipotential<Generalised> for ArmstrongFrederick {
         let overstress = stress - back_stress;
         let admissible = at_most(von_mises(&overstress), limit, overstress.norm())
             && at_most(trace(&plastic).abs(), 0.0, plastic.norm())
-            && p >= 0.0
             && at_most(equivalent_strain(&deviator(&plastic)), p, p);
 
         let ratio = self.recall / self.modulus;

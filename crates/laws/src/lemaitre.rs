@@ -77,7 +77,6 @@ impl Bipotential<Damaging> for Lemaitre {
         let limit = sound * (self.yield_stress + hardening);
         let admissible = at_most(von_mises(&stress), limit, stress.norm())
             && at_most(trace(&plastic).abs(), 0.0, plastic.norm())
-            && r >= 0.0
             && at_most(sound * equivalent_strain(&deviator(&plastic)), r, r)
             && d >= 0.0;
 

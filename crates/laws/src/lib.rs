@@ -4,8 +4,8 @@
 //! A dissipative law relates a flux x (a rate, or an increment over a step) to the force y
 //! conjugate to it. A *standard* law derives from a convex [`Superpotential`]: y ∈ ∂V(x), \[28\].
 //! Contact with friction is not standard: it derives from a [`Bipotential`], a function of both,
-//! convex in each, with b(x, y) ≥ x·y, and the law is where equality holds, \[29\]-\[34\]. Numbers in
-//! brackets are the equations of Fihri Fassi, Bousshine, de Saxcé, El Harif and Kouam, *Analyse du
+//! convex in each, with b(x, y) ≥ x·y, and the law is where equality holds, \[29\]-\[34\]. Numbers
+//! in brackets are the equations of Fihri Fassi, Bousshine, de Saxcé, El Harif and Kouam, *Analyse du
 //! problème d'évolution élastoplastique en présence d'une loi non associée de contact avec
 //! frottement*.
 //!

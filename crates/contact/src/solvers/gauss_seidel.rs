@@ -1,12 +1,14 @@
 //! Block Gauss–Seidel with an exact local solver; not a relaxation that needs a parameter.
 
-use super::{ContactSolution, ContactSolver, Tolerance};
+use super::{ContactSolution, ContactSolver, Tolerance, fixed_point, stack};
+use crate::problem::split;
 use crate::{ContactError, ContactProblem, Delassus};
 use moreau_laws::{Coulomb, Local};
 use nalgebra::{DVector, SMatrix};
 
 /// One contact at a time, on u = W t + q: the forces of all others are frozen, the local law is
-/// solved exactly, sweep after sweep (the non-smooth contact dynamics method of Jean and Moreau).
+/// solved exactly, sweep after sweep (the non-smooth contact dynamics method of Jean and Moreau),
+/// with Anderson's extrapolation between the sweeps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GaussSeidel {
     /// When to stop; an iteration is a sweep over all contacts.
@@ -15,7 +17,7 @@ pub struct GaussSeidel {
 
 impl Default for GaussSeidel {
     fn default() -> Self {
-        Self { tolerance: Tolerance { relative: 1e-11, iterations: 200_000 } }
+        Self { tolerance: Tolerance { relative: 1e-10, iterations: 200_000 } }
     }
 }
 
@@ -25,79 +27,44 @@ impl<const D: usize> ContactSolver<D> for GaussSeidel {
         problem: &ContactProblem<D>,
         guess: Option<&ContactSolution<D>>,
     ) -> Result<ContactSolution<D>, ContactError> {
-        let zero = vec![Local::zeros(); problem.contacts()];
-        let start = guess.map_or(&zero, |g| &g.force);
-        let solution = Self::run(problem, start, self.tolerance)?;
-        let target = self.tolerance.relative * problem.force_scale(&solution.force);
-        if solution.residual <= target {
-            return Ok(solution);
-        }
-        Err(ContactError::NotConverged {
-            solver: "Gauss-Seidel",
-            iterations: solution.iterations,
-            residual: solution.residual,
-            tolerance: target,
-        })
+        let form = problem.delassus("Gauss-Seidel")?;
+        let start = guess.map_or_else(|| DVector::zeros(form.free.len()), |g| stack(&g.force));
+        self.sweeps(problem, &form, start)
     }
 }
 
 impl GaussSeidel {
-    /// A fixed number of sweeps, for a method that only wants to be near the solution.
+    /// Solves u = W t + q for a form that need not be that of the problem.
     pub(super) fn sweeps<const D: usize>(
+        &self,
         problem: &ContactProblem<D>,
-        start: &[Local<D>],
-        sweeps: usize,
+        form: &Delassus<D>,
+        start: DVector<f64>,
     ) -> Result<ContactSolution<D>, ContactError> {
-        Self::run(problem, start, Tolerance { relative: 1e-12, iterations: sweeps })
+        let swept = |t: &DVector<f64>| sweep(problem, form, t);
+        fixed_point("Gauss-Seidel", problem, form, start, self.tolerance, swept)
     }
+}
 
-    fn run<const D: usize>(
-        problem: &ContactProblem<D>,
-        start: &[Local<D>],
-        tolerance: Tolerance,
-    ) -> Result<ContactSolution<D>, ContactError> {
-        let Delassus { operator, free } = problem.delassus("Gauss-Seidel")?;
-        let contacts = problem.contacts();
-        let mut t: Vec<Local<D>> =
-            start.iter().zip(problem.friction()).map(|(t, law)| law.project(t)).collect();
-        let as_vector = |t: &[Local<D>]| {
-            DVector::from_iterator(free.len(), t.iter().flat_map(|t| (0..D).map(|k| t[k])))
-        };
-        let mut u = &operator * as_vector(&t) + &free;
-        let mut iterations = 0;
-        loop {
-            // Recompute: the updates below accumulate rounding over thousands of sweeps.
-            if iterations % 20 == 0 {
-                u = &operator * as_vector(&t) + &free;
-            }
-            let displacement = crate::problem::split(&u);
-            let residual = problem.residual(&displacement, &t);
-            if residual <= tolerance.relative * problem.force_scale(&t)
-                || iterations >= tolerance.iterations
-            {
-                let status = problem.statuses(&displacement, &t);
-                return Ok(ContactSolution {
-                    irreversible: displacement.clone(),
-                    displacement,
-                    force: t,
-                    status,
-                    iterations,
-                    residual,
-                });
-            }
-            for i in 0..contacts {
-                let own = operator.fixed_view::<D, D>(D * i, D * i).into_owned();
-                let q = Local::<D>::from_fn(|k, _| u[D * i + k]) - own * t[i];
-                let updated = local(&own, &q, &problem.friction()[i]);
-                let change = updated - t[i];
-                if change.norm() > 0.0 {
-                    u += operator.fixed_columns::<D>(D * i) * change;
-                    t[i] = updated;
-                }
-            }
-            iterations += 1;
+/// One sweep over all contacts.
+fn sweep<const D: usize>(
+    problem: &ContactProblem<D>,
+    Delassus { operator, free }: &Delassus<D>,
+    start: &DVector<f64>,
+) -> Vec<Local<D>> {
+    let mut t: Vec<Local<D>> = split(start);
+    let mut u = operator * start + free;
+    for (i, law) in problem.friction().iter().enumerate() {
+        let own = operator.fixed_view::<D, D>(D * i, D * i).into_owned();
+        let q = Local::<D>::from_fn(|k, _| u[D * i + k]) - own * t[i];
+        let updated = local(&own, &q, law);
+        let change = updated - t[i];
+        if change.norm() > 0.0 {
+            u += operator.fixed_columns::<D>(D * i) * change;
+            t[i] = updated;
         }
     }
+    t
 }
 
 /// Exact force of a single contact u = W t + q: opens if it may, else sticks if the cone allows,
@@ -130,6 +97,22 @@ fn local<const D: usize>(w: &SMatrix<f64, D, D>, q: &Local<D>, law: &Coulomb) ->
         t[0] = -(q[0] + (1..D).map(|k| w[(0, k)] * t[k]).sum::<f64>()) / w[(0, 0)];
         Some(t)
     };
+    if D == 2 {
+        let Some(stick) = force(0.0) else { return Local::zeros() };
+        if stick[1].abs() <= mu * stick[0] {
+            return stick;
+        }
+        // On the edge t_t = σ μ t_n of the cone the equation u_n = 0 is linear.
+        let side = rhs[1].signum();
+        let stiffness = w[(0, 0)] + side * mu * w[(0, 1)];
+        let mut slip = Local::zeros();
+        // Without a positive stiffness the contact wedges: no slipping force exists.
+        if stiffness > 0.0 {
+            slip[0] = -q[0] / stiffness;
+            slip[1] = side * mu * slip[0];
+        }
+        return slip;
+    }
     let excess = |t: &Local<D>| (1..D).map(|k| t[k] * t[k]).sum::<f64>().sqrt() - mu * t[0];
     let Some(stick) = force(0.0) else { return Local::zeros() };
     if excess(&stick) <= 0.0 {

@@ -1,5 +1,6 @@
 //! The methods that solve a contact problem, one file each, behind one trait.
 
+mod anderson;
 mod gauss_seidel;
 mod penalty;
 mod semismooth;
@@ -10,8 +11,11 @@ pub use penalty::Penalty;
 pub use semismooth::SemismoothNewton;
 pub use uzawa::{Uzawa, uzawa_steps};
 
-use crate::{Certificate, ContactError, ContactProblem};
+use crate::problem::split;
+use crate::{Certificate, ContactError, ContactProblem, Delassus};
+use anderson::Anderson;
 use moreau_laws::{Local, Status};
+use nalgebra::DVector;
 
 /// When an iterative method stops.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,4 +64,47 @@ pub trait ContactSolver<const D: usize>: std::fmt::Debug + Send + Sync {
         problem: &ContactProblem<D>,
         guess: Option<&ContactSolution<D>>,
     ) -> Result<ContactSolution<D>, ContactError>;
+}
+
+/// All components of all contacts in one vector.
+fn stack<const D: usize>(t: &[Local<D>]) -> DVector<f64> {
+    DVector::from_iterator(D * t.len(), t.iter().flat_map(|t| (0..D).map(|k| t[k])))
+}
+
+/// Iterates t ← T(t), extrapolated, on u = W t + q until the residual common to all methods is met.
+fn fixed_point<const D: usize>(
+    solver: &'static str,
+    problem: &ContactProblem<D>,
+    form: &Delassus<D>,
+    start: DVector<f64>,
+    tolerance: Tolerance,
+    map: impl Fn(&DVector<f64>) -> Vec<Local<D>>,
+) -> Result<ContactSolution<D>, ContactError> {
+    let mut anderson = Anderson::default();
+    let mut t = start;
+    let mut iterations = 0;
+    loop {
+        let image = map(&t);
+        let stacked = stack(&image);
+        let u = split::<D>(&(&form.operator * &stacked + &form.free));
+        let residual = problem.residual(&u, &image);
+        let target = tolerance.relative * problem.force_scale(&image);
+        let target = target.max(problem.rounding(&u));
+        if residual <= target {
+            let status = problem.statuses(&u, &image);
+            return Ok(ContactSolution {
+                irreversible: u.clone(),
+                displacement: u,
+                force: image,
+                status,
+                iterations,
+                residual,
+            });
+        }
+        if iterations >= tolerance.iterations {
+            return Err(ContactError::NotConverged { solver, iterations, residual, tolerance: target });
+        }
+        iterations += 1;
+        t = anderson.next(&t, stacked);
+    }
 }

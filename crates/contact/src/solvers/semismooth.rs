@@ -1,6 +1,6 @@
 //! Semismooth Newton method on the natural map; not a regularisation: its zeros are the law.
 
-use super::{ContactSolution, ContactSolver, GaussSeidel, Tolerance};
+use super::{ContactSolution, ContactSolver, GaussSeidel, Tolerance, stack};
 use crate::{ContactError, ContactProblem};
 use moreau_laws::Local;
 use nalgebra::{DMatrix, DVector, SMatrix};
@@ -73,7 +73,8 @@ pub(super) fn newton<const D: usize>(
         let mut now = newton.iterate(start.clone());
         for _ in 0..ATTEMPT {
             // The residual grows with α, at most in proportion: this bounds it for the common α.
-            if now.residual <= newton.part * tolerance.relative * problem.force_scale(&now.t) {
+            let target = newton.part * tolerance.relative * problem.force_scale(&now.t);
+            if now.residual <= target.max(problem.rounding(&now.u)) {
                 return Ok(newton.solution(now, iterations));
             }
             if iterations >= tolerance.iterations {
@@ -93,10 +94,9 @@ pub(super) fn newton<const D: usize>(
         }
         part += 1;
         // When all have stalled, sweeps find the statuses; where no inverse exists there are none.
-        let exact = compliance.iter().all(|c| c.norm() == 0.0);
-        if part % PARTS.len() == 0 && exact {
-            if let Ok(swept) = GaussSeidel::sweeps(problem, &now.t, 200) {
-                start = swept.displacement;
+        if part % PARTS.len() == 0 {
+            if let Ok(u) = newton.sweep(&now.t) {
+                start = u;
             }
         } else if part == 1 && iterations < 2 {
             return Err(ContactError::Singular);
@@ -136,6 +136,28 @@ impl<const D: usize> Newton<'_, D> {
         let energy = |(i, g): (usize, &Local<D>)| g.norm_squared() / self.alpha(i);
         let merit = map.iter().enumerate().map(energy).sum();
         Iterate { u, t, irreversible, map, residual, merit }
+    }
+
+    /// Displacements after Gauss–Seidel sweeps, with the springs in series with the structure.
+    fn sweep(&self, t: &[Local<D>]) -> Result<Vec<Local<D>>, ContactError> {
+        let p = self.problem;
+        let mut form = p.delassus("Gauss-Seidel")?;
+        let spring = |i: usize, t: &Local<D>| {
+            let mut origin = p.previous()[i];
+            origin[0] = 0.0;
+            self.compliance[i].component_mul(&(t - origin))
+        };
+        for (i, compliance) in self.compliance.iter().enumerate() {
+            let rest = spring(i, &Local::zeros());
+            for k in 0..D {
+                form.operator[(D * i + k, D * i + k)] += compliance[k];
+                form.free[D * i + k] += rest[k];
+            }
+        }
+        let tolerance = Tolerance { relative: 1e-8, iterations: 2000 };
+        let swept = GaussSeidel { tolerance }.sweeps(p, &form, stack(t))?;
+        let displacement = |(i, v): (usize, &Local<D>)| v - spring(i, &swept.force[i]);
+        Ok(swept.displacement.iter().enumerate().map(displacement).collect())
     }
 
     /// The next iterate: a Newton step, halved until the map decreases; `None` if it does not or

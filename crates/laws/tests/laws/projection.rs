@@ -129,6 +129,11 @@ fn extreme_magnitudes() -> Result<(), LawError> {
             }
         }
     }
+    // An immense friction keeps the tangential force.
+    for mu in [1e160, 1e300] {
+        let p = Coulomb::new(mu)?.project(&Vector2::new(-1.0, 3.0));
+        assert_relative_eq!(p, Vector2::new(0.0, 3.0), epsilon = 1e-15);
+    }
     // The lateral branch at both ends of the range.
     let law = Coulomb::new(0.5)?;
     for size in [1e-300, 1e300] {

@@ -1,0 +1,98 @@
+//! Anderson's extrapolation of a fixed-point iteration; it knows nothing of contact.
+
+use nalgebra::{DMatrix, DVector};
+use std::collections::VecDeque;
+
+/// Differences of earlier iterates that are kept.
+const MEMORY: usize = 20;
+
+/// Growth of the residual over the best so far at which the extrapolation is forgotten.
+const GROWTH: f64 = 10.0;
+
+/// Extrapolates x ← T(x): the combination of the last iterates whose residual T(x) − x is least
+/// (D. G. Anderson, J. ACM 12, 1965). On a map that is piecewise affine, such as a projection with
+/// its statuses settled, it converges like a Krylov method.
+#[derive(Debug, Default)]
+pub(super) struct Anderson {
+    /// Differences of iterates' images and of their residuals, oldest first.
+    images: VecDeque<DVector<f64>>,
+    residuals: VecDeque<DVector<f64>>,
+    last: Option<(DVector<f64>, DVector<f64>)>,
+    /// Image with the smallest residual since the last restart, and that residual.
+    best: Option<(DVector<f64>, f64)>,
+}
+
+impl Anderson {
+    /// The next iterate, from an iterate and its image under T.
+    pub(super) fn next(&mut self, x: &DVector<f64>, image: DVector<f64>) -> DVector<f64> {
+        let residual = &image - x;
+        let size = residual.norm();
+        match &self.best {
+            Some((safe, best)) if size > GROWTH * best || !size.is_finite() => {
+                // The map has changed its branch: what was learnt is worth nothing.
+                let safe = safe.clone();
+                *self = Self::default();
+                return safe;
+            }
+            Some((_, best)) if size >= *best => {}
+            _ => self.best = Some((image.clone(), size)),
+        }
+        if let Some((last_image, last_residual)) = &self.last {
+            self.images.push_back(&image - last_image);
+            self.residuals.push_back(&residual - last_residual);
+            if self.images.len() > MEMORY.min(image.len()) {
+                self.images.pop_front();
+                self.residuals.pop_front();
+            }
+        }
+        let mut next = image.clone();
+        if let Some(weights) = self.weights(&residual) {
+            for (w, d) in weights.iter().zip(&self.images) {
+                next.axpy(-w, d, 1.0);
+            }
+        }
+        self.last = Some((image, residual));
+        next
+    }
+
+    /// Least-squares weights of the differences; `None` without differences or without rank.
+    fn weights(&mut self, residual: &DVector<f64>) -> Option<DVector<f64>> {
+        while !self.residuals.is_empty() {
+            let columns: Vec<DVector<f64>> = self.residuals.iter().cloned().collect();
+            let qr = DMatrix::from_columns(&columns).qr();
+            let r = qr.r();
+            let diagonal = r.diagonal();
+            // Old differences become dependent on new ones near the solution.
+            if diagonal.iter().all(|d| d.abs() > 1e-10 * diagonal.amax()) {
+                let projected = qr.q().tr_mul(residual);
+                return r.solve_upper_triangular(&projected);
+            }
+            self.residuals.pop_front();
+            self.images.pop_front();
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_affine_map_is_solved_in_as_many_steps_as_unknowns() {
+        let n = 12;
+        let a = DMatrix::from_fn(n, n, |i, j| {
+            let coupling = 0.02 * ((i * 5 + j * 3) as f64).sin();
+            if i == j { 0.999 - 0.04 * i as f64 } else { coupling }
+        });
+        let b = DVector::from_fn(n, |i, _| 1.0 + i as f64);
+        let exact = (DMatrix::identity(n, n) - &a).lu().solve(&b).expect("regular");
+        let mut anderson = Anderson::default();
+        let mut x = DVector::zeros(n);
+        for _ in 0..n + 6 {
+            let image = &a * &x + &b;
+            x = anderson.next(&x, image);
+        }
+        assert!((&x - &exact).norm() < 1e-8 * exact.norm(), "{}", (x - &exact).norm());
+    }
+}
