@@ -1,6 +1,6 @@
 //! Semismooth Newton method on the natural map; not a regularisation: its zeros are the law.
 
-use super::{ContactSolution, ContactSolver, GaussSeidel, Tolerance, stack};
+use super::{ContactSolution, ContactSolver, GaussSeidel, Tolerance, Uzawa, stack};
 use crate::{ContactError, ContactProblem};
 use moreau_laws::Local;
 use nalgebra::{DMatrix, DVector, SMatrix};
@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector, SMatrix};
 /// It works on S, not on its inverse, so that it also treats bodies which only contact holds.
 /// The map is piecewise smooth and, once the statuses are right, almost linear: it ends after a
 /// handful of iterations. Steps are damped on the norm of the map; where that stalls, another α
-/// is tried, which moves the kinks and not the zeros, and then Gauss–Seidel sweeps.
+/// is tried, which moves the kinks and not the zeros, and then sweeps of the other methods.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SemismoothNewton {
     /// When to stop.
@@ -95,7 +95,10 @@ pub(super) fn newton<const D: usize>(
         part += 1;
         // When all have stalled, sweeps find the statuses; where no inverse exists there are none.
         if part % PARTS.len() == 0 {
-            if let Ok(u) = newton.sweep(&now.t) {
+            // From where Newton got to, and the next time from nothing.
+            let first = part == PARTS.len();
+            let from = if first { now.t } else { vec![Local::zeros(); now.t.len()] };
+            if let Ok(u) = newton.sweep(&from) {
                 start = u;
             }
         } else if part == 1 && iterations < 2 {
@@ -138,7 +141,7 @@ impl<const D: usize> Newton<'_, D> {
         Iterate { u, t, irreversible, map, residual, merit }
     }
 
-    /// Displacements after Gauss–Seidel sweeps, with the springs in series with the structure.
+    /// Displacements after sweeps of another method, with the springs in series with the structure.
     fn sweep(&self, t: &[Local<D>]) -> Result<Vec<Local<D>>, ContactError> {
         let p = self.problem;
         let mut form = p.delassus("Gauss-Seidel")?;
@@ -154,8 +157,11 @@ impl<const D: usize> Newton<'_, D> {
                 form.free[D * i + k] += rest[k];
             }
         }
-        let tolerance = Tolerance { relative: 1e-8, iterations: 2000 };
-        let swept = GaussSeidel { tolerance }.sweeps(p, &form, stack(t))?;
+        let tolerance = Tolerance { relative: 1e-8, iterations: 5000 };
+        // Where sweeps cycle, which takes a large friction, corrections may not, and conversely.
+        let swept = GaussSeidel { tolerance }
+            .sweeps(p, &form, stack(t))
+            .or_else(|_| Uzawa { tolerance }.corrections(p, &form, stack(t)))?;
         let displacement = |(i, v): (usize, &Local<D>)| v - spring(i, &swept.force[i]);
         Ok(swept.displacement.iter().enumerate().map(displacement).collect())
     }

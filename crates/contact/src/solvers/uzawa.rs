@@ -2,7 +2,7 @@
 
 use super::{ContactSolution, ContactSolver, Tolerance, fixed_point, stack};
 use crate::problem::split;
-use crate::{ContactError, ContactProblem};
+use crate::{ContactError, ContactProblem, Delassus};
 use moreau_laws::Local;
 use nalgebra::{DMatrix, DVector};
 
@@ -31,8 +31,20 @@ impl<const D: usize> ContactSolver<D> for Uzawa {
         guess: Option<&ContactSolution<D>>,
     ) -> Result<ContactSolution<D>, ContactError> {
         let form = problem.delassus("Uzawa")?;
-        let alpha = steps::<D>(problem, &form.operator);
         let start = guess.map_or_else(|| DVector::zeros(form.free.len()), |g| stack(&g.force));
+        self.corrections(problem, &form, start)
+    }
+}
+
+impl Uzawa {
+    /// Solves u = W t + q for a form that need not be that of the problem.
+    pub(super) fn corrections<const D: usize>(
+        &self,
+        problem: &ContactProblem<D>,
+        form: &Delassus<D>,
+        start: DVector<f64>,
+    ) -> Result<ContactSolution<D>, ContactError> {
+        let alpha = steps::<D>(problem, &form.operator);
         let correct = |t: &DVector<f64>| -> Vec<Local<D>> {
             let u = split::<D>(&(&form.operator * t + &form.free));
             let t = split::<D>(t);
@@ -42,7 +54,7 @@ impl<const D: usize> ContactSolver<D> for Uzawa {
             };
             (0..t.len()).map(corrected).collect()
         };
-        fixed_point("Uzawa", problem, &form, start, self.tolerance, correct)
+        fixed_point("Uzawa", problem, form, start, self.tolerance, correct)
     }
 }
 
