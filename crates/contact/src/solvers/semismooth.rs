@@ -98,11 +98,11 @@ pub(super) fn newton<const D: usize>(
             // From where Newton got to, and the next time from nothing.
             let first = part == PARTS.len();
             let from = if first { now.t } else { vec![Local::zeros(); now.t.len()] };
-            if let Ok(u) = newton.sweep(&from) {
-                start = u;
+            match newton.sweep(&from) {
+                Ok(u) => start = u,
+                Err(ContactError::Floating { .. }) => return Err(ContactError::Singular),
+                Err(_) => {}
             }
-        } else if part == 1 && iterations < 2 {
-            return Err(ContactError::Singular);
         }
     }
 }
@@ -157,7 +157,7 @@ impl<const D: usize> Newton<'_, D> {
                 form.free[D * i + k] += rest[k];
             }
         }
-        let tolerance = Tolerance { relative: 1e-8, iterations: 5000 };
+        let tolerance = Tolerance { relative: 1e-8, iterations: 20_000 };
         // Where sweeps cycle, which takes a large friction, corrections may not, and conversely.
         let swept = GaussSeidel { tolerance }
             .sweeps(p, &form, stack(t))
