@@ -406,9 +406,7 @@ impl<const D: usize> Driver<D> {
         let mut system = System::new(&self.mesh, &self.blocks, fixed, &interface)?;
         let zero = vec![0.0; dofs];
         system.assemble(&mut self.blocks, &zero, &zero, Stiffness::Elastic);
-        if self.settings.nesting == Nesting::Inside {
-            system.set_shift();
-        }
+        system.scale(self.settings.nesting == Nesting::Inside);
         Ok(system)
     }
 

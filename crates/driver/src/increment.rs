@@ -89,7 +89,8 @@ impl<const D: usize> Driver<D> {
             if counts.newton > 0 {
                 counts.residuals.push(out_of_balance);
             }
-            let balanced = now.full && out_of_balance <= self.settings.tolerance * scale;
+            let target = self.target(system, scale, &now.d_u);
+            let balanced = now.full && out_of_balance <= target;
             if balanced
                 && let Some(s) = solution.take_if(|s| self.law_holds(system, &kinematics, s, scale))
             {
@@ -105,7 +106,7 @@ impl<const D: usize> Driver<D> {
                 return Ok(self.commit(start, end, candidate));
             }
             if counts.newton >= self.settings.iterations || !out_of_balance.is_finite() {
-                return Err(self.not_converged(&free, &residual, counts.newton, scale));
+                return Err(self.not_converged(&free, &residual, counts.newton, target));
             }
             counts.newton += 1;
 
@@ -189,6 +190,13 @@ impl<const D: usize> Driver<D> {
         let d_u = along(s);
         let assembly = system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent);
         (Iterate { d_u, assembly, contact: between(s), full: false }, true)
+    }
+
+    /// Out-of-balance force at which an increment is accepted [N]: the tolerance, or the rounding
+    /// of internal forces where the body moves almost rigidly.
+    pub(crate) fn target(&self, system: &System, scale: f64, d_u: &[f64]) -> f64 {
+        let rounding = 64.0 * f64::EPSILON * system.stiffest() * largest(d_u.iter().copied());
+        (self.settings.tolerance * scale).max(rounding)
     }
 
     pub(crate) fn factorise(
@@ -316,7 +324,7 @@ impl<const D: usize> Driver<D> {
         free: &[usize],
         residual: &[f64],
         iterations: usize,
-        scale: f64,
+        target: f64,
     ) -> StepError {
         let mut force = vec![0.0; self.mesh.nodes().len()];
         for (&dof, r) in free.iter().zip(residual) {
@@ -336,7 +344,7 @@ impl<const D: usize> Driver<D> {
         StepError::NotConverged {
             iterations,
             out_of_balance: largest(residual.iter().copied()),
-            tolerance: self.settings.tolerance * scale,
+            tolerance: target,
             worst,
             plastic_fraction: self.plastic_fraction(),
         }

@@ -47,6 +47,7 @@ impl<const D: usize> Driver<D> {
                 .map_err(contact)?;
         let mut alpha = uzawa_steps(&condensation.problem).map_err(contact)?;
         let common: Vec<f64> = (0..t.len()).map(|i| condensation.problem.alpha(i)).collect();
+        let mut left = f64::INFINITY;
         let mut before: Option<(Vec<Local<D>>, Vec<Local<D>>)> = None;
         for _ in 0..iterations {
             let kinematics = self.kinematics(system, start, end, &now.d_u);
@@ -64,6 +65,7 @@ impl<const D: usize> Driver<D> {
                 .map(|i| law(i).natural_map(&u[i], &t[i], common[i]).norm())
                 .fold(0.0, f64::max);
             counts.contact += 1;
+            left = residual;
             if residual <= tolerance * scale {
                 counts.factorisations = system.factorisations - factorisations;
                 let status =
@@ -110,7 +112,7 @@ impl<const D: usize> Driver<D> {
         let solution = ContactError::NotConverged {
             solver: "Uzawa around the nonlinear solve",
             iterations,
-            residual: f64::NAN,
+            residual: left,
             tolerance: tolerance * force_scale(&now.assembly, end, &now.contact),
         };
         Err(contact(solution))
@@ -134,7 +136,7 @@ impl<const D: usize> Driver<D> {
             let scale = force_scale(&now.assembly, end, &now.contact);
             let complete = missing.iter().all(|&m| m == 0.0);
             let worst = largest(residual.iter().copied());
-            if complete && worst <= self.settings.tolerance * scale {
+            if complete && worst <= self.target(system, scale, &now.d_u) {
                 return Ok(now);
             }
             if !worst.is_finite() {
@@ -156,7 +158,7 @@ impl<const D: usize> Driver<D> {
             .iter()
             .map(|&d| end.force[d] + now.contact[d] - now.assembly.internal[d])
             .collect();
-        let scale = force_scale(&now.assembly, end, &now.contact);
-        Err(self.not_converged(free, &residual, self.settings.iterations, scale))
+        let target = self.target(system, force_scale(&now.assembly, end, &now.contact), &now.d_u);
+        Err(self.not_converged(free, &residual, self.settings.iterations, target))
     }
 }

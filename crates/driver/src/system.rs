@@ -28,6 +28,7 @@ pub(crate) struct System {
     scatter: Vec<Scatter>,
     values: Vec<f64>,
     shift: f64,
+    stiffest: f64,
     cholesky: Cholesky,
     /// Whether the factor held is that of the elastic stiffness.
     elastic_factor: bool,
@@ -127,6 +128,7 @@ impl System {
             scatter,
             values,
             shift: 0.0,
+            stiffest: 0.0,
             cholesky,
             elastic_factor: false,
             factorisations: 0,
@@ -210,13 +212,19 @@ impl System {
         Assembly { internal, coupling, flows }
     }
 
-    /// Chooses σ: the largest diagonal of the assembled (elastic) stiffness on the interface.
-    pub(crate) fn set_shift(&mut self) {
+    /// Learns the size of the assembled (elastic) stiffness, and chooses σ: its largest diagonal
+    /// on the interface, or zero if the bodies must be held without it.
+    pub(crate) fn scale(&mut self, shifted: bool) {
         let first = self.size() - self.interface;
         let pattern = self.cholesky.pattern();
-        self.shift = (first..self.size())
-            .map(|p| self.values[pattern.range(p as u32).start])
-            .fold(0.0, f64::max);
+        let diagonal = |p: usize| self.values[pattern.range(p as u32).start];
+        self.stiffest = (0..self.size()).map(diagonal).fold(0.0, f64::max);
+        self.shift = if shifted { (first..self.size()).map(diagonal).fold(0.0, f64::max) } else { 0.0 };
+    }
+
+    /// Largest diagonal of the elastic stiffness [N/mm].
+    pub(crate) fn stiffest(&self) -> f64 {
+        self.stiffest
     }
 
     /// Factorises the assembled K + σE, unless the factor held is already that of the elastic
