@@ -1,8 +1,16 @@
-//! The cases of `cargo xtask verify`, in the order of the report.
+//! The cases of `cargo xtask verify`, in the order of the report; one file each.
+
+mod algorithms;
+mod block;
+mod compare;
+mod penalty;
+mod prandtl;
+
+pub use compare::{History, record};
 
 use crate::Case;
 
 /// All cases.
 pub fn all() -> Vec<Case> {
-    vec![]
+    vec![prandtl::CASE, block::CASE, penalty::CASE, algorithms::CASE]
 }

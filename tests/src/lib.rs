@@ -3,5 +3,7 @@
 
 pub mod cases;
 pub mod outcome;
+pub mod paper;
+pub mod problems;
 
 pub use outcome::{Case, Check, Figure, Kind, Options, Outcome, Table};

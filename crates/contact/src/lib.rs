@@ -31,5 +31,6 @@ pub use error::ContactError;
 pub use obstacle::{Ball, Obstacle, Plane, frame};
 pub use problem::{Certificate, ContactProblem, Delassus};
 pub use solvers::{
-    ContactSolution, ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Tolerance, Uzawa, uzawa_steps,
+    ContactSolution, ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Tolerance, Uzawa,
+    uzawa_steps,
 };

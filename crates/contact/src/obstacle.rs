@@ -36,7 +36,10 @@ impl<const D: usize> Plane<D> {
             });
         }
         finite("point of the plane", &point)?;
-        Ok(Self { point, normal: normal / length })
+        Ok(Self {
+            point,
+            normal: normal / length,
+        })
     }
 }
 
@@ -73,12 +76,19 @@ impl<const D: usize> Ball<D> {
             });
         }
         finite("center", &center)?;
-        Ok(Self { center, radius, hollow: false })
+        Ok(Self {
+            center,
+            radius,
+            hollow: false,
+        })
     }
 
     /// The same surface around a hollow: the body is inside.
     pub fn hollow(self) -> Self {
-        Self { hollow: true, ..self }
+        Self {
+            hollow: true,
+            ..self
+        }
     }
 
     fn side(&self) -> f64 {
@@ -106,9 +116,11 @@ fn axis<const D: usize>(k: usize) -> SVector<f64, D> {
 
 fn finite<const D: usize>(what: &'static str, x: &SVector<f64, D>) -> Result<(), ContactError> {
     match x.iter().find(|v| !v.is_finite()) {
-        Some(&value) => {
-            Err(ContactError::OutOfRange { what, value, expected: "finite coordinates" })
-        }
+        Some(&value) => Err(ContactError::OutOfRange {
+            what,
+            value,
+            expected: "finite coordinates",
+        }),
         None => Ok(()),
     }
 }
@@ -148,7 +160,10 @@ mod tests {
         let h = 1e-4;
         let ahead = obstacle.distance(&(x + n * h));
         let behind = obstacle.distance(&(x - n * h));
-        assert!(((ahead - behind) / (2.0 * h) - 1.0).abs() < 1e-8, "normal is not the gradient");
+        assert!(
+            ((ahead - behind) / (2.0 * h) - 1.0).abs() < 1e-8,
+            "normal is not the gradient"
+        );
     }
 
     proptest! {

@@ -81,7 +81,11 @@ impl<const D: usize> ContactProblem<D> {
             ("previous", previous.len(), contacts),
         ] {
             if found != expected {
-                return Err(ContactError::Dimension { what, found, expected });
+                return Err(ContactError::Dimension {
+                    what,
+                    found,
+                    expected,
+                });
             }
         }
         let finite = |all: &[Local<D>]| all.iter().flat_map(|v| v.iter()).all(|v| v.is_finite());
@@ -95,7 +99,13 @@ impl<const D: usize> ContactProblem<D> {
                 return Err(ContactError::NotFinite { what });
             }
         }
-        Ok(Self { stiffness, load, origin, friction, previous })
+        Ok(Self {
+            stiffness,
+            load,
+            origin,
+            friction,
+            previous,
+        })
     }
 
     /// A problem given in the form u = W t + q of discrete frictional contact; t₀ = 0.
@@ -117,7 +127,13 @@ impl<const D: usize> ContactProblem<D> {
         }
         let stiffness = inverse(operator, "the Delassus form")?;
         let zero = vec![Local::zeros(); friction.len()];
-        Self::new(stiffness, DVector::zeros(size), free.to_vec(), friction, zero)
+        Self::new(
+            stiffness,
+            DVector::zeros(size),
+            free.to_vec(),
+            friction,
+            zero,
+        )
     }
 
     /// Number of contacts.
@@ -149,7 +165,9 @@ impl<const D: usize> ContactProblem<D> {
     pub fn force(&self, u: &[Local<D>]) -> Vec<Local<D>> {
         let relative = DVector::from_iterator(
             self.load.len(),
-            u.iter().zip(&self.origin).flat_map(|(u, g)| (0..D).map(move |k| u[k] - g[k])),
+            u.iter()
+                .zip(&self.origin)
+                .flat_map(|(u, g)| (0..D).map(move |k| u[k] - g[k])),
         );
         split(&(&self.stiffness * relative - &self.load))
     }
@@ -172,26 +190,41 @@ impl<const D: usize> ContactProblem<D> {
     /// Parameter α of [90′] for contact i [N/mm]: the mean stiffness of its own components, so
     /// that a residual in newtons weighs gaps and forces alike in any system of units.
     pub fn alpha(&self, i: usize) -> f64 {
-        (0..D).map(|k| self.stiffness[(D * i + k, D * i + k)]).sum::<f64>() / D as f64
+        (0..D)
+            .map(|k| self.stiffness[(D * i + k, D * i + k)])
+            .sum::<f64>()
+            / D as f64
     }
 
     /// Largest norm over the contacts of the natural map t − proj(t − α ũ), [90′] [N].
     pub fn residual(&self, u: &[Local<D>], t: &[Local<D>]) -> f64 {
         (0..self.contacts())
-            .map(|i| self.friction[i].natural_map(&u[i], &t[i], self.alpha(i)).norm())
+            .map(|i| {
+                self.friction[i]
+                    .natural_map(&u[i], &t[i], self.alpha(i))
+                    .norm()
+            })
             .fold(0.0, f64::max)
     }
 
     /// Size of the forces in play, against which a residual is judged [N]: the largest of the
     /// forces, of the condensed load and of the force that would close the largest gap.
     pub fn force_scale(&self, t: &[Local<D>]) -> f64 {
-        let forces = t.iter().chain(&self.previous).map(|t| t.norm()).fold(0.0, f64::max);
+        let forces = t
+            .iter()
+            .chain(&self.previous)
+            .map(|t| t.norm())
+            .fold(0.0, f64::max);
         forces.max(self.load.amax()).max(f64::MIN_POSITIVE)
     }
 
     /// Rounding of the forces S (u − g) − f [N]: no residual can be expected below it.
     pub fn rounding(&self, u: &[Local<D>]) -> f64 {
-        let reach = u.iter().zip(&self.origin).map(|(u, g)| (u - g).amax()).fold(0.0, f64::max);
+        let reach = u
+            .iter()
+            .zip(&self.origin)
+            .map(|(u, g)| (u - g).amax())
+            .fold(0.0, f64::max);
         let stiffest = self.stiffness.diagonal().amax();
         let terms = (self.load.len() as f64).sqrt();
         4.0 * f64::EPSILON * terms * (stiffest * reach + self.load.amax())
@@ -207,7 +240,10 @@ impl<const D: usize> ContactProblem<D> {
 
 /// Splits a vector of all components into contacts.
 pub(crate) fn split<const D: usize>(all: &DVector<f64>) -> Vec<Local<D>> {
-    all.as_slice().chunks_exact(D).map(Local::from_column_slice).collect()
+    all.as_slice()
+        .chunks_exact(D)
+        .map(Local::from_column_slice)
+        .collect()
 }
 
 /// Inverse of a symmetric positive definite matrix.
@@ -218,10 +254,14 @@ fn inverse(a: DMatrix<f64>, solver: &'static str) -> Result<DMatrix<f64>, Contac
         Some(factor) if factor.l_dirty().diagonal().amin().powi(2) > 1e-13 * scale => {
             Ok(factor.inverse())
         }
-        Some(factor) => {
-            Err(ContactError::Floating { solver, component: factor.l_dirty().diagonal().imin() })
-        }
-        None => Err(ContactError::Floating { solver, component: a.diagonal().imin() }),
+        Some(factor) => Err(ContactError::Floating {
+            solver,
+            component: factor.l_dirty().diagonal().imin(),
+        }),
+        None => Err(ContactError::Floating {
+            solver,
+            component: a.diagonal().imin(),
+        }),
     }
 }
 
@@ -251,16 +291,31 @@ mod tests {
     fn certificate_is_zero_on_the_law_and_counts_what_is_lost() {
         let law = [coulomb(0.5)];
         // Slip against the force: b_c = t·(−u).
-        let exact = Certificate::new(&law, &[Local::<2>::new(0.0, -0.1)], &[Local::<2>::new(2.0, 1.0)]);
+        let exact = Certificate::new(
+            &law,
+            &[Local::<2>::new(0.0, -0.1)],
+            &[Local::<2>::new(2.0, 1.0)],
+        );
         assert!(exact.bipotential_gap.abs() < 1e-15 && exact.penetration == 0.0);
         // Slip along the force dissipates a negative power: the gap is 2 μ t_n |u_t|.
-        let wrong = Certificate::new(&law, &[Local::<2>::new(0.0, 0.1)], &[Local::<2>::new(2.0, 1.0)]);
+        let wrong = Certificate::new(
+            &law,
+            &[Local::<2>::new(0.0, 0.1)],
+            &[Local::<2>::new(2.0, 1.0)],
+        );
         assert!((wrong.bipotential_gap - 0.2).abs() < 1e-15);
         // An open gap under load: t_n u_n.
-        let open = Certificate::new(&law, &[Local::<2>::new(0.3, 0.0)], &[Local::<2>::new(2.0, 0.0)]);
+        let open = Certificate::new(
+            &law,
+            &[Local::<2>::new(0.3, 0.0)],
+            &[Local::<2>::new(2.0, 0.0)],
+        );
         assert!((open.bipotential_gap - 0.6).abs() < 1e-15);
-        let outside =
-            Certificate::new(&law, &[Local::<2>::new(-0.3, 0.0)], &[Local::<2>::new(-1.0, 0.0)]);
+        let outside = Certificate::new(
+            &law,
+            &[Local::<2>::new(-0.3, 0.0)],
+            &[Local::<2>::new(-1.0, 0.0)],
+        );
         assert_eq!((outside.penetration, outside.excess_force), (0.3, 1.0));
     }
 
@@ -277,10 +332,23 @@ mod tests {
             Err(ContactError::NotFinite { what: "load" })
         ));
         assert!(matches!(
-            new(DMatrix::identity(3, 3), f.clone(), zero.clone(), one.clone(), zero.clone()),
-            Err(ContactError::Dimension { found: 3, expected: 2, .. })
+            new(
+                DMatrix::identity(3, 3),
+                f.clone(),
+                zero.clone(),
+                one.clone(),
+                zero.clone()
+            ),
+            Err(ContactError::Dimension {
+                found: 3,
+                expected: 2,
+                ..
+            })
         ));
         let singular = new(DMatrix::zeros(2, 2), f, zero.clone(), one, zero).expect("valid");
-        assert!(matches!(singular.delassus("test"), Err(ContactError::Floating { .. })));
+        assert!(matches!(
+            singular.delassus("test"),
+            Err(ContactError::Floating { .. })
+        ));
     }
 }

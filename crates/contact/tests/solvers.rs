@@ -24,10 +24,16 @@ fn problem<const D: usize>(w: DMatrix<f64>, q: &[Local<D>], mu: f64) -> ContactP
 fn assert_solves<const D: usize>(problem: &ContactProblem<D>, solution: &ContactSolution<D>) {
     let scale = problem.force_scale(&solution.force);
     let residual = problem.residual(&solution.displacement, &solution.force);
-    assert!(residual <= 1e-9 * scale, "residual {residual} N at forces of {scale} N");
+    assert!(
+        residual <= 1e-9 * scale,
+        "residual {residual} N at forces of {scale} N"
+    );
     let asked = problem.force(&solution.displacement);
     for (t, asked) in solution.force.iter().zip(&asked) {
-        assert!((t - asked).norm() <= 1e-8 * scale, "force {t} against structure {asked}");
+        assert!(
+            (t - asked).norm() <= 1e-8 * scale,
+            "force {t} against structure {asked}"
+        );
     }
 }
 
@@ -38,20 +44,43 @@ fn one_coupled_contact_in_space() {
     let w = DMatrix::from_iterator(3, 3, w.iter().copied());
     let v = Local::<3>::new;
     let cases = [
-        (v(-1.0, 0.5, -0.3), 0.3, v(1.0715348565, -0.2720533, 0.1712420), v(0.0, 0.5052264, -0.3180110)),
-        (v(-1.0, 0.05, -0.03), 0.3, v(1.0711995704, -0.2653838, 0.1812280), v(0.0, 0.0609942, -0.0416524)),
+        (
+            v(-1.0, 0.5, -0.3),
+            0.3,
+            v(1.0715348565, -0.2720533, 0.1712420),
+            v(0.0, 0.5052264, -0.3180110),
+        ),
+        (
+            v(-1.0, 0.05, -0.03),
+            0.3,
+            v(1.0711995704, -0.2653838, 0.1812280),
+            v(0.0, 0.0609942, -0.0416524),
+        ),
         (v(0.2, 0.5, -0.3), 0.3, v(0.0, 0.0, 0.0), v(0.2, 0.5, -0.3)),
-        (v(-1.0, 2.0, 1.0), 0.9, v(1.1518289669, -0.9576284, -0.3969671), v(0.0, 1.4444147, 0.5987554)),
+        (
+            v(-1.0, 2.0, 1.0),
+            0.9,
+            v(1.1518289669, -0.9576284, -0.3969671),
+            v(0.0, 1.4444147, 0.5987554),
+        ),
     ];
     for (q, mu, force, displacement) in cases {
         let problem = problem(w.clone(), &[q], mu);
         for solver in exact() {
             let s = solver.solve(&problem, None).expect("solvable");
-            assert!((s.force[0] - force).norm() < 1e-7, "{solver:?}: {}", s.force[0]);
+            assert!(
+                (s.force[0] - force).norm() < 1e-7,
+                "{solver:?}: {}",
+                s.force[0]
+            );
             assert!((s.force[0][0] - force[0]).abs() < 1e-8);
             assert!((s.displacement[0] - displacement).norm() < 1e-7);
             assert!(s.certificate(&problem).bipotential_gap.abs() < 1e-9);
-            let expected = if force.norm() == 0.0 { Status::Open } else { Status::Slip };
+            let expected = if force.norm() == 0.0 {
+                Status::Open
+            } else {
+                Status::Slip
+            };
             assert_eq!(s.status[0], expected);
         }
     }
@@ -71,13 +100,18 @@ fn klarbring_below_the_critical_friction() {
     ];
     for ((f_t, f_n), (u_t, u_n, r_t, r_n)) in cases {
         let load = DVector::from_row_slice(&[f_n, f_t]);
-        let problem =
-            ContactProblem::new(k.clone(), load, zero.clone(), law.clone(), zero.clone())
-                .expect("valid");
+        let problem = ContactProblem::new(k.clone(), load, zero.clone(), law.clone(), zero.clone())
+            .expect("valid");
         for solver in exact() {
             let s = solver.solve(&problem, None).expect("solvable");
-            assert!((s.displacement[0] - Local::<2>::new(u_n, u_t)).norm() < 1e-9, "{solver:?}");
-            assert!((s.force[0] - Local::<2>::new(r_n, r_t)).norm() < 1e-9, "{solver:?}");
+            assert!(
+                (s.displacement[0] - Local::<2>::new(u_n, u_t)).norm() < 1e-9,
+                "{solver:?}"
+            );
+            assert!(
+                (s.force[0] - Local::<2>::new(r_n, r_t)).norm() < 1e-9,
+                "{solver:?}"
+            );
         }
     }
 }
@@ -101,7 +135,9 @@ fn agree<const D: usize>(w: DMatrix<f64>, q: &[f64], mu: f64) -> Result<(), Test
             .map_err(|e| TestCaseError::fail(format!("{solver:?}: {e}")))?;
         assert_solves(&problem, &solution);
         let certificate = solution.certificate(&problem);
-        prop_assert!(certificate.bipotential_gap.abs() < 1e-8 * (1.0 + problem.force_scale(&solution.force)));
+        prop_assert!(
+            certificate.bipotential_gap.abs() < 1e-8 * (1.0 + problem.force_scale(&solution.force))
+        );
         prop_assert!(certificate.penetration < 1e-8);
         solutions.push(solution);
     }
@@ -188,30 +224,58 @@ fn mixed() -> ContactProblem<2> {
     let n = 12;
     let w = DMatrix::from_fn(n, n, |i, j| {
         let decay = (-((i / 2) as f64 - (j / 2) as f64).abs()).exp();
-        if i == j { 1.2 } else if (i + j) % 2 == 0 { 0.4 * decay } else { 0.05 * decay }
+        if i == j {
+            1.2
+        } else if (i + j) % 2 == 0 {
+            0.4 * decay
+        } else {
+            0.05 * decay
+        }
     });
-    let q: Vec<_> = [(-1.0, 0.02), (-0.8, 0.5), (0.6, 0.3), (-0.7, -0.4), (0.9, 0.0), (-0.5, 0.01)]
-        .iter()
-        .map(|&(n, t)| Local::<2>::new(n, t))
-        .collect();
+    let q: Vec<_> = [
+        (-1.0, 0.02),
+        (-0.8, 0.5),
+        (0.6, 0.3),
+        (-0.7, -0.4),
+        (0.9, 0.0),
+        (-0.5, 0.01),
+    ]
+    .iter()
+    .map(|&(n, t)| Local::<2>::new(n, t))
+    .collect();
     problem(w, &q, 0.3)
 }
 
 #[test]
 fn penalty_error_falls_as_one_over_k() {
     let problem = mixed();
-    let exact = SemismoothNewton::default().solve(&problem, None).expect("solvable");
+    let exact = SemismoothNewton::default()
+        .solve(&problem, None)
+        .expect("solvable");
     for status in [Status::Open, Status::Stick, Status::Slip] {
-        assert!(exact.status.contains(&status), "the problem lacks {status:?}");
+        assert!(
+            exact.status.contains(&status),
+            "the problem lacks {status:?}"
+        );
     }
     let error = |k: f64| {
-        let s = Penalty::new(k, k).expect("valid").solve(&problem, None).expect("every k");
+        let s = Penalty::new(k, k)
+            .expect("valid")
+            .solve(&problem, None)
+            .expect("every k");
         let difference = |(a, b): (&Local<2>, &Local<2>)| (a - b).norm();
-        s.force.iter().zip(&exact.force).map(difference).fold(0.0, f64::max)
+        s.force
+            .iter()
+            .zip(&exact.force)
+            .map(difference)
+            .fold(0.0, f64::max)
     };
     for exponent in 2..9 {
         let ratio = error(10f64.powi(exponent)) / error(10f64.powi(exponent + 1));
-        assert!((ratio - 10.0).abs() < 0.5, "1e{exponent}: the error fell {ratio} times");
+        assert!(
+            (ratio - 10.0).abs() < 0.5,
+            "1e{exponent}: the error fell {ratio} times"
+        );
     }
     for exponent in [-2, 0, 12, 16] {
         assert!(error(10f64.powi(exponent)).is_finite());
@@ -223,7 +287,10 @@ fn penalty_error_falls_as_one_over_k() {
 fn lost_energy_of_the_penalty_halves_when_k_doubles() {
     let problem = mixed();
     let lost = |k: f64| {
-        let s = Penalty::new(k, k).expect("valid").solve(&problem, None).expect("every k");
+        let s = Penalty::new(k, k)
+            .expect("valid")
+            .solve(&problem, None)
+            .expect("every k");
         assert!(s.certificate(&problem).bipotential_gap.abs() < 1e-12);
         let energy = |(i, t): (usize, &Local<2>)| t.dot(&(s.irreversible[i] - s.displacement[i]));
         s.force.iter().enumerate().map(energy).sum::<f64>()
@@ -256,14 +323,18 @@ fn newton_treats_a_body_that_only_contact_holds() {
     let spring = 100.0;
     // Two contact nodes tied by a bar along the tangent; free to move and to turn as a whole.
     let mut s = DMatrix::zeros(4, 4);
-    for (i, j, v) in [(1, 1, spring), (3, 3, spring), (1, 3, -spring), (3, 1, -spring)] {
+    for (i, j, v) in [
+        (1, 1, spring),
+        (3, 3, spring),
+        (1, 3, -spring),
+        (3, 1, -spring),
+    ] {
         s[(i, j)] = v;
     }
     let load = DVector::from_row_slice(&[-10.0, 1.0, -10.0, 1.0]);
     let zero = vec![Local::<2>::zeros(); 2];
     let law = vec![Coulomb::new(0.3).expect("valid"); 2];
-    let problem =
-        ContactProblem::new(s, load, zero.clone(), law, zero.clone()).expect("valid");
+    let problem = ContactProblem::new(s, load, zero.clone(), law, zero.clone()).expect("valid");
     let touching = ContactSolution {
         displacement: zero.clone(),
         irreversible: zero,
@@ -272,13 +343,20 @@ fn newton_treats_a_body_that_only_contact_holds() {
         iterations: 0,
         residual: 0.0,
     };
-    let solution =
-        SemismoothNewton::default().solve(&problem, Some(&touching)).expect("solvable");
+    let solution = SemismoothNewton::default()
+        .solve(&problem, Some(&touching))
+        .expect("solvable");
     for t in &solution.force {
         assert!((t - Local::<2>::new(10.0, -1.0)).norm() < 1e-10);
     }
     let refused = Uzawa::default().solve(&problem, None);
-    assert!(matches!(refused, Err(ContactError::Floating { solver: "Uzawa", .. })));
+    assert!(matches!(
+        refused,
+        Err(ContactError::Floating {
+            solver: "Uzawa",
+            ..
+        })
+    ));
 }
 
 #[test]
@@ -287,7 +365,12 @@ fn a_tolerance_that_cannot_be_met_is_an_error_with_numbers() {
     let mut solver = Uzawa::default();
     solver.tolerance.iterations = 3;
     match solver.solve(&problem, None) {
-        Err(ContactError::NotConverged { solver: "Uzawa", iterations: 3, residual, tolerance }) => {
+        Err(ContactError::NotConverged {
+            solver: "Uzawa",
+            iterations: 3,
+            residual,
+            tolerance,
+        }) => {
             assert!(residual > tolerance && residual.is_finite());
         }
         other => panic!("expected NotConverged, got {other:?}"),

@@ -93,6 +93,9 @@ pub trait Block<const D: usize>: Send + Sync {
 /// Cells evaluated before their results are handed on: bounds the memory of the buffers.
 const PANEL: usize = 2048;
 
+/// Cells that are worth a thread.
+const GRAIN: usize = 64;
+
 /// A quadrature point of a cell.
 #[derive(Debug, Clone)]
 struct Point<const D: usize, const N: usize> {
@@ -146,7 +149,11 @@ where
             for p in &rule.points {
                 let at = E::map(&positions, p.xi);
                 let weight = p.weight * at.det * hypothesis.measure(&at.x);
-                points.push(Point { gradient: at.gradient, position: at.x, weight });
+                points.push(Point {
+                    gradient: at.gradient,
+                    position: at.x,
+                    weight,
+                });
             }
         }
         let states = vec![L::State::default(); points.len()];
@@ -198,7 +205,11 @@ where
         let size = N * D;
         let per_cell = self.shapes.len();
         let panel = PANEL.min(self.cells.len());
-        let entries = if stiffness == Stiffness::None { 0 } else { size * size };
+        let entries = if stiffness == Stiffness::None {
+            0
+        } else {
+            size * size
+        };
         self.force.resize(panel * size, 0.0);
         // One entry a cell at least, so that the parallel chunks below stay aligned.
         self.stiffness.resize(panel * entries.max(1), 0.0);
@@ -210,57 +221,74 @@ where
             let range = start * per_cell..(start + count) * per_cell;
             let (points, old) = (&self.points[range.clone()], &self.old[range.clone()]);
             let (nodes, shapes) = (&self.nodes[start..start + count], &self.shapes);
-            flows |= self.force[..count * size]
-                .par_chunks_mut(size)
-                .zip(self.stiffness[..count * entries.max(1)].par_chunks_mut(entries.max(1)))
-                .zip(self.new[range].par_chunks_mut(per_cell))
-                .enumerate()
-                .with_min_len(64)
-                .map(|(k, ((force, matrix), new))| {
-                    let mut flows = false;
-                    force.fill(0.0);
-                    matrix.fill(0.0);
-                    for g in 0..per_cell {
-                        let point = &points[k * per_cell + g];
-                        let operator: [SMatrix<f64, 6, D>; N] = std::array::from_fn(|a| {
-                            H::strain_operator(shapes[g][a], &point.gradient[a], &point.position)
-                        });
-                        let mut d_eps = Sym2::zeros();
-                        for a in 0..N {
-                            let first = D * nodes[k][a];
-                            d_eps += operator[a]
-                                * SVector::<f64, D>::from_column_slice(&d_u[first..first + D]);
+            let cell = |(k, ((force, matrix), new)): (
+                usize,
+                ((&mut [f64], &mut [f64]), &mut [L::State]),
+            )| {
+                let mut flows = false;
+                force.fill(0.0);
+                matrix.fill(0.0);
+                for g in 0..per_cell {
+                    let point = &points[k * per_cell + g];
+                    let operator: [SMatrix<f64, 6, D>; N] = std::array::from_fn(|a| {
+                        H::strain_operator(shapes[g][a], &point.gradient[a], &point.position)
+                    });
+                    let mut d_eps = Sym2::zeros();
+                    for a in 0..N {
+                        let first = D * nodes[k][a];
+                        d_eps += operator[a]
+                            * SVector::<f64, D>::from_column_slice(&d_u[first..first + D]);
+                    }
+                    let response = law.respond(&old[k * per_cell + g], &d_eps);
+                    new[g] = response.state;
+                    flows |= law.equivalent_plastic_strain(&new[g])
+                        > law.equivalent_plastic_strain(&old[k * per_cell + g]);
+                    let stress = response.stress * point.weight;
+                    for a in 0..N {
+                        let f = operator[a].tr_mul(&stress);
+                        for i in 0..D {
+                            force[D * a + i] += f[i];
                         }
-                        let response = law.respond(&old[k * per_cell + g], &d_eps);
-                        new[g] = response.state;
-                        flows |= law.equivalent_plastic_strain(&new[g])
-                            > law.equivalent_plastic_strain(&old[k * per_cell + g]);
-                        let stress = response.stress * point.weight;
-                        for a in 0..N {
-                            let f = operator[a].tr_mul(&stress);
+                    }
+                    if entries == 0 {
+                        continue;
+                    }
+                    let tangent = elastic.unwrap_or(response.tangent) * point.weight;
+                    for b in 0..N {
+                        let column = tangent * operator[b];
+                        for a in 0..=b {
+                            let k_ab = operator[a].tr_mul(&column);
                             for i in 0..D {
-                                force[D * a + i] += f[i];
-                            }
-                        }
-                        if entries == 0 {
-                            continue;
-                        }
-                        let tangent = elastic.unwrap_or(response.tangent) * point.weight;
-                        for b in 0..N {
-                            let column = tangent * operator[b];
-                            for a in 0..=b {
-                                let k_ab = operator[a].tr_mul(&column);
-                                for i in 0..D {
-                                    for j in 0..D {
-                                        matrix[(D * a + i) * size + D * b + j] += k_ab[(i, j)];
-                                    }
+                                for j in 0..D {
+                                    matrix[(D * a + i) * size + D * b + j] += k_ab[(i, j)];
                                 }
                             }
                         }
                     }
-                    flows
-                })
-                .reduce(|| false, |a, b| a | b);
+                }
+                flows
+            };
+            let forces = &mut self.force[..count * size];
+            let matrices = &mut self.stiffness[..count * entries.max(1)];
+            let new = &mut self.new[range];
+            flows |= if count < 2 * GRAIN {
+                forces
+                    .chunks_mut(size)
+                    .zip(matrices.chunks_mut(entries.max(1)))
+                    .zip(new.chunks_mut(per_cell))
+                    .enumerate()
+                    .map(cell)
+                    .fold(false, |a, b| a | b)
+            } else {
+                forces
+                    .par_chunks_mut(size)
+                    .zip(matrices.par_chunks_mut(entries.max(1)))
+                    .zip(new.par_chunks_mut(per_cell))
+                    .enumerate()
+                    .with_min_len(GRAIN)
+                    .map(cell)
+                    .reduce(|| false, |a, b| a | b)
+            };
             for k in 0..count {
                 sink(CellResult {
                     cell: start + k,
@@ -311,6 +339,11 @@ where
             stress: self.law.stress(state),
             plastic_strain: self.law.equivalent_plastic_strain(state),
         };
-        self.points.iter().zip(&self.old).enumerate().map(state).collect()
+        self.points
+            .iter()
+            .zip(&self.old)
+            .enumerate()
+            .map(state)
+            .collect()
     }
 }

@@ -25,7 +25,10 @@ impl Pattern {
     /// Position of entry (row, column), row ≥ column, among the values.
     pub(crate) fn slot(&self, row: u32, column: u32) -> Option<u32> {
         let (start, end) = (self.range(column).start, self.range(column).end);
-        self.row[start..end].binary_search(&row).ok().map(|k| (start + k) as u32)
+        self.row[start..end]
+            .binary_search(&row)
+            .ok()
+            .map(|k| (start + k) as u32)
     }
 
     pub(crate) fn range(&self, column: u32) -> std::ops::Range<usize> {
@@ -160,12 +163,13 @@ impl Cholesky {
     /// x ← L⁻ᵀ x.
     pub(crate) fn backward(&mut self, x: &mut [f64]) {
         let n = x.len();
-        supernodal::SupernodalLltRef::new(&self.symbolic, &self.factor).l_transpose_solve_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(x, n, 1),
-            Par::Seq,
-            MemStack::new(&mut self.solve_memory),
-        );
+        supernodal::SupernodalLltRef::new(&self.symbolic, &self.factor)
+            .l_transpose_solve_with_conj(
+                Conj::No,
+                MatMut::from_column_major_slice_mut(x, n, 1),
+                Par::Seq,
+                MemStack::new(&mut self.solve_memory),
+            );
     }
 
     /// The last `size` rows and columns of L, lower triangular.
@@ -207,7 +211,11 @@ mod tests {
         for j in 0..n {
             for i in j..n {
                 if i == j || i - j == 3 || i + 2 >= n {
-                    let v = if i == j { 8.0 } else { seed[(i * 7 + j) % seed.len()] };
+                    let v = if i == j {
+                        8.0
+                    } else {
+                        seed[(i * 7 + j) % seed.len()]
+                    };
                     dense[(i, j)] = v;
                     dense[(j, i)] = v;
                     row.push(i as u32);
@@ -218,7 +226,10 @@ mod tests {
         }
         // Diagonally dominant, hence positive definite.
         for i in 0..n {
-            let sum: f64 = (0..n).filter(|&j| j != i).map(|j| dense[(i, j)].abs()).sum();
+            let sum: f64 = (0..n)
+                .filter(|&j| j != i)
+                .map(|j| dense[(i, j)].abs())
+                .sum();
             dense[(i, i)] += sum;
             values[column_start[i] as usize] += sum;
         }
@@ -251,9 +262,15 @@ mod tests {
 
     #[test]
     fn an_indefinite_matrix_is_refused_at_its_row() {
-        let pattern = Pattern { column_start: vec![0, 2, 3], row: vec![0, 1, 1] };
+        let pattern = Pattern {
+            column_start: vec![0, 2, 3],
+            row: vec![0, 1, 1],
+        };
         let mut cholesky = Cholesky::analyse(pattern).expect("small");
-        assert_eq!(cholesky.factorise(&[1.0, 2.0, 1.0]), Err(NotPositiveDefinite { row: 1 }));
+        assert_eq!(
+            cholesky.factorise(&[1.0, 2.0, 1.0]),
+            Err(NotPositiveDefinite { row: 1 })
+        );
         cholesky.factorise(&[1.0, 0.5, 1.0]).expect("definite");
     }
 }

@@ -160,7 +160,10 @@ impl<const D: usize> Driver<D> {
 
     /// Names of surface and tool of a contact.
     pub fn contact_name(&self, contact: usize) -> (&str, &str) {
-        (&self.contacts[contact].surface, &self.contacts[contact].tool)
+        (
+            &self.contacts[contact].surface,
+            &self.contacts[contact].tool,
+        )
     }
 
     /// Energies since the virgin state.
@@ -213,10 +216,12 @@ impl<const D: usize> Driver<D> {
 
     fn tool_index(&self, name: &str) -> Result<usize, ModelError> {
         let names = || self.tools.iter().map(|t| t.name.as_str());
-        names().position(|n| n == name).ok_or_else(|| ModelError::UnknownTool {
-            name: name.into(),
-            nearest: moreau_mesh::nearest(name, names()).map(Into::into),
-        })
+        names()
+            .position(|n| n == name)
+            .ok_or_else(|| ModelError::UnknownTool {
+                name: name.into(),
+                nearest: moreau_mesh::nearest(name, names()).map(Into::into),
+            })
     }
 
     /// The loading at the end of a step.
@@ -304,8 +309,11 @@ impl<const D: usize> Driver<D> {
                 start.force[*dof] += self.nodal_reaction(dof / D)[dof % D];
             }
         }
-        start.displacement =
-            end.displacement.keys().map(|&dof| (dof, state.displacement[dof])).collect();
+        start.displacement = end
+            .displacement
+            .keys()
+            .map(|&dof| (dof, state.displacement[dof]))
+            .collect();
         start
     }
 
@@ -356,9 +364,9 @@ impl<const D: usize> Driver<D> {
                     if length < smallest {
                         let last = reports.last().map_or(0.0, |r| r.plastic_fraction);
                         let plastic_fraction = match &cause {
-                            StepError::NotConverged { plastic_fraction, .. } => {
-                                plastic_fraction.max(last)
-                            }
+                            StepError::NotConverged {
+                                plastic_fraction, ..
+                            } => plastic_fraction.max(last),
                             _ => last,
                         };
                         return Err(StepError::Stopped {
@@ -385,9 +393,10 @@ impl<const D: usize> Driver<D> {
         let start = self.start_of(end);
         let outcome = match self.settings.nesting {
             Nesting::Inside => self.increment(&mut system, &start, end),
-            Nesting::Outside { tolerance, iterations } => {
-                self.nested_increment(&mut system, &start, end, tolerance, iterations)
-            }
+            Nesting::Outside {
+                tolerance,
+                iterations,
+            } => self.nested_increment(&mut system, &start, end, tolerance, iterations),
         };
         self.system = Some(system);
         outcome
@@ -398,7 +407,10 @@ impl<const D: usize> Driver<D> {
     fn prepare(&mut self, loading: &Loading<D>) -> Result<System, ModelError> {
         let fixed = |dof: usize| loading.displacement.contains_key(&dof);
         let dofs = self.state.displacement.len();
-        if let Some(system) = self.system.take_if(|s| (0..dofs).all(|d| s.is_free(d) != fixed(d))) {
+        if let Some(system) = self
+            .system
+            .take_if(|s| (0..dofs).all(|d| s.is_free(d) != fixed(d)))
+        {
             return Ok(system);
         }
         self.check_rigid_motions(&fixed)?;
@@ -430,7 +442,11 @@ impl<const D: usize> Driver<D> {
             let modes = |node: usize| -> Vec<SVector<f64, D>> {
                 let x = self.mesh.nodes()[node];
                 let relative = std::array::from_fn(|i| (x[i] - center[i]) / size);
-                self.measure.rigid_modes(&relative).into_iter().map(SVector::from).collect()
+                self.measure
+                    .rigid_modes(&relative)
+                    .into_iter()
+                    .map(SVector::from)
+                    .collect()
             };
             let count = modes(self.mesh.cell_nodes(first)[0]).len();
             let mut gram = DMatrix::<f64>::zeros(count, count);
@@ -464,7 +480,10 @@ impl<const D: usize> Driver<D> {
             if eigen.eigenvalues[weakest] <= 1e-10 * eigen.eigenvalues.amax().max(1.0) {
                 let mode = eigen.eigenvectors.column(weakest);
                 let motion = describe::<D>(mode.as_slice());
-                return Err(ModelError::FreeRigidMotion { cell: first, motion });
+                return Err(ModelError::FreeRigidMotion {
+                    cell: first,
+                    motion,
+                });
             }
         }
         Ok(())
@@ -480,7 +499,9 @@ fn describe<const D: usize>(mode: &[f64]) -> String {
         k if D == 3 => format!("rotation about {}", axis_letter(k - D)),
         _ => "rotation in the plane".into(),
     };
-    let parts: Vec<String> =
-        (0..mode.len()).filter(|&k| mode[k].abs() > 0.1 * largest).map(name).collect();
+    let parts: Vec<String> = (0..mode.len())
+        .filter(|&k| mode[k].abs() > 0.1 * largest)
+        .map(name)
+        .collect();
     parts.join(" with ")
 }

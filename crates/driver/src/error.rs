@@ -104,7 +104,9 @@ pub enum ModelError {
 }
 
 fn nearest_hint(nearest: &Option<String>) -> String {
-    nearest.as_ref().map_or_else(String::new, |n| format!("; did you mean {n:?}?"))
+    nearest
+        .as_ref()
+        .map_or_else(String::new, |n| format!("; did you mean {n:?}?"))
 }
 
 /// A node out of balance.

@@ -61,7 +61,10 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
     ) -> Result<StepReport, StepError> {
         let free: Vec<usize> = system.free_dofs();
-        let mut counts = Counts { solves: 1, ..Counts::default() };
+        let mut counts = Counts {
+            solves: 1,
+            ..Counts::default()
+        };
         let factorisations = system.factorisations;
         let d_u = self.predictor(start, end);
         let mut missing = self.missing(start, end, &d_u);
@@ -111,7 +114,8 @@ impl<const D: usize> Driver<D> {
             counts.newton += 1;
 
             self.factorise(system, &now.assembly)?;
-            let load = |d: usize| end.force[d] - now.assembly.internal[d] - now.assembly.coupling[d];
+            let load =
+                |d: usize| end.force[d] - now.assembly.internal[d] - now.assembly.coupling[d];
             let load: Vec<f64> = (0..now.d_u.len()).map(load).collect();
             let condensed = system.condense(&load);
             let iteration = counts.newton;
@@ -152,12 +156,19 @@ impl<const D: usize> Driver<D> {
         complete: bool,
     ) -> (Iterate, bool) {
         let none = vec![0.0; step.len()];
-        let along = |s: f64| -> Vec<f64> { now.d_u.iter().zip(step).map(|(u, v)| u + s * v).collect() };
+        let along =
+            |s: f64| -> Vec<f64> { now.d_u.iter().zip(step).map(|(u, v)| u + s * v).collect() };
         let between = |s: f64| -> Vec<f64> {
-            now.contact.iter().zip(&target).map(|(a, b)| a + s * (b - a)).collect()
+            now.contact
+                .iter()
+                .zip(&target)
+                .map(|(a, b)| a + s * (b - a))
+                .collect()
         };
         let slope = |internal: &[f64], contact: &[f64]| -> f64 {
-            free.iter().map(|&d| step[d] * (internal[d] - end.force[d] - contact[d])).sum()
+            free.iter()
+                .map(|&d| step[d] * (internal[d] - end.force[d] - contact[d]))
+                .sum()
         };
         let d_u = along(1.0);
         let assembly = system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent);
@@ -165,7 +176,15 @@ impl<const D: usize> Driver<D> {
         let at_end = slope(&assembly.internal, &target);
         // While prescribed displacements are missing, ΔΦ is not what the step minimises.
         if !complete || at_start >= 0.0 || at_end <= ACCEPTED_SLOPE * at_start.abs() {
-            return (Iterate { d_u, assembly, contact: target, full: true }, false);
+            return (
+                Iterate {
+                    d_u,
+                    assembly,
+                    contact: target,
+                    full: true,
+                },
+                false,
+            );
         }
         // Regula falsi on the slope, Illinois variant.
         let (mut low, mut high) = ((0.0, at_start), (1.0, at_end));
@@ -189,7 +208,15 @@ impl<const D: usize> Driver<D> {
         }
         let d_u = along(s);
         let assembly = system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent);
-        (Iterate { d_u, assembly, contact: between(s), full: false }, true)
+        (
+            Iterate {
+                d_u,
+                assembly,
+                contact: between(s),
+                full: false,
+            },
+            true,
+        )
     }
 
     /// Out-of-balance force at which an increment is accepted [N]: the tolerance, or the rounding
@@ -204,11 +231,13 @@ impl<const D: usize> Driver<D> {
         system: &mut System,
         assembly: &Assembly,
     ) -> Result<(), StepError> {
-        system.factorise(!assembly.flows).map_err(|dof| StepError::Mechanism {
-            node: dof / D,
-            axis: axis_letter(dof % D),
-            position: self.mesh.nodes()[dof / D].to_vec(),
-        })
+        system
+            .factorise(!assembly.flows)
+            .map_err(|dof| StepError::Mechanism {
+                node: dof / D,
+                axis: axis_letter(dof % D),
+                position: self.mesh.nodes()[dof / D].to_vec(),
+            })
     }
 
     /// First guess of the displacement increments: the last increment again, as far as the load
@@ -299,7 +328,14 @@ impl<const D: usize> Driver<D> {
         solution: &ContactSolution<D>,
         scale: f64,
     ) -> bool {
-        let reach = largest(self.mesh.bounds().0.iter().chain(&self.mesh.bounds().1).copied());
+        let reach = largest(
+            self.mesh
+                .bounds()
+                .0
+                .iter()
+                .chain(&self.mesh.bounds().1)
+                .copied(),
+        );
         let stiffness = system.shift();
         // Below this the difference of two positions is rounding.
         let rounding = 16.0 * f64::EPSILON * reach * stiffness;
@@ -364,7 +400,14 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
         candidate: Candidate<D>,
     ) -> StepReport {
-        let Candidate { d_u, internal, kinematics, solution, out_of_balance, counts } = candidate;
+        let Candidate {
+            d_u,
+            internal,
+            kinematics,
+            solution,
+            out_of_balance,
+            counts,
+        } = candidate;
         let laws: Vec<_> = self.points.iter().map(|p| p.law).collect();
         let mut irreversible = Vec::with_capacity(kinematics.len());
         let mut contacts = Vec::with_capacity(kinematics.len());
@@ -388,7 +431,9 @@ impl<const D: usize> Driver<D> {
             // Springs in series: ½ t·C t, with C t₀* the part they held before.
             let before = k.local_force(&self.state.contacts[i].force);
             penalty += 0.5 * elastic[0] * t[0];
-            penalty += (1..D).map(|j| 0.5 * elastic[j] * (t[j] + before[j])).sum::<f64>();
+            penalty += (1..D)
+                .map(|j| 0.5 * elastic[j] * (t[j] + before[j]))
+                .sum::<f64>();
             penalty -= 0.5 * self.state.contacts[i].t[0] * self.state.contacts[i].spring[0];
             irreversible.push(obeying);
             let held = !(1..D).all(|j| k.active[j]);
@@ -416,8 +461,11 @@ impl<const D: usize> Driver<D> {
                 spring: elastic,
             });
         }
-        let certificate =
-            Certificate::new(&laws, &irreversible, &contacts.iter().map(|c| c.t).collect::<Vec<_>>());
+        let certificate = Certificate::new(
+            &laws,
+            &irreversible,
+            &contacts.iter().map(|c| c.t).collect::<Vec<_>>(),
+        );
         let state = &self.state;
         let mut energies = state.energies;
         energies.external_work += self.external_work(start, end, &d_u, &internal, &contacts);
@@ -487,7 +535,10 @@ impl<const D: usize> Driver<D> {
         }
         for &dof in end.displacement.keys() {
             let on_node = |contacts: &[ContactRecord<D>]| {
-                contacts.iter().find(|c| c.node == dof / D).map_or(0.0, |c| c.force[dof % D])
+                contacts
+                    .iter()
+                    .find(|c| c.node == dof / D)
+                    .map_or(0.0, |c| c.force[dof % D])
             };
             let before = state.internal[dof] - start.force[dof] - on_node(&state.contacts);
             let after = internal[dof] - end.force[dof] - on_node(contacts);
@@ -502,7 +553,13 @@ impl<const D: usize> Driver<D> {
 }
 
 pub(crate) fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(0.0, |a, v| if v.is_nan() { f64::INFINITY } else { a.max(v.abs()) })
+    values.fold(0.0, |a, v| {
+        if v.is_nan() {
+            f64::INFINITY
+        } else {
+            a.max(v.abs())
+        }
+    })
 }
 
 /// Size of the forces in play, against which imbalance is judged [N].

@@ -82,7 +82,11 @@ impl<const D: usize> Kinematics<D> {
             out.u[0] = gap.abs() + f64::MIN_POSITIVE;
             return out;
         }
-        let q = if dimension == D { frame(&n) } else { frame_in(&(projected / length), free) };
+        let q = if dimension == D {
+            frame(&n)
+        } else {
+            frame_in(&(projected / length), free)
+        };
         out.axes.set_column(0, &n);
         for k in 0..dimension {
             let e = q.column(k);
@@ -174,14 +178,20 @@ impl<const D: usize> Condensation<D> {
         }
         let laws = points.iter().map(|p| p.law).collect();
         let problem = ContactProblem::new(stiffness, load, now.clone(), laws, previous)?;
-        Ok(Self { problem, to_interface, now })
+        Ok(Self {
+            problem,
+            to_interface,
+            now,
+        })
     }
 
     /// Interface displacements x for gaps and slips u.
     pub(crate) fn interface(&self, u: &[Local<D>]) -> DVector<f64> {
         let relative = DVector::from_iterator(
             self.to_interface.ncols(),
-            u.iter().zip(&self.now).flat_map(|(u, g)| (0..D).map(move |k| u[k] - g[k])),
+            u.iter()
+                .zip(&self.now)
+                .flat_map(|(u, g)| (0..D).map(move |k| u[k] - g[k])),
         );
         &self.to_interface * relative
     }

@@ -30,12 +30,31 @@ pub(crate) fn axis_letter(index: usize) -> char {
 /// One condition of a step. Values are totals at the end of the step.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Condition<const D: usize> {
-    Displace { on: String, axis: Axis, value: f64 },
-    Force { on: String, force: [f64; D] },
-    Pressure { on: String, pressure: f64 },
-    Traction { on: String, traction: [f64; D] },
-    BodyForce { on: String, density: [f64; D] },
-    Tool { name: String, displacement: [f64; D] },
+    Displace {
+        on: String,
+        axis: Axis,
+        value: f64,
+    },
+    Force {
+        on: String,
+        force: [f64; D],
+    },
+    Pressure {
+        on: String,
+        pressure: f64,
+    },
+    Traction {
+        on: String,
+        traction: [f64; D],
+    },
+    BodyForce {
+        on: String,
+        density: [f64; D],
+    },
+    Tool {
+        name: String,
+        displacement: [f64; D],
+    },
 }
 
 /// A step: all conditions that hold in it, with their totals at its end. They are ramped
@@ -50,7 +69,10 @@ pub struct Step<const D: usize> {
 impl<const D: usize> Step<D> {
     /// A step without conditions.
     pub fn new(name: &str) -> Self {
-        Self { name: name.into(), conditions: Vec::new() }
+        Self {
+            name: name.into(),
+            conditions: Vec::new(),
+        }
     }
 
     /// Name of the step.
@@ -60,37 +82,57 @@ impl<const D: usize> Step<D> {
 
     /// Holds components of the displacement of a group at zero.
     pub fn fix(self, on: &str, axes: &[Axis]) -> Self {
-        axes.iter().fold(self, |step, &axis| step.displace(on, axis, 0.0))
+        axes.iter()
+            .fold(self, |step, &axis| step.displace(on, axis, 0.0))
     }
 
     /// Prescribes one component of the displacement of a group [mm].
     pub fn displace(self, on: &str, axis: Axis, value: f64) -> Self {
-        self.with(Condition::Displace { on: on.into(), axis, value })
+        self.with(Condition::Displace {
+            on: on.into(),
+            axis,
+            value,
+        })
     }
 
     /// A force [N], shared equally by the nodes of a group.
     pub fn force(self, on: &str, force: [f64; D]) -> Self {
-        self.with(Condition::Force { on: on.into(), force })
+        self.with(Condition::Force {
+            on: on.into(),
+            force,
+        })
     }
 
     /// A pressure [MPa] on a group of facets, positive towards the body.
     pub fn pressure(self, on: &str, pressure: f64) -> Self {
-        self.with(Condition::Pressure { on: on.into(), pressure })
+        self.with(Condition::Pressure {
+            on: on.into(),
+            pressure,
+        })
     }
 
     /// A traction [MPa] on a group of facets, [78].
     pub fn traction(self, on: &str, traction: [f64; D]) -> Self {
-        self.with(Condition::Traction { on: on.into(), traction })
+        self.with(Condition::Traction {
+            on: on.into(),
+            traction,
+        })
     }
 
     /// A force per volume [N/mm³] in a group of cells.
     pub fn body_force(self, on: &str, density: [f64; D]) -> Self {
-        self.with(Condition::BodyForce { on: on.into(), density })
+        self.with(Condition::BodyForce {
+            on: on.into(),
+            density,
+        })
     }
 
     /// Moves a tool by a total translation from its first position [mm].
     pub fn tool(self, name: &str, displacement: [f64; D]) -> Self {
-        self.with(Condition::Tool { name: name.into(), displacement })
+        self.with(Condition::Tool {
+            name: name.into(),
+            displacement,
+        })
     }
 
     fn with(mut self, condition: Condition<D>) -> Self {
@@ -131,10 +173,25 @@ impl<const D: usize> Loading<D> {
             displacement: end
                 .displacement
                 .iter()
-                .map(|(dof, &b)| (*dof, mix(self.displacement.get(dof).copied().unwrap_or(b), b)))
+                .map(|(dof, &b)| {
+                    (
+                        *dof,
+                        mix(self.displacement.get(dof).copied().unwrap_or(b), b),
+                    )
+                })
                 .collect(),
-            force: self.force.iter().zip(&end.force).map(|(&a, &b)| mix(a, b)).collect(),
-            tools: self.tools.iter().zip(&end.tools).map(|(a, b)| a + (b - a) * s).collect(),
+            force: self
+                .force
+                .iter()
+                .zip(&end.force)
+                .map(|(&a, &b)| mix(a, b))
+                .collect(),
+            tools: self
+                .tools
+                .iter()
+                .zip(&end.tools)
+                .map(|(a, b)| a + (b - a) * s)
+                .collect(),
         }
     }
 
@@ -169,7 +226,10 @@ impl<const D: usize> Loading<D> {
     /// taken over the prescribed motions, or over the forces if nothing is moved.
     pub(crate) fn ratio(&self, previous: &Self) -> f64 {
         let motions = |l: &Self| -> Vec<f64> {
-            let tools = l.tools.iter().flat_map(|v| v.iter().copied().collect::<Vec<_>>());
+            let tools = l
+                .tools
+                .iter()
+                .flat_map(|v| v.iter().copied().collect::<Vec<_>>());
             l.displacement.values().copied().chain(tools).collect()
         };
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -179,7 +239,11 @@ impl<const D: usize> Loading<D> {
             return dot(&new, &old) / moved;
         }
         let loaded = dot(&previous.force, &previous.force);
-        if loaded > 0.0 { dot(&self.force, &previous.force) / loaded } else { 0.0 }
+        if loaded > 0.0 {
+            dot(&self.force, &previous.force) / loaded
+        } else {
+            0.0
+        }
     }
 
     /// `self − start`, for loadings with the same prescribed degrees of freedom.
@@ -190,8 +254,18 @@ impl<const D: usize> Loading<D> {
                 .iter()
                 .map(|(d, &u)| (*d, u - start.displacement.get(d).copied().unwrap_or(u)))
                 .collect(),
-            force: self.force.iter().zip(&start.force).map(|(b, a)| b - a).collect(),
-            tools: self.tools.iter().zip(&start.tools).map(|(b, a)| b - a).collect(),
+            force: self
+                .force
+                .iter()
+                .zip(&start.force)
+                .map(|(b, a)| b - a)
+                .collect(),
+            tools: self
+                .tools
+                .iter()
+                .zip(&start.tools)
+                .map(|(b, a)| b - a)
+                .collect(),
         }
     }
 }

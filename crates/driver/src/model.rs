@@ -33,11 +33,21 @@ fn plane<H: Hypothesis<2>, L: IncrementalPotential>(
     rule: Integration,
 ) -> Option<Box<dyn Block<2>>> {
     Some(match kind {
-        CellKind::Tri3 => Box::new(SolidBlock::<Tri3, H, L, 2, 3>::new(mesh, cells, hypothesis, law, rule)),
-        CellKind::Tri6 => Box::new(SolidBlock::<Tri6, H, L, 2, 6>::new(mesh, cells, hypothesis, law, rule)),
-        CellKind::Quad4 => Box::new(SolidBlock::<Quad4, H, L, 2, 4>::new(mesh, cells, hypothesis, law, rule)),
-        CellKind::Quad8 => Box::new(SolidBlock::<Quad8, H, L, 2, 8>::new(mesh, cells, hypothesis, law, rule)),
-        CellKind::Quad9 => Box::new(SolidBlock::<Quad9, H, L, 2, 9>::new(mesh, cells, hypothesis, law, rule)),
+        CellKind::Tri3 => Box::new(SolidBlock::<Tri3, H, L, 2, 3>::new(
+            mesh, cells, hypothesis, law, rule,
+        )),
+        CellKind::Tri6 => Box::new(SolidBlock::<Tri6, H, L, 2, 6>::new(
+            mesh, cells, hypothesis, law, rule,
+        )),
+        CellKind::Quad4 => Box::new(SolidBlock::<Quad4, H, L, 2, 4>::new(
+            mesh, cells, hypothesis, law, rule,
+        )),
+        CellKind::Quad8 => Box::new(SolidBlock::<Quad8, H, L, 2, 8>::new(
+            mesh, cells, hypothesis, law, rule,
+        )),
+        CellKind::Quad9 => Box::new(SolidBlock::<Quad9, H, L, 2, 9>::new(
+            mesh, cells, hypothesis, law, rule,
+        )),
         CellKind::Tet4 | CellKind::Hex8 => return None,
     })
 }
@@ -78,12 +88,12 @@ impl Analysis<3> for Solid {
         rule: Integration,
     ) -> Option<Box<dyn Block<3>>> {
         Some(match kind {
-            CellKind::Tet4 => {
-                Box::new(SolidBlock::<Tet4, Self, L, 3, 4>::new(mesh, cells, self, law, rule))
-            }
-            CellKind::Hex8 => {
-                Box::new(SolidBlock::<Hex8, Self, L, 3, 8>::new(mesh, cells, self, law, rule))
-            }
+            CellKind::Tet4 => Box::new(SolidBlock::<Tet4, Self, L, 3, 4>::new(
+                mesh, cells, self, law, rule,
+            )),
+            CellKind::Hex8 => Box::new(SolidBlock::<Hex8, Self, L, 3, 8>::new(
+                mesh, cells, self, law, rule,
+            )),
             _ => return None,
         })
     }
@@ -155,13 +165,18 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         let mut by_kind: BTreeMap<CellKind, Vec<usize>> = BTreeMap::new();
         for &cell in self.mesh.cell_group(group)? {
             if std::mem::replace(&mut self.has_material[cell], true) {
-                return Err(ModelError::TwoMaterials { cell, group: group.into() });
+                return Err(ModelError::TwoMaterials {
+                    cell,
+                    group: group.into(),
+                });
             }
             by_kind.entry(self.mesh.kind(cell)).or_default().push(cell);
         }
         for (kind, cells) in by_kind {
             // A mesh of dimension D has no cells of another dimension.
-            let block = self.hypothesis.block(&self.mesh, kind, cells, law.clone(), integration);
+            let block = self
+                .hypothesis
+                .block(&self.mesh, kind, cells, law.clone(), integration);
             self.blocks.extend(block);
         }
         Ok(self)
@@ -179,7 +194,10 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         if self.tools.iter().any(|t| t.name == name) {
             return Err(ModelError::DuplicateTool { name: name.into() });
         }
-        self.tools.push(Tool { name: name.into(), obstacle: Box::new(obstacle) });
+        self.tools.push(Tool {
+            name: name.into(),
+            obstacle: Box::new(obstacle),
+        });
         Ok(self)
     }
 
@@ -209,7 +227,10 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 kind: share.kind,
             });
         }
-        self.contacts.push(ContactName { surface: surface.into(), tool: tool.into() });
+        self.contacts.push(ContactName {
+            surface: surface.into(),
+            tool: tool.into(),
+        });
         Ok(self)
     }
 
@@ -220,10 +241,12 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
 
     pub(crate) fn tool_index(&self, name: &str) -> Result<usize, ModelError> {
         let names = || self.tools.iter().map(|t| t.name.as_str());
-        names().position(|n| n == name).ok_or_else(|| ModelError::UnknownTool {
-            name: name.into(),
-            nearest: moreau_mesh::nearest(name, names()).map(Into::into),
-        })
+        names()
+            .position(|n| n == name)
+            .ok_or_else(|| ModelError::UnknownTool {
+                name: name.into(),
+                nearest: moreau_mesh::nearest(name, names()).map(Into::into),
+            })
     }
 
     /// # Errors
@@ -231,7 +254,10 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     pub(crate) fn check(&self) -> Result<(), ModelError> {
         let mut bare = (0..self.has_material.len()).filter(|&c| !self.has_material[c]);
         match bare.next() {
-            Some(first) => Err(ModelError::MissingMaterial { count: 1 + bare.count(), first }),
+            Some(first) => Err(ModelError::MissingMaterial {
+                count: 1 + bare.count(),
+                first,
+            }),
             None => Ok(()),
         }
     }

@@ -39,14 +39,19 @@ impl<const D: usize> Driver<D> {
         };
         let kinematics = self.kinematics(system, start, end, &now.d_u);
         let mut t = self.previous_forces(&kinematics);
-        let contact = |source: ContactError| StepError::Contact { iteration: 0, source };
+        let contact = |source: ContactError| StepError::Contact {
+            iteration: 0,
+            source,
+        };
         self.factorise(system, &now.assembly)?;
         let condensed = system.condense(&vec![0.0; now.d_u.len()]);
         let condensation =
             Condensation::new(system, &condensed, &self.points, &kinematics, t.clone())
                 .map_err(contact)?;
         let mut alpha = uzawa_steps(&condensation.problem).map_err(contact)?;
-        let common: Vec<f64> = (0..t.len()).map(|i| condensation.problem.alpha(i)).collect();
+        let common: Vec<f64> = (0..t.len())
+            .map(|i| condensation.problem.alpha(i))
+            .collect();
         let mut left = f64::INFINITY;
         let mut before: Option<(Vec<Local<D>>, Vec<Local<D>>)> = None;
         for _ in 0..iterations {
@@ -68,8 +73,9 @@ impl<const D: usize> Driver<D> {
             left = residual;
             if residual <= tolerance * scale {
                 counts.factorisations = system.factorisations - factorisations;
-                let status =
-                    (0..t.len()).map(|i| law(i).status(&u[i], &t[i], common[i])).collect();
+                let status = (0..t.len())
+                    .map(|i| law(i).status(&u[i], &t[i], common[i]))
+                    .collect();
                 let residuals = free
                     .iter()
                     .map(|&d| end.force[d] + now.contact[d] - now.assembly.internal[d]);
@@ -152,13 +158,19 @@ impl<const D: usize> Driver<D> {
             let mut step = std::mem::replace(missing, none);
             system.solve(&load, &mut step);
             let target = now.contact.clone();
-            now = self.search(system, end, free, now, &step, target, complete).0;
+            now = self
+                .search(system, end, free, now, &step, target, complete)
+                .0;
         }
         let residual: Vec<f64> = free
             .iter()
             .map(|&d| end.force[d] + now.contact[d] - now.assembly.internal[d])
             .collect();
-        let target = self.target(system, force_scale(&now.assembly, end, &now.contact), &now.d_u);
+        let target = self.target(
+            system,
+            force_scale(&now.assembly, end, &now.contact),
+            &now.d_u,
+        );
         Err(self.not_converged(free, &residual, self.settings.iterations, target))
     }
 }

@@ -23,7 +23,9 @@ pub(crate) fn nested_dissection<'a, const D: usize>(
     let mut stack = vec![(nodes.to_vec(), 1u32)];
     // Reading the order backwards, a separator comes before its halves: one stack suffices.
     while let Some((set, own)) = stack.pop() {
-        let Some((axis, cut)) = (set.len() > LEAF).then(|| bisector(&set, coordinates)).flatten()
+        let Some((axis, cut)) = (set.len() > LEAF)
+            .then(|| bisector(&set, coordinates))
+            .flatten()
         else {
             reversed.extend(set.iter().rev());
             continue;
@@ -31,17 +33,24 @@ pub(crate) fn nested_dissection<'a, const D: usize>(
         let (left, right) = (parts + 1, parts + 2);
         parts += 2;
         for &a in &set {
-            part[a] = if coordinates[a][axis] < cut { left } else { right };
+            part[a] = if coordinates[a][axis] < cut {
+                left
+            } else {
+                right
+            };
         }
         debug_assert!(own != SEPARATOR);
         let border = |from: u32, to: u32| -> Vec<usize> {
-            let touches = |&&a: &&usize| {
-                part[a] == from && adjacency(a).iter().any(|&b| part[b] == to)
-            };
+            let touches =
+                |&&a: &&usize| part[a] == from && adjacency(a).iter().any(|&b| part[b] == to);
             set.iter().filter(touches).copied().collect()
         };
         let (of_right, of_left) = (border(right, left), border(left, right));
-        let separator = if of_right.len() <= of_left.len() { of_right } else { of_left };
+        let separator = if of_right.len() <= of_left.len() {
+            of_right
+        } else {
+            of_left
+        };
         for &a in &separator {
             part[a] = SEPARATOR;
         }
@@ -61,9 +70,11 @@ pub(crate) fn nested_dissection<'a, const D: usize>(
 /// have the same coordinates or the median does not split them.
 fn bisector<const D: usize>(set: &[usize], coordinates: &[[f64; D]]) -> Option<(usize, f64)> {
     let extent = |k: usize| {
-        let (low, high) = set.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &a| {
-            (l.min(coordinates[a][k]), h.max(coordinates[a][k]))
-        });
+        let (low, high) = set
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &a| {
+                (l.min(coordinates[a][k]), h.max(coordinates[a][k]))
+            });
         high - low
     };
     let axis = (0..D).max_by(|&k, &l| extent(k).total_cmp(&extent(l)))?;
@@ -104,7 +115,11 @@ mod tests {
         let mut later: Vec<std::collections::BTreeSet<usize>> = order
             .iter()
             .map(|&a| {
-                adjacency[a].iter().map(|&b| position[b]).filter(|&p| p > position[a]).collect()
+                adjacency[a]
+                    .iter()
+                    .map(|&b| position[b])
+                    .filter(|&p| p > position[a])
+                    .collect()
             })
             .collect();
         let mut entries = 0;
@@ -127,7 +142,10 @@ mod tests {
         sorted.sort_unstable();
         assert_eq!(sorted, all);
         let (dissected, natural) = (fill(&order, &adjacency), fill(&all, &adjacency));
-        assert!(3 * dissected < 2 * natural, "fill {dissected}, lexicographic {natural}");
+        assert!(
+            3 * dissected < 2 * natural,
+            "fill {dissected}, lexicographic {natural}"
+        );
     }
 
     #[test]

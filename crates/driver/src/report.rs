@@ -73,7 +73,11 @@ impl StepReport {
     /// The bipotential gap in parts of the external work done so far.
     pub fn relative_gap(&self) -> f64 {
         let work = self.energies.external_work.abs();
-        if work > 0.0 { self.certificate.bipotential_gap / work } else { 0.0 }
+        if work > 0.0 {
+            self.certificate.bipotential_gap / work
+        } else {
+            0.0
+        }
     }
 }
 

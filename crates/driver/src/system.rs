@@ -80,8 +80,7 @@ impl System {
     ) -> Result<Self, ModelError> {
         let nodes = mesh.nodes().len();
         let adjacency = adjacency(mesh);
-        let neighbours =
-            |a: usize| &adjacency.entries[adjacency.start[a]..adjacency.start[a + 1]];
+        let neighbours = |a: usize| &adjacency.entries[adjacency.start[a]..adjacency.start[a + 1]];
         let mut is_interface = vec![false; nodes];
         for &a in interface_nodes {
             is_interface[a] = true;
@@ -117,7 +116,10 @@ impl System {
             column_start.push(row.len() as u32);
         }
         let pattern = Pattern { column_start, row };
-        let scatter = blocks.iter().map(|b| scatter(b.as_ref(), &position, &pattern)).collect();
+        let scatter = blocks
+            .iter()
+            .map(|b| scatter(b.as_ref(), &position, &pattern))
+            .collect();
         let values = vec![0.0; pattern.row.len()];
         let unknowns = dofs.len();
         let cholesky = Cholesky::analyse(pattern).ok_or(ModelError::TooLarge { unknowns })?;
@@ -148,12 +150,15 @@ impl System {
     /// Index of a degree of freedom among the interface unknowns; `None` if it is prescribed.
     pub(crate) fn interface_index(&self, dof: usize) -> Option<usize> {
         let first = self.size() - self.interface;
-        self.is_free(dof).then(|| self.position[dof] as usize - first)
+        self.is_free(dof)
+            .then(|| self.position[dof] as usize - first)
     }
 
     /// The free degrees of freedom, ascending.
     pub(crate) fn free_dofs(&self) -> Vec<usize> {
-        (0..self.position.len()).filter(|&dof| self.is_free(dof)).collect()
+        (0..self.position.len())
+            .filter(|&dof| self.is_free(dof))
+            .collect()
     }
 
     /// σ [N/mm]: of the size of the elastic stiffness of an interface node.
@@ -209,7 +214,11 @@ impl System {
                 }
             });
         }
-        Assembly { internal, coupling, flows }
+        Assembly {
+            internal,
+            coupling,
+            flows,
+        }
     }
 
     /// Learns the size of the assembled (elastic) stiffness, and chooses σ: its largest diagonal
@@ -219,7 +228,11 @@ impl System {
         let pattern = self.cholesky.pattern();
         let diagonal = |p: usize| self.values[pattern.range(p as u32).start];
         self.stiffest = (0..self.size()).map(diagonal).fold(0.0, f64::max);
-        self.shift = if shifted { (first..self.size()).map(diagonal).fold(0.0, f64::max) } else { 0.0 };
+        self.shift = if shifted {
+            (first..self.size()).map(diagonal).fold(0.0, f64::max)
+        } else {
+            0.0
+        };
     }
 
     /// Largest diagonal of the elastic stiffness [N/mm].
@@ -261,7 +274,12 @@ impl System {
             stiffness[(i, i)] -= self.shift;
         }
         let load = &factor * DVector::from_column_slice(&forward[first..]);
-        Condensed { factor, stiffness, load, forward }
+        Condensed {
+            factor,
+            stiffness,
+            load,
+            forward,
+        }
     }
 
     /// Solves the factorised system, without a shift, for a load at every degree of freedom [N];
@@ -323,12 +341,21 @@ fn adjacency<const D: usize>(mesh: &Mesh<D>) -> Adjacency {
 
 fn scatter<const D: usize>(block: &dyn Block<D>, position: &[u32], pattern: &Pattern) -> Scatter {
     let cells = block.cells().len();
-    let size = if cells == 0 { 0 } else { D * block.nodes(0).len() };
+    let size = if cells == 0 {
+        0
+    } else {
+        D * block.nodes(0).len()
+    };
     let mut dofs = Vec::with_capacity(cells * size);
     let mut slots = Vec::with_capacity(cells * size * (size + 1) / 2);
     for k in 0..cells {
         let first = dofs.len();
-        dofs.extend(block.nodes(k).iter().flat_map(|&a| (D * a..D * a + D).map(|d| d as u32)));
+        dofs.extend(
+            block
+                .nodes(k)
+                .iter()
+                .flat_map(|&a| (D * a..D * a + D).map(|d| d as u32)),
+        );
         let cell = &dofs[first..];
         for (i, &a) in cell.iter().enumerate() {
             for &b in &cell[i..] {

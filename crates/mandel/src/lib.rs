@@ -69,7 +69,11 @@ pub fn deviatoric_projector() -> Sym4 {
 pub fn from_matrix(a: &Matrix3<f64>) -> Sym2 {
     Sym2::from_fn(|k, _| {
         let (i, j) = INDEX[k];
-        if i == j { a[(i, i)] } else { (a[(i, j)] + a[(j, i)]) / SQRT_2 }
+        if i == j {
+            a[(i, i)]
+        } else {
+            (a[(i, j)] + a[(j, i)]) / SQRT_2
+        }
     })
 }
 

@@ -8,6 +8,9 @@
 //! | laws, bipotentials | `moreau-laws` | [`laws`] |
 //! | contact problem and solvers | `moreau-contact` | [`contact`] |
 //! | steps and reports | `moreau-driver` | [`driver`] |
+//! | charts and pictures | | [`plot`] |
+
+pub mod plot;
 
 pub use moreau_contact as contact;
 pub use moreau_driver as driver;

@@ -83,16 +83,27 @@ mod tests {
         let n = 12;
         let a = DMatrix::from_fn(n, n, |i, j| {
             let coupling = 0.02 * ((i * 5 + j * 3) as f64).sin();
-            if i == j { 0.999 - 0.04 * i as f64 } else { coupling }
+            if i == j {
+                0.999 - 0.04 * i as f64
+            } else {
+                coupling
+            }
         });
         let b = DVector::from_fn(n, |i, _| 1.0 + i as f64);
-        let exact = (DMatrix::identity(n, n) - &a).lu().solve(&b).expect("regular");
+        let exact = (DMatrix::identity(n, n) - &a)
+            .lu()
+            .solve(&b)
+            .expect("regular");
         let mut anderson = Anderson::default();
         let mut x = DVector::zeros(n);
         for _ in 0..n + 6 {
             let image = &a * &x + &b;
             x = anderson.next(&x, image);
         }
-        assert!((&x - &exact).norm() < 1e-8 * exact.norm(), "{}", (x - &exact).norm());
+        assert!(
+            (&x - &exact).norm() < 1e-8 * exact.norm(),
+            "{}",
+            (x - &exact).norm()
+        );
     }
 }

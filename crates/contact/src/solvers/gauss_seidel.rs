@@ -17,7 +17,12 @@ pub struct GaussSeidel {
 
 impl Default for GaussSeidel {
     fn default() -> Self {
-        Self { tolerance: Tolerance { relative: 1e-10, iterations: 200_000 } }
+        Self {
+            tolerance: Tolerance {
+                relative: 1e-10,
+                iterations: 200_000,
+            },
+        }
     }
 }
 
@@ -98,7 +103,9 @@ fn local<const D: usize>(w: &SMatrix<f64, D, D>, q: &Local<D>, law: &Coulomb) ->
         Some(t)
     };
     if D == 2 {
-        let Some(stick) = force(0.0) else { return Local::zeros() };
+        let Some(stick) = force(0.0) else {
+            return Local::zeros();
+        };
         if stick[1].abs() <= mu * stick[0] {
             return stick;
         }
@@ -114,7 +121,9 @@ fn local<const D: usize>(w: &SMatrix<f64, D, D>, q: &Local<D>, law: &Coulomb) ->
         return slip;
     }
     let excess = |t: &Local<D>| (1..D).map(|k| t[k] * t[k]).sum::<f64>().sqrt() - mu * t[0];
-    let Some(stick) = force(0.0) else { return Local::zeros() };
+    let Some(stick) = force(0.0) else {
+        return Local::zeros();
+    };
     if excess(&stick) <= 0.0 {
         return stick;
     }
@@ -137,8 +146,11 @@ fn local<const D: usize>(w: &SMatrix<f64, D, D>, q: &Local<D>, law: &Coulomb) ->
     for _ in 0..200 {
         let secant = high - f_high * (high - low) / (f_high - f_low);
         let margin = 1e-3 * (high - low);
-        let lambda =
-            if secant > low + margin && secant < high - margin { secant } else { 0.5 * (low + high) };
+        let lambda = if secant > low + margin && secant < high - margin {
+            secant
+        } else {
+            0.5 * (low + high)
+        };
         if lambda <= low || lambda >= high {
             break;
         }
@@ -148,7 +160,11 @@ fn local<const D: usize>(w: &SMatrix<f64, D, D>, q: &Local<D>, law: &Coulomb) ->
         if f.abs() <= 4.0 * f64::EPSILON * mu * t[0].abs() {
             break;
         }
-        if f > 0.0 { (low, f_low) = (lambda, f) } else { (high, f_high) = (lambda, f) }
+        if f > 0.0 {
+            (low, f_low) = (lambda, f)
+        } else {
+            (high, f_high) = (lambda, f)
+        }
     }
     // The root is found to rounding; the cone is met exactly.
     law.project(&t)

@@ -102,7 +102,12 @@ fn fixed_point<const D: usize>(
             });
         }
         if iterations >= tolerance.iterations {
-            return Err(ContactError::NotConverged { solver, iterations, residual, tolerance: target });
+            return Err(ContactError::NotConverged {
+                solver,
+                iterations,
+                residual,
+                tolerance: target,
+            });
         }
         iterations += 1;
         t = anderson.next(&t, stacked);

@@ -27,10 +27,21 @@ impl Penalty {
     pub fn new(normal: f64, tangent: f64) -> Result<Self, ContactError> {
         for (what, value) in [("normal penalty", normal), ("tangent penalty", tangent)] {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(ContactError::OutOfRange { what, value, expected: "a positive number" });
+                return Err(ContactError::OutOfRange {
+                    what,
+                    value,
+                    expected: "a positive number",
+                });
             }
         }
-        Ok(Self { normal, tangent, tolerance: Tolerance { relative: 1e-12, iterations: 300 } })
+        Ok(Self {
+            normal,
+            tangent,
+            tolerance: Tolerance {
+                relative: 1e-12,
+                iterations: 300,
+            },
+        })
     }
 }
 

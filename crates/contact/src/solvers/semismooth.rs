@@ -19,7 +19,12 @@ pub struct SemismoothNewton {
 
 impl Default for SemismoothNewton {
     fn default() -> Self {
-        Self { tolerance: Tolerance { relative: 1e-12, iterations: 300 } }
+        Self {
+            tolerance: Tolerance {
+                relative: 1e-12,
+                iterations: 300,
+            },
+        }
     }
 }
 
@@ -69,7 +74,11 @@ pub(super) fn newton<const D: usize>(
     let mut iterations = 0;
     let mut part = 0;
     loop {
-        let newton = Newton { problem, compliance, part: PARTS[part % PARTS.len()] };
+        let newton = Newton {
+            problem,
+            compliance,
+            part: PARTS[part % PARTS.len()],
+        };
         let mut now = newton.iterate(start.clone());
         for _ in 0..ATTEMPT {
             // The residual grows with α, at most in proportion: this bounds it for the common α.
@@ -97,7 +106,11 @@ pub(super) fn newton<const D: usize>(
         if part % PARTS.len() == 0 {
             // From where Newton got to, and the next time from nothing.
             let first = part == PARTS.len();
-            let from = if first { now.t } else { vec![Local::zeros(); now.t.len()] };
+            let from = if first {
+                now.t
+            } else {
+                vec![Local::zeros(); now.t.len()]
+            };
             match newton.sweep(&from) {
                 Ok(u) => start = u,
                 Err(ContactError::Floating { .. }) => return Err(ContactError::Singular),
@@ -138,7 +151,14 @@ impl<const D: usize> Newton<'_, D> {
         // Divided by α a square is an energy: contacts of unlike stiffness weigh alike.
         let energy = |(i, g): (usize, &Local<D>)| g.norm_squared() / self.alpha(i);
         let merit = map.iter().enumerate().map(energy).sum();
-        Iterate { u, t, irreversible, map, residual, merit }
+        Iterate {
+            u,
+            t,
+            irreversible,
+            map,
+            residual,
+            merit,
+        }
     }
 
     /// Displacements after sweeps of another method, with the springs in series with the structure.
@@ -157,13 +177,21 @@ impl<const D: usize> Newton<'_, D> {
                 form.free[D * i + k] += rest[k];
             }
         }
-        let tolerance = Tolerance { relative: 1e-8, iterations: 20_000 };
+        let tolerance = Tolerance {
+            relative: 1e-8,
+            iterations: 20_000,
+        };
         // Where sweeps cycle, which takes a large friction, corrections may not, and conversely.
         let swept = GaussSeidel { tolerance }
             .sweeps(p, &form, stack(t))
             .or_else(|_| Uzawa { tolerance }.corrections(p, &form, stack(t)))?;
         let displacement = |(i, v): (usize, &Local<D>)| v - spring(i, &swept.force[i]);
-        Ok(swept.displacement.iter().enumerate().map(displacement).collect())
+        Ok(swept
+            .displacement
+            .iter()
+            .enumerate()
+            .map(displacement)
+            .collect())
     }
 
     /// The next iterate: a Newton step, halved until the map decreases; `None` if it does not or
@@ -209,7 +237,9 @@ impl<const D: usize> Newton<'_, D> {
         let p = self.problem;
         // The projection of the last iterate lies in the cone exactly; it differs from t by less
         // than the residual.
-        let force = (0..p.contacts()).map(|i| now.t[i] - now.map[i]).collect::<Vec<_>>();
+        let force = (0..p.contacts())
+            .map(|i| now.t[i] - now.map[i])
+            .collect::<Vec<_>>();
         let status = (0..p.contacts())
             .map(|i| p.friction()[i].status(&now.irreversible[i], &now.t[i], self.alpha(i)))
             .collect();

@@ -20,7 +20,12 @@ pub struct Uzawa {
 
 impl Default for Uzawa {
     fn default() -> Self {
-        Self { tolerance: Tolerance { relative: 1e-10, iterations: 200_000 } }
+        Self {
+            tolerance: Tolerance {
+                relative: 1e-10,
+                iterations: 200_000,
+            },
+        }
     }
 }
 
@@ -69,7 +74,12 @@ pub fn uzawa_steps<const D: usize>(problem: &ContactProblem<D>) -> Result<Vec<f6
 /// α per contact: 1/W̄_ii over the largest eigenvalue of the scaled operator, by power iteration.
 fn steps<const D: usize>(problem: &ContactProblem<D>, operator: &DMatrix<f64>) -> Vec<f64> {
     let scale: Vec<f64> = (0..problem.contacts())
-        .map(|i| D as f64 / (0..D).map(|k| operator[(D * i + k, D * i + k)]).sum::<f64>())
+        .map(|i| {
+            D as f64
+                / (0..D)
+                    .map(|k| operator[(D * i + k, D * i + k)])
+                    .sum::<f64>()
+        })
         .collect();
     let n = operator.nrows();
     // Not symmetric about anything a structure would be symmetric about.
@@ -87,6 +97,8 @@ fn steps<const D: usize>(problem: &ContactProblem<D>, operator: &DMatrix<f64>) -
     scale
         .iter()
         .enumerate()
-        .map(|(i, s)| s / (1.05 * largest * (1.0 + problem.friction()[i].friction().powi(2)).sqrt()))
+        .map(|(i, s)| {
+            s / (1.05 * largest * (1.0 + problem.friction()[i].friction().powi(2)).sqrt())
+        })
         .collect()
 }

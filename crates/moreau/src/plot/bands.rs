@@ -1,0 +1,128 @@
+//! Cells filled with the colours of a field: patches of a reference cell, bands in a patch; not
+//! their place in a mesh.
+
+use super::colour::{LEVELS, level};
+use super::pen::Pen;
+use crate::mesh::{CellKind, Element, Quad4, Quad8, Quad9, Tri3, Tri6};
+
+/// Bands of colour in half a patch.
+const MOST_BANDS: usize = 5;
+
+/// Σ N_a v_a.
+pub(super) fn combine(shape: &[f64], nodes: &[usize], value: impl Fn(usize) -> f64) -> f64 {
+    shape.iter().zip(nodes).map(|(s, &n)| s * value(n)).sum()
+}
+
+/// Shape functions of a plane cell.
+fn shape(kind: CellKind, xi: [f64; 2]) -> Vec<f64> {
+    match kind {
+        CellKind::Tri3 => Tri3::shape(xi).to_vec(),
+        CellKind::Tri6 => Tri6::shape(xi).to_vec(),
+        CellKind::Quad4 => Quad4::shape(xi).to_vec(),
+        CellKind::Quad8 => Quad8::shape(xi).to_vec(),
+        CellKind::Quad9 => Quad9::shape(xi).to_vec(),
+        // A plane mesh has no such cells.
+        CellKind::Tet4 | CellKind::Hex8 => Vec::new(),
+    }
+}
+
+/// A reference cell divided into patches.
+pub(super) struct Table {
+    /// Shape functions at the corners of the patches.
+    pub(super) corners: Vec<Vec<f64>>,
+    /// Corners of each patch, three or four.
+    pub(super) patches: Vec<Vec<usize>>,
+}
+
+impl Table {
+    pub(super) fn new(kind: CellKind, [n, m]: [usize; 2]) -> Self {
+        let triangle = kind.corner_count() == 3;
+        let mut corners = Vec::new();
+        let mut patches = Vec::new();
+        for j in 0..=m {
+            for i in 0..=n {
+                let [s, t] = [i as f64 / n as f64, j as f64 / m as f64];
+                let xi = if triangle {
+                    [s, t]
+                } else {
+                    [2.0 * s - 1.0, 2.0 * t - 1.0]
+                };
+                corners.push(shape(kind, xi));
+            }
+        }
+        let at = |i: usize, j: usize| j * (n + 1) + i;
+        for j in 0..m {
+            for i in 0..n {
+                let corners = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                if !triangle || i + j + 1 < n {
+                    patches.push(corners.to_vec());
+                } else if i + j + 1 == n {
+                    // On the slanted side.
+                    patches.push(vec![corners[0], corners[1], corners[3]]);
+                }
+            }
+        }
+        Self { corners, patches }
+    }
+}
+
+/// A place on paper and its part of the colour bar.
+#[derive(Clone, Copy)]
+pub(super) struct Corner {
+    pub(super) place: [f64; 2],
+    pub(super) part: f64,
+}
+
+/// Fills a patch, linear on triangles, in the colours of its levels.
+pub(super) fn fill_bands(pens: &mut [Pen], patch: &[Corner]) {
+    let levels = || patch.iter().map(|c| level(c.part));
+    let (lowest, highest) = (levels().min().unwrap_or(0), levels().max().unwrap_or(0));
+    if lowest == highest {
+        polygon(&mut pens[lowest], patch);
+    } else if let &[a, b, c, d] = patch {
+        // The diagonal along which the values differ less follows the bands.
+        if (a.part - c.part).abs() < (b.part - d.part).abs() {
+            fill_bands(pens, &[a, b, c]);
+            fill_bands(pens, &[a, c, d]);
+        } else {
+            fill_bands(pens, &[a, b, d]);
+            fill_bands(pens, &[b, c, d]);
+        }
+    } else {
+        // Where a field is steep, bands of several levels are still narrow.
+        let stride = (highest + 1 - lowest).div_ceil(MOST_BANDS);
+        for k in (lowest..=highest).step_by(stride) {
+            let bounds = [k, k + stride].map(|k| k as f64 / LEVELS as f64);
+            let above = half(patch, |part| part - bounds[0]);
+            let band = half(&above, |part| bounds[1] - part);
+            polygon(&mut pens[(k + stride / 2).min(highest)], &band);
+        }
+    }
+}
+
+fn polygon(pen: &mut Pen, corners: &[Corner]) {
+    if corners.len() > 2 {
+        pen.polyline(corners.iter().map(|corner| corner.place));
+        pen.close();
+    }
+}
+
+/// The part of a convex polygon where a linear function is positive.
+fn half(polygon: &[Corner], function: impl Fn(f64) -> f64) -> Vec<Corner> {
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (k, &a) in polygon.iter().enumerate() {
+        let b = polygon[(k + 1) % polygon.len()];
+        let (f, g) = (function(a.part), function(b.part));
+        if f >= 0.0 {
+            kept.push(a);
+        }
+        if (f > 0.0 && g < 0.0) || (f < 0.0 && g > 0.0) {
+            let t = f / (f - g);
+            kept.push(Corner {
+                place: [0, 1].map(|i| a.place[i] + t * (b.place[i] - a.place[i])),
+                part: a.part + t * (b.part - a.part),
+            });
+        }
+    }
+    kept
+}

@@ -1,0 +1,275 @@
+//! The sheet that a picture is drawn on: its size, what stands beside the drawing, and the places
+//! of nodes; not the cells.
+
+use super::clip::clip;
+use super::colour::{LEVELS, colour};
+use super::number::{Number, nice_step};
+use super::pen::{FINE, Pen, number, write_text};
+use super::text::{FONT, escape, width, wrap};
+use super::{Field, MeshPicture, PlotError};
+use std::fmt::Write;
+
+const WIDTH: f64 = 760.0;
+const MARGIN: f64 = 16.0;
+const TITLE: f64 = 16.0;
+const TITLE_LINE: f64 = 21.0;
+const LABEL: f64 = 13.0;
+const LABEL_LINE: f64 = 17.0;
+const TICK: f64 = 12.0;
+const TICKS: usize = 5;
+/// Greatest height of the drawing.
+const TALL: f64 = 540.0;
+/// Least width and height of the drawing: room for captions and a colour bar.
+const LEAST: [f64; 2] = [320.0, 130.0];
+const BAR: f64 = 16.0;
+pub(super) const INK: &str = "#222222";
+/// How far polylines go beyond the body, in parts of its size.
+const BEYOND: f64 = 0.12;
+
+pub(super) fn check_length(what: &str, found: usize, nodes: usize) -> Result<(), PlotError> {
+    if found == nodes {
+        Ok(())
+    } else {
+        Err(PlotError::Length {
+            what: what.into(),
+            found,
+            nodes,
+        })
+    }
+}
+
+/// A colour bar.
+pub(super) struct Bar<'a> {
+    pub(super) values: &'a [f64],
+    range: [f64; 2],
+    label: &'a str,
+    ticks: Vec<String>,
+}
+
+impl<'a> Bar<'a> {
+    pub(super) fn new(field: &'a Field, nodes: usize) -> Result<Self, PlotError> {
+        check_length(
+            &format!("the field {:?}", field.label),
+            field.values.len(),
+            nodes,
+        )?;
+        let [mut low, mut high] = field
+            .values
+            .iter()
+            .filter(|v| v.is_finite())
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], &v| {
+                [l.min(v), h.max(v)]
+            });
+        let size = low.abs().max(high.abs());
+        if high - low <= 1e-9 * size {
+            // A constant, but for rounding.
+            let margin = if size > 0.0 { 0.1 * size } else { 1.0 };
+            (low, high) = (low - margin, high + margin);
+        }
+        let step = (high - low) / (TICKS - 1) as f64;
+        if low >= high || !step.is_finite() {
+            return Err(PlotError::NoValues {
+                label: field.label.clone(),
+            });
+        }
+        let number = Number::new(low.abs().max(high.abs()), step).finer();
+        let ticks = (0..TICKS)
+            .map(|k| number.text(low + k as f64 * step))
+            .collect();
+        Ok(Self {
+            values: &field.values,
+            range: [low, high],
+            label: &field.label,
+            ticks,
+        })
+    }
+
+    /// Part of the bar below a value.
+    pub(super) fn part(&self, value: f64) -> f64 {
+        ((value - self.range[0]) / (self.range[1] - self.range[0])).clamp(0.0, 1.0)
+    }
+}
+
+/// Where things are on paper.
+pub(super) struct Sheet {
+    width: f64,
+    height: f64,
+    title: Vec<String>,
+    /// What is drawn: least and greatest corner \[mm\].
+    pub(super) low: [f64; 2],
+    pub(super) high: [f64; 2],
+    /// Least corner of the drawing on paper, and its size.
+    corner: [f64; 2],
+    size: [f64; 2],
+    /// Pixels a millimetre.
+    scale: f64,
+    /// Label of the bar.
+    label: Vec<String>,
+    tick_width: f64,
+}
+
+impl Sheet {
+    pub(super) fn new(
+        picture: &MeshPicture<'_>,
+        nodes: &[[f64; 2]],
+        bar: Option<&Bar<'_>>,
+    ) -> Self {
+        let mut low = [f64::INFINITY; 2];
+        let mut high = [f64::NEG_INFINITY; 2];
+        let mut include = |x: &[f64; 2]| {
+            for i in 0..2 {
+                low[i] = low[i].min(x[i]);
+                high[i] = high[i].max(x[i]);
+            }
+        };
+        nodes.iter().for_each(&mut include);
+        if picture.outline {
+            picture.mesh.nodes().iter().for_each(&mut include);
+        }
+        let beyond = BEYOND * (high[0] - low[0]).max(high[1] - low[1]);
+        let limits = [low.map(|v| v - beyond), high.map(|v| v + beyond)];
+        for points in &picture.polylines {
+            for piece in points.split(|x| !x.iter().all(|v| v.is_finite())) {
+                for x in clip(piece, limits[0], limits[1]).iter().flatten() {
+                    for i in 0..2 {
+                        low[i] = low[i].min(x[i]);
+                        high[i] = high[i].max(x[i]);
+                    }
+                }
+            }
+        }
+        let mut span = [high[0] - low[0], high[1] - low[1]];
+        let longest = span[0].max(span[1]);
+        // A displacement may flatten a body.
+        span = span.map(|v| {
+            if longest > 0.0 {
+                v.max(1e-6 * longest)
+            } else {
+                1.0
+            }
+        });
+
+        let tick_width = bar.map_or(0.0, |bar| {
+            bar.ticks
+                .iter()
+                .map(|tick| width(tick, TICK))
+                .fold(0.0, f64::max)
+        });
+        let beside = |lines: usize| match bar {
+            Some(_) => 22.0 + BAR + 9.0 + tick_width + 6.0 + lines as f64 * LABEL_LINE,
+            None => 0.0,
+        };
+        let room = WIDTH - 2.0 * MARGIN - beside(1);
+        let scale = (room / span[0]).min(TALL / span[1]);
+        let size = [0, 1].map(|i| (scale * span[i]).max(LEAST[i]));
+        let label = bar.map_or_else(Vec::new, |bar| wrap(bar.label, LABEL, size[1] + 24.0));
+        let sheet_width = 2.0 * MARGIN + size[0] + beside(label.len());
+        let title = wrap(&picture.title, TITLE, sheet_width - 2.0 * MARGIN);
+        let top = 16.0 + TITLE_LINE * title.len() as f64;
+        Self {
+            width: sheet_width,
+            height: top + size[1] + 38.0,
+            title,
+            low,
+            high,
+            corner: [MARGIN, top],
+            size,
+            scale,
+            label,
+            tick_width,
+        }
+    }
+
+    /// Place on paper.
+    pub(super) fn place(&self, x: [f64; 2]) -> [f64; 2] {
+        let free = [0, 1].map(|i| 0.5 * (self.size[i] - self.scale * (self.high[i] - self.low[i])));
+        [
+            self.corner[0] + free[0] + self.scale * (x[0] - self.low[0]),
+            self.corner[1] + free[1] + self.scale * (self.high[1] - x[1]),
+        ]
+    }
+
+    /// Width of a cell if all were squares.
+    pub(super) fn typical_cell(&self, cells: usize) -> f64 {
+        let area = (self.high[0] - self.low[0]) * (self.high[1] - self.low[1]);
+        self.scale * (area / cells as f64).sqrt()
+    }
+
+    pub(super) fn head(&self) -> String {
+        let (w, h) = (number(self.width), number(self.height));
+        let name = escape(&self.title.join(" "));
+        let mut svg = format!(
+            r#"<svg viewBox="0 0 {w} {h}" role="img" aria-label="{name}" xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}" font-family="{FONT}" fill="{INK}">"#
+        );
+        svg.push_str(r##"<rect width="100%" height="100%" fill="#ffffff"/>"##);
+        for (k, line) in self.title.iter().enumerate() {
+            let place = [0.5 * self.width, 25.0 + k as f64 * TITLE_LINE];
+            write_text(&mut svg, place, TITLE, "middle", "", line);
+        }
+        svg
+    }
+
+    pub(super) fn bar(&self, svg: &mut String, bar: &Bar<'_>) {
+        let left = self.corner[0] + self.size[0] + 22.0;
+        let (top, height) = (self.corner[1] + 1.0, self.size[1] - 2.0);
+        // Each colour up to the top, the next one on it: no seams.
+        for k in 0..LEVELS {
+            let part = height * (LEVELS - k) as f64 / LEVELS as f64;
+            let _ = write!(
+                svg,
+                r#"<rect x="{}" y="{}" width="{BAR}" height="{}" fill="{}"/>"#,
+                number(left),
+                number(top),
+                number(part),
+                colour(k),
+            );
+        }
+        let mut pen = Pen::new(FINE);
+        pen.move_to([left, top]);
+        for corner in [[BAR, 0.0], [BAR, height], [0.0, height]] {
+            pen.line_to([left + corner[0], top + corner[1]]);
+        }
+        pen.close();
+        for (k, tick) in bar.ticks.iter().enumerate() {
+            let y = top + height * (1.0 - k as f64 / (TICKS - 1) as f64);
+            pen.move_to([left + BAR, y]);
+            pen.line_to([left + BAR + 5.0, y]);
+            write_text(svg, [left + BAR + 9.0, y + 4.3], TICK, "start", "", tick);
+        }
+        pen.stroke(svg, INK, 0.9, "");
+        for (k, line) in self.label.iter().enumerate() {
+            let x = left + BAR + 9.0 + self.tick_width + 6.0 + (k as f64 + 0.7) * LABEL_LINE;
+            let y = top + 0.5 * height;
+            let turn = format!(r#" transform="rotate(-90,{},{})""#, number(x), number(y));
+            write_text(svg, [x, y], LABEL, "middle", &turn, line);
+        }
+    }
+
+    /// Magnification and a scale.
+    pub(super) fn captions(&self, svg: &mut String, picture: &MeshPicture<'_>) {
+        let y = self.height - 12.0;
+        if picture.displacement.is_some() && picture.magnification != 1.0 {
+            let m = picture.magnification;
+            let times = if (1e-3..1e5).contains(&m.abs()) {
+                format!("displacement × {m}")
+            } else {
+                format!("displacement × {m:.2e}")
+            };
+            let times = times.replace('-', "−");
+            write_text(svg, [self.corner[0], y], TICK, "start", "", &times);
+        }
+        let length = nice_step(50.0 / self.scale, 1.0);
+        let right = self.corner[0] + self.size[0];
+        let left = right - self.scale * length;
+        let mut pen = Pen::new(FINE);
+        for x in [left, right] {
+            pen.move_to([x, y - 8.0]);
+            pen.line_to([x, y]);
+        }
+        pen.move_to([left, y - 4.0]);
+        pen.line_to([right, y - 4.0]);
+        pen.stroke(svg, INK, 1.0, "");
+        let text = format!("{} mm", Number::new(length, length).text(length));
+        write_text(svg, [left - 7.0, y], TICK, "end", "", &text);
+    }
+}
