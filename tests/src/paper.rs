@@ -9,24 +9,24 @@ use moreau::mesh::{
 };
 use std::error::Error;
 
-/// Young's modulus of both problems [MPa].
+/// Young's modulus of both problems \[MPa\].
 pub const YOUNG: f64 = 210_000.0;
 /// Poisson's ratio of both problems.
 pub const POISSON: f64 = 0.3;
-/// Yield stress of both problems [MPa].
+/// Yield stress of both problems \[MPa\].
 pub const YIELD_STRESS: f64 = 300.0;
-/// Half-width of Prandtl's punch [mm].
+/// Half-width of Prandtl's punch \[mm\].
 pub const HALF_WIDTH: f64 = 10.0;
-/// Travel of Prandtl's punch [mm], in [`PRANDTL_INCREMENTS`].
+/// Travel of Prandtl's punch \[mm\], in [`PRANDTL_INCREMENTS`].
 pub const PRANDTL_TRAVEL: f64 = 0.4;
 /// Increments of Prandtl's problem.
 pub const PRANDTL_INCREMENTS: usize = 40;
-/// Travel of the punch on the block [mm], in [`BLOCK_INCREMENTS`].
+/// Travel of the punch on the block \[mm\], in [`BLOCK_INCREMENTS`].
 pub const BLOCK_TRAVEL: f64 = 0.2;
 /// Increments of the punched block.
 pub const BLOCK_INCREMENTS: usize = 20;
 
-/// Prandtl's limit load of the whole punch, B σ_y/√3 (2 + π) [N/mm].
+/// Prandtl's limit load of the whole punch, B σ_y/√3 (2 + π) \[N/mm\].
 pub fn prandtl_load() -> f64 {
     2.0 * HALF_WIDTH * YIELD_STRESS / 3f64.sqrt() * (2.0 + std::f64::consts::PI)
 }
@@ -74,7 +74,7 @@ pub fn prandtl_step(travel: f64) -> Step<2> {
         .tool("punch", [0.0, -travel])
 }
 
-/// Load of the whole punch [N/mm].
+/// Load of the whole punch \[N/mm\].
 ///
 /// # Errors
 /// None on a driver of [`prandtl`].
@@ -113,7 +113,7 @@ pub fn block_step(travel: f64) -> Step<2> {
     Step::new("press").fix("block.left", &[Axis::X]).displace("punch", Axis::Y, -travel)
 }
 
-/// Load of the punch on half of the block [N/mm].
+/// Load of the punch on half of the block \[N/mm\].
 ///
 /// # Errors
 /// None on a driver of [`block`].

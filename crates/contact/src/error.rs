@@ -55,9 +55,9 @@ pub enum ContactError {
         solver: &'static str,
         /// Iterations done.
         iterations: usize,
-        /// Largest natural-map residual of a contact [N].
+        /// Largest natural-map residual of a contact \[N\].
         residual: f64,
-        /// Residual asked for [N].
+        /// Residual asked for \[N\].
         tolerance: f64,
     },
 }

@@ -5,7 +5,7 @@ use nalgebra::SVector;
 
 /// A rigid obstacle, known by its signed distance.
 pub trait Obstacle<const D: usize>: Send + Sync {
-    /// Signed distance of a point to the surface [mm], positive outside the obstacle.
+    /// Signed distance of a point to the surface \[mm\], positive outside the obstacle.
     fn distance(&self, x: &SVector<f64, D>) -> f64;
 
     /// Gradient of the distance at x: the unit normal that points from the obstacle (Ω_A) into

@@ -10,10 +10,10 @@ use nalgebra::{DMatrix, DVector};
 /// t = S (u − g) − f,      (−u, t) extremal for [38] at every contact.
 /// ```
 ///
-/// u = (u_n, u_t) is the gap at the end of the step and the slip of the step [mm], t the contact
-/// force on the body [N]; S is the stiffness of the structure condensed on the interface [N/mm],
-/// symmetric positive semi-definite, `D·contacts` square; f the condensed load [N] and g the
-/// displacement about which the structure was linearised [mm].
+/// u = (u_n, u_t) is the gap at the end of the step and the slip of the step \[mm\], t the contact
+/// force on the body \[N\]; S is the stiffness of the structure condensed on the interface \[N/mm\],
+/// symmetric positive semi-definite, `D·contacts` square; f the condensed load \[N\] and g the
+/// displacement about which the structure was linearised \[mm\].
 #[derive(Debug, Clone)]
 pub struct ContactProblem<const D: usize> {
     stiffness: DMatrix<f64>,
@@ -23,23 +23,23 @@ pub struct ContactProblem<const D: usize> {
     previous: Vec<Local<D>>,
 }
 
-/// The structure seen from its contacts: u = W t + q, with the Delassus operator W [mm/N].
+/// The structure seen from its contacts: u = W t + q, with the Delassus operator W \[mm/N\].
 #[derive(Debug, Clone)]
 pub struct Delassus<const D: usize> {
     /// W = S⁻¹, symmetric positive definite.
     pub operator: DMatrix<f64>,
-    /// Displacement without contact forces, q = g + W f [mm].
+    /// Displacement without contact forces, q = g + W f \[mm\].
     pub free: DVector<f64>,
 }
 
 /// How far a pair (u, t) is from the contact law: the bipotential gap and what it cannot see.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Certificate {
-    /// Σ b_c(−u, t) + t·u ≥ 0 over the contacts, [38] and [39]: zero exactly at the law [N·mm].
+    /// Σ b_c(−u, t) + t·u ≥ 0 over the contacts, \[38\] and \[39\]: zero exactly at the law \[N·mm\].
     pub bipotential_gap: f64,
-    /// Largest penetration ⟨−u_n⟩ [mm], where b_c = +∞; the gap above is taken at max(u_n, 0).
+    /// Largest penetration ⟨−u_n⟩ \[mm\], where b_c = +∞; the gap above is taken at max(u_n, 0).
     pub penetration: f64,
-    /// Largest distance of a force to the Coulomb cone [N], where b_c = +∞; the gap above is
+    /// Largest distance of a force to the Coulomb cone \[N\], where b_c = +∞; the gap above is
     /// taken at its projection.
     pub excess_force: f64,
 }
@@ -141,7 +141,7 @@ impl<const D: usize> ContactProblem<D> {
         self.friction.len()
     }
 
-    /// S, `D·contacts` square [N/mm].
+    /// S, `D·contacts` square \[N/mm\].
     pub fn stiffness(&self) -> &DMatrix<f64> {
         &self.stiffness
     }
@@ -151,25 +151,29 @@ impl<const D: usize> ContactProblem<D> {
         &self.friction
     }
 
-    /// Contact forces t₀ at the start of the step [N].
+    /// Contact forces t₀ at the start of the step \[N\].
     pub fn previous(&self) -> &[Local<D>] {
         &self.previous
     }
 
-    /// Displacement g about which the structure was linearised [mm].
+    /// Displacement g about which the structure was linearised \[mm\].
     pub fn origin(&self) -> &[Local<D>] {
         &self.origin
     }
 
-    /// Forces that displacements u ask of the structure: t = S (u − g) − f [N].
+    /// Forces that displacements u ask of the structure: t = S (u − g) − f \[N\].
     pub fn force(&self, u: &[Local<D>]) -> Vec<Local<D>> {
-        let relative = DVector::from_iterator(
-            self.load.len(),
-            u.iter()
-                .zip(&self.origin)
-                .flat_map(|(u, g)| (0..D).map(move |k| u[k] - g[k])),
-        );
-        split(&(&self.stiffness * relative - &self.load))
+        self.force_of(&self.relative(u))
+    }
+
+    /// Displacements from the origin, x = u − g \[mm\].
+    pub(crate) fn relative(&self, u: &[Local<D>]) -> Vec<Local<D>> {
+        u.iter().zip(&self.origin).map(|(u, g)| u - g).collect()
+    }
+
+    /// Forces for displacements x = u − g from the origin: t = S x − f \[N\].
+    pub(crate) fn force_of(&self, x: &[Local<D>]) -> Vec<Local<D>> {
+        split(&(&self.stiffness * stack(x) - &self.load))
     }
 
     /// The form u = W t + q.
@@ -187,7 +191,7 @@ impl<const D: usize> ContactProblem<D> {
         Ok(Delassus { operator, free })
     }
 
-    /// Parameter α of [90′] for contact i [N/mm]: the mean stiffness of its own components, so
+    /// Parameter α of \[90′\] for contact i \[N/mm\]: the mean stiffness of its own components, so
     /// that a residual in newtons weighs gaps and forces alike in any system of units.
     pub fn alpha(&self, i: usize) -> f64 {
         (0..D)
@@ -196,7 +200,7 @@ impl<const D: usize> ContactProblem<D> {
             / D as f64
     }
 
-    /// Largest norm over the contacts of the natural map t − proj(t − α ũ), [90′] [N].
+    /// Largest norm over the contacts of the natural map t − proj(t − α ũ), \[90′\] \[N\].
     pub fn residual(&self, u: &[Local<D>], t: &[Local<D>]) -> f64 {
         (0..self.contacts())
             .map(|i| {
@@ -207,7 +211,7 @@ impl<const D: usize> ContactProblem<D> {
             .fold(0.0, f64::max)
     }
 
-    /// Size of the forces in play, against which a residual is judged [N]: the largest of the
+    /// Size of the forces in play, against which a residual is judged \[N\]: the largest of the
     /// forces, of the condensed load and of the force that would close the largest gap.
     pub fn force_scale(&self, t: &[Local<D>]) -> f64 {
         let forces = t
@@ -218,19 +222,15 @@ impl<const D: usize> ContactProblem<D> {
         forces.max(self.load.amax()).max(f64::MIN_POSITIVE)
     }
 
-    /// Rounding of the forces S (u − g) − f [N]: no residual can be expected below it.
-    pub fn rounding(&self, u: &[Local<D>]) -> f64 {
-        let reach = u
-            .iter()
-            .zip(&self.origin)
-            .map(|(u, g)| (u - g).amax())
-            .fold(0.0, f64::max);
+    /// Rounding of forces S x − f \[N\], x = u − g: no residual can be expected below it.
+    pub(crate) fn rounding(&self, x: &[Local<D>]) -> f64 {
+        let reach = x.iter().map(|x| x.amax()).fold(0.0, f64::max);
         let stiffest = self.stiffness.diagonal().amax();
         let terms = (self.load.len() as f64).sqrt();
         4.0 * f64::EPSILON * terms * (stiffest * reach + self.load.amax())
     }
 
-    /// Status of every contact at (u, t), [35].
+    /// Status of every contact at (u, t), \[35\].
     pub fn statuses(&self, u: &[Local<D>], t: &[Local<D>]) -> Vec<Status> {
         (0..self.contacts())
             .map(|i| self.friction[i].status(&u[i], &t[i], self.alpha(i)))
@@ -244,6 +244,11 @@ pub(crate) fn split<const D: usize>(all: &DVector<f64>) -> Vec<Local<D>> {
         .chunks_exact(D)
         .map(Local::from_column_slice)
         .collect()
+}
+
+/// All components of all contacts in one vector.
+pub(crate) fn stack<const D: usize>(t: &[Local<D>]) -> DVector<f64> {
+    DVector::from_iterator(D * t.len(), t.iter().flat_map(|t| (0..D).map(|k| t[k])))
 }
 
 /// Inverse of a symmetric positive definite matrix.

@@ -2,7 +2,7 @@
 //! cells; not their assembly.
 
 use moreau_laws::{BulkLaw, IncrementalPotential};
-use moreau_mandel::Sym2;
+use moreau_mandel::{Sym2, Sym4};
 use moreau_mesh::{Element, Hypothesis, Integration, Mesh};
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
@@ -24,22 +24,22 @@ pub enum Stiffness {
 pub struct CellResult<'a> {
     /// Index of the cell in its block.
     pub cell: usize,
-    /// ∫ Bᵀ σ₁ dΩ, node by node [N].
+    /// ∫ Bᵀ σ₁ dΩ, node by node \[N\].
     pub force: &'a [f64],
-    /// ∫ Bᵀ C B dΩ [N/mm], row by row, upper triangle only; empty if not asked for.
+    /// ∫ Bᵀ C B dΩ \[N/mm\], row by row, upper triangle only; empty if not asked for.
     pub stiffness: &'a [f64],
 }
 
 /// Energies and plastic activity of a block at the end of the candidate step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BlockEnergy {
-    /// Stored energy [N·mm].
+    /// Stored energy \[N·mm\].
     pub stored: f64,
-    /// Plastic dissipation of the step [N·mm].
+    /// Plastic dissipation of the step \[N·mm\].
     pub dissipated: f64,
-    /// Volume in which plastic strain grew in the step [mm³].
+    /// Volume in which plastic strain grew in the step \[mm³\].
     pub plastic_volume: f64,
-    /// Volume of the block [mm³].
+    /// Volume of the block \[mm³\].
     pub volume: f64,
 }
 
@@ -48,11 +48,11 @@ pub struct BlockEnergy {
 pub struct PointState<const D: usize> {
     /// Cell of the mesh.
     pub cell: usize,
-    /// Position in the undeformed body [mm].
+    /// Position in the undeformed body \[mm\].
     pub position: [f64; D],
-    /// Quadrature weight times Jacobian times measure [mm³].
+    /// Quadrature weight times Jacobian times measure \[mm³\].
     pub weight: f64,
-    /// Cauchy stress [MPa].
+    /// Cauchy stress \[MPa\].
     pub stress: Sym2,
     /// Equivalent plastic strain p.
     pub plastic_strain: f64,
@@ -77,7 +77,7 @@ pub trait Block<const D: usize>: Send + Sync {
         sink: &mut dyn FnMut(CellResult<'_>),
     ) -> bool;
 
-    /// ∫ ΔV(Δε) dΩ, the bulk part of ΔΦ [74] [N·mm].
+    /// ∫ ΔV(Δε) dΩ, the bulk part of ΔΦ \[74\] \[N·mm\].
     fn potential(&self, d_u: &[f64]) -> f64;
 
     /// Energies of the candidate that the last evaluation left.
@@ -170,15 +170,77 @@ where
             kind: PhantomData,
         }
     }
+}
 
-    /// Strain increment at point `g` (of the rule) of a cell.
-    fn strain(shape: &[f64; N], point: &Point<D, N>, nodes: &[usize; N], d_u: &[f64]) -> Sym2 {
+/// What a cell is evaluated from.
+struct CellView<'a, S, const D: usize, const N: usize> {
+    shapes: &'a [[f64; N]],
+    points: &'a [Point<D, N>],
+    old: &'a [S],
+    nodes: &'a [usize; N],
+}
+
+impl<S: Copy, const D: usize, const N: usize> CellView<'_, S, D, N> {
+    /// Operators B_a of \[77\] at a point of the rule, and the strain increment there.
+    #[inline]
+    fn strain<H: Hypothesis<D>>(&self, g: usize, d_u: &[f64]) -> ([SMatrix<f64, 6, D>; N], Sym2) {
+        let (shape, point) = (&self.shapes[g], &self.points[g]);
+        let operator = std::array::from_fn(|a| {
+            H::strain_operator(shape[a], &point.gradient[a], &point.position)
+        });
         let mut d_eps = Sym2::zeros();
         for a in 0..N {
-            let u = SVector::<f64, D>::from_column_slice(&d_u[D * nodes[a]..D * nodes[a] + D]);
-            d_eps += H::strain_operator(shape[a], &point.gradient[a], &point.position) * u;
+            let first = D * self.nodes[a];
+            d_eps += operator[a] * SVector::<f64, D>::from_column_slice(&d_u[first..first + D]);
         }
-        d_eps
+        (operator, d_eps)
+    }
+
+    /// Forces, the upper triangle of the stiffness unless its slice is empty, and new states.
+    /// Returns whether plastic strain grows.
+    #[inline]
+    fn evaluate<H: Hypothesis<D>, L: BulkLaw<State = S>>(
+        &self,
+        law: &L,
+        elastic: Option<&Sym4>,
+        d_u: &[f64],
+        (force, stiffness, new): (&mut [f64], &mut [f64], &mut [S]),
+    ) -> bool {
+        let size = N * D;
+        let mut flows = false;
+        force.fill(0.0);
+        stiffness.fill(0.0);
+        for g in 0..self.points.len() {
+            let weight = self.points[g].weight;
+            let (operator, d_eps) = self.strain::<H>(g, d_u);
+            let response = law.respond(&self.old[g], &d_eps);
+            new[g] = response.state;
+            flows |= law.equivalent_plastic_strain(&new[g])
+                > law.equivalent_plastic_strain(&self.old[g]);
+            let stress = response.stress * weight;
+            for a in 0..N {
+                let f = operator[a].tr_mul(&stress);
+                for i in 0..D {
+                    force[D * a + i] += f[i];
+                }
+            }
+            if stiffness.is_empty() {
+                continue;
+            }
+            let tangent = elastic.unwrap_or(&response.tangent) * weight;
+            for b in 0..N {
+                let column = tangent * operator[b];
+                for a in 0..=b {
+                    let k_ab = operator[a].tr_mul(&column);
+                    for i in 0..D {
+                        for j in 0..D {
+                            stiffness[(D * a + i) * size + D * b + j] += k_ab[(i, j)];
+                        }
+                    }
+                }
+            }
+        }
+        flows
     }
 }
 
@@ -220,64 +282,27 @@ where
             let count = PANEL.min(self.cells.len() - start);
             let range = start * per_cell..(start + count) * per_cell;
             let (points, old) = (&self.points[range.clone()], &self.old[range.clone()]);
-            let (nodes, shapes) = (&self.nodes[start..start + count], &self.shapes);
-            let cell = |(k, ((force, matrix), new)): (
-                usize,
-                ((&mut [f64], &mut [f64]), &mut [L::State]),
-            )| {
-                let mut flows = false;
-                force.fill(0.0);
-                matrix.fill(0.0);
-                for g in 0..per_cell {
-                    let point = &points[k * per_cell + g];
-                    let operator: [SMatrix<f64, 6, D>; N] = std::array::from_fn(|a| {
-                        H::strain_operator(shapes[g][a], &point.gradient[a], &point.position)
-                    });
-                    let mut d_eps = Sym2::zeros();
-                    for a in 0..N {
-                        let first = D * nodes[k][a];
-                        d_eps += operator[a]
-                            * SVector::<f64, D>::from_column_slice(&d_u[first..first + D]);
-                    }
-                    let response = law.respond(&old[k * per_cell + g], &d_eps);
-                    new[g] = response.state;
-                    flows |= law.equivalent_plastic_strain(&new[g])
-                        > law.equivalent_plastic_strain(&old[k * per_cell + g]);
-                    let stress = response.stress * point.weight;
-                    for a in 0..N {
-                        let f = operator[a].tr_mul(&stress);
-                        for i in 0..D {
-                            force[D * a + i] += f[i];
-                        }
-                    }
-                    if entries == 0 {
-                        continue;
-                    }
-                    let tangent = elastic.unwrap_or(response.tangent) * point.weight;
-                    for b in 0..N {
-                        let column = tangent * operator[b];
-                        for a in 0..=b {
-                            let k_ab = operator[a].tr_mul(&column);
-                            for i in 0..D {
-                                for j in 0..D {
-                                    matrix[(D * a + i) * size + D * b + j] += k_ab[(i, j)];
-                                }
-                            }
-                        }
-                    }
-                }
-                flows
+            let nodes = &self.nodes[start..start + count];
+            let at = |k: usize| CellView {
+                shapes: &self.shapes,
+                points: &points[k * per_cell..(k + 1) * per_cell],
+                old: &old[k * per_cell..(k + 1) * per_cell],
+                nodes: &nodes[k],
             };
             let forces = &mut self.force[..count * size];
             let matrices = &mut self.stiffness[..count * entries.max(1)];
             let new = &mut self.new[range];
+            // The order of the cells, and with it every sum, is the same for any number of threads.
             flows |= if count < 2 * GRAIN {
                 forces
                     .chunks_mut(size)
                     .zip(matrices.chunks_mut(entries.max(1)))
                     .zip(new.chunks_mut(per_cell))
                     .enumerate()
-                    .map(cell)
+                    .map(|(k, ((force, matrix), new))| {
+                        let matrix = &mut matrix[..entries];
+                        at(k).evaluate::<H, L>(law, elastic.as_ref(), d_u, (force, matrix, new))
+                    })
                     .fold(false, |a, b| a | b)
             } else {
                 forces
@@ -286,7 +311,10 @@ where
                     .zip(new.par_chunks_mut(per_cell))
                     .enumerate()
                     .with_min_len(GRAIN)
-                    .map(cell)
+                    .map(|(k, ((force, matrix), new))| {
+                        let matrix = &mut matrix[..entries];
+                        at(k).evaluate::<H, L>(law, elastic.as_ref(), d_u, (force, matrix, new))
+                    })
                     .reduce(|| false, |a, b| a | b)
             };
             for k in 0..count {
@@ -303,12 +331,21 @@ where
     fn potential(&self, d_u: &[f64]) -> f64 {
         let per_cell = self.shapes.len();
         let mut sum = 0.0;
-        for (k, point) in self.points.iter().enumerate() {
-            let (cell, g) = (k / per_cell, k % per_cell);
-            let d_eps = Self::strain(&self.shapes[g], point, &self.nodes[cell], d_u);
-            // ΔV leaves out the linear part σ₀·Δε, [48]: it is what equilibrium held before.
-            let linear = self.law.stress(&self.old[k]).dot(&d_eps);
-            sum += point.weight * (self.law.potential(&self.old[k], &d_eps) + linear);
+        for (k, nodes) in self.nodes.iter().enumerate() {
+            let range = k * per_cell..(k + 1) * per_cell;
+            let (points, old) = (&self.points[range.clone()], &self.old[range]);
+            let view = CellView {
+                shapes: &self.shapes,
+                points,
+                old,
+                nodes,
+            };
+            for g in 0..per_cell {
+                let (_, d_eps) = view.strain::<H>(g, d_u);
+                // ΔV leaves out the linear part σ₀·Δε, [48]: it is what equilibrium held before.
+                let linear = self.law.stress(&old[g]).dot(&d_eps);
+                sum += points[g].weight * (self.law.potential(&old[g], &d_eps) + linear);
+            }
         }
         sum
     }

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 pub enum Nesting {
     /// Inside every Newton iteration on the bulk, condensed on the interface.
     Inside,
-    /// Around the nonlinear solve, as in the paper: Uzawa's prediction and correction [90′] with
+    /// Around the nonlinear solve, as in the paper: Uzawa's prediction and correction \[90′\] with
     /// one nonlinear problem under frozen contact forces per iteration. The contact method of the
     /// settings is not used. Bodies must be held without contact.
     Outside {
@@ -60,11 +60,11 @@ impl<const D: usize> Default for Settings<D> {
 #[derive(Debug, Clone)]
 pub(crate) struct State<const D: usize> {
     pub(crate) increment: usize,
-    /// Displacement at every degree of freedom [mm].
+    /// Displacement at every degree of freedom \[mm\].
     pub(crate) displacement: Vec<f64>,
     /// Displacement increment of the last increment, and the loading that it answered.
     pub(crate) last: Option<(Vec<f64>, Loading<D>)>,
-    /// Internal force at every degree of freedom [N].
+    /// Internal force at every degree of freedom \[N\].
     pub(crate) internal: Vec<f64>,
     pub(crate) loading: Loading<D>,
     pub(crate) energies: Energies,
@@ -138,7 +138,7 @@ impl<const D: usize> Driver<D> {
         &self.mesh
     }
 
-    /// Displacement of a node since the virgin state [mm].
+    /// Displacement of a node since the virgin state \[mm\].
     pub fn displacement(&self, node: usize) -> SVector<f64, D> {
         SVector::from_column_slice(&self.state.displacement[D * node..D * node + D])
     }
@@ -176,7 +176,7 @@ impl<const D: usize> Driver<D> {
         self.blocks.iter().flat_map(|b| b.points()).collect()
     }
 
-    /// Sum of the reactions of the prescribed displacements of a group [N]: the force that the
+    /// Sum of the reactions of the prescribed displacements of a group \[N\]: the force that the
     /// supports exert on the body.
     ///
     /// # Errors
@@ -189,7 +189,7 @@ impl<const D: usize> Driver<D> {
         Ok(sum)
     }
 
-    /// Force that the prescribed displacements of a node exert on it [N].
+    /// Force that the prescribed displacements of a node exert on it \[N\].
     pub fn nodal_reaction(&self, node: usize) -> SVector<f64, D> {
         let state = &self.state;
         let contact = state.contacts.iter().find(|c| c.node == node);
@@ -203,7 +203,7 @@ impl<const D: usize> Driver<D> {
         })
     }
 
-    /// Sum of the forces that a tool exerts on the body [N].
+    /// Sum of the forces that a tool exerts on the body \[N\].
     ///
     /// # Errors
     /// [`ModelError::UnknownTool`].

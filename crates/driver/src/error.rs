@@ -51,7 +51,7 @@ pub enum ModelError {
     SharedContactNode {
         /// The node.
         node: usize,
-        /// Its position [mm].
+        /// Its position \[mm\].
         position: Vec<f64>,
         /// Tool of the first contact.
         first: String,
@@ -80,9 +80,9 @@ pub enum ModelError {
         node: usize,
         /// The component, x, y or z.
         axis: char,
-        /// The first value [mm].
+        /// The first value \[mm\].
         first: f64,
-        /// The second value [mm].
+        /// The second value \[mm\].
         second: f64,
     },
     /// A number that is NaN or infinite, or outside of its range.
@@ -114,9 +114,9 @@ fn nearest_hint(nearest: &Option<String>) -> String {
 pub struct Imbalance {
     /// The node.
     pub node: usize,
-    /// Its position in the undeformed body [mm].
+    /// Its position in the undeformed body \[mm\].
     pub position: Vec<f64>,
-    /// Norm of the force that nothing balances [N].
+    /// Norm of the force that nothing balances \[N\].
     pub force: f64,
 }
 
@@ -144,9 +144,9 @@ pub enum StepError {
     NotConverged {
         /// Iterations done.
         iterations: usize,
-        /// Largest nodal force that nothing balances [N].
+        /// Largest nodal force that nothing balances \[N\].
         out_of_balance: f64,
-        /// What was asked for [N].
+        /// What was asked for \[N\].
         tolerance: f64,
         /// Up to five nodes with the largest imbalance.
         worst: Vec<Imbalance>,
@@ -163,7 +163,7 @@ pub enum StepError {
         node: usize,
         /// The component, x, y or z.
         axis: char,
-        /// Position of the node [mm].
+        /// Position of the node \[mm\].
         position: Vec<f64>,
     },
     /// The step was cut as far as allowed.

@@ -39,7 +39,7 @@ pub(crate) struct Iterate {
     /// Displacement increments of the step.
     pub(crate) d_u: Vec<f64>,
     pub(crate) assembly: Assembly,
-    /// Contact forces at every degree of freedom [N].
+    /// Contact forces at every degree of freedom \[N\].
     pub(crate) contact: Vec<f64>,
     /// Whether displacements and contact forces are those of a full Newton step, which obeys the
     /// contact law.
@@ -219,10 +219,11 @@ impl<const D: usize> Driver<D> {
         )
     }
 
-    /// Out-of-balance force at which an increment is accepted [N]: the tolerance, or the rounding
+    /// Out-of-balance force at which an increment is accepted \[N\]: the tolerance, or the rounding
     /// of internal forces where the body moves almost rigidly.
     pub(crate) fn target(&self, system: &System, scale: f64, d_u: &[f64]) -> f64 {
-        let rounding = 64.0 * f64::EPSILON * system.stiffest() * largest(d_u.iter().copied());
+        let motion = largest(d_u.iter().copied()).min(self.mesh.size());
+        let rounding = 64.0 * f64::EPSILON * system.stiffest() * motion;
         (self.settings.tolerance * scale).max(rounding)
     }
 
@@ -297,7 +298,7 @@ impl<const D: usize> Driver<D> {
         pairs.map(|(k, c)| k.local_force(&c.force)).collect()
     }
 
-    /// Contact forces at every degree of freedom [N].
+    /// Contact forces at every degree of freedom \[N\].
     pub(crate) fn contact_forces(&self, kinematics: &[Kinematics<D>], t: &[Local<D>]) -> Vec<f64> {
         let mut forces = vec![0.0; self.state.displacement.len()];
         for ((p, k), t) in self.points.iter().zip(kinematics).zip(t) {
@@ -562,7 +563,7 @@ pub(crate) fn largest(values: impl Iterator<Item = f64>) -> f64 {
     })
 }
 
-/// Size of the forces in play, against which imbalance is judged [N].
+/// Size of the forces in play, against which imbalance is judged \[N\].
 pub(crate) fn force_scale<const D: usize>(
     assembly: &Assembly,
     end: &Loading<D>,

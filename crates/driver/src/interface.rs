@@ -20,7 +20,7 @@ pub(crate) struct ContactPoint<const D: usize> {
     /// Index of the contact (surface and tool) that it belongs to.
     pub(crate) contact: usize,
     pub(crate) law: Coulomb,
-    /// Share of the surface [mm²], to turn a force into a traction.
+    /// Share of the surface \[mm²\], to turn a force into a traction.
     pub(crate) area: f64,
     pub(crate) kind: NodeKind,
 }
@@ -38,7 +38,7 @@ pub(crate) struct Kinematics<const D: usize> {
     to_node: SMatrix<f64, D, D>,
     /// Unit normal and tangents, for forces in space.
     axes: SMatrix<f64, D, D>,
-    /// Gap at the end of the step and slip of the step [mm].
+    /// Gap at the end of the step and slip of the step \[mm\].
     pub(crate) u: Local<D>,
     /// Components that take part in the law.
     pub(crate) active: [bool; D],
@@ -102,12 +102,12 @@ impl<const D: usize> Kinematics<D> {
         out
     }
 
-    /// Force on the body in space, for a force t in the frame [N].
+    /// Force on the body in space, for a force t in the frame \[N\].
     pub(crate) fn force(&self, t: &Local<D>) -> SVector<f64, D> {
         self.axes * t
     }
 
-    /// A force in space, seen in the frame [N].
+    /// A force in space, seen in the frame \[N\].
     pub(crate) fn local_force(&self, f: &SVector<f64, D>) -> Local<D> {
         self.axes.tr_mul(f)
     }

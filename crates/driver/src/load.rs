@@ -86,7 +86,7 @@ impl<const D: usize> Step<D> {
             .fold(self, |step, &axis| step.displace(on, axis, 0.0))
     }
 
-    /// Prescribes one component of the displacement of a group [mm].
+    /// Prescribes one component of the displacement of a group \[mm\].
     pub fn displace(self, on: &str, axis: Axis, value: f64) -> Self {
         self.with(Condition::Displace {
             on: on.into(),
@@ -95,7 +95,7 @@ impl<const D: usize> Step<D> {
         })
     }
 
-    /// A force [N], shared equally by the nodes of a group.
+    /// A force \[N\], shared equally by the nodes of a group.
     pub fn force(self, on: &str, force: [f64; D]) -> Self {
         self.with(Condition::Force {
             on: on.into(),
@@ -103,7 +103,7 @@ impl<const D: usize> Step<D> {
         })
     }
 
-    /// A pressure [MPa] on a group of facets, positive towards the body.
+    /// A pressure \[MPa\] on a group of facets, positive towards the body.
     pub fn pressure(self, on: &str, pressure: f64) -> Self {
         self.with(Condition::Pressure {
             on: on.into(),
@@ -111,7 +111,7 @@ impl<const D: usize> Step<D> {
         })
     }
 
-    /// A traction [MPa] on a group of facets, [78].
+    /// A traction \[MPa\] on a group of facets, \[78\].
     pub fn traction(self, on: &str, traction: [f64; D]) -> Self {
         self.with(Condition::Traction {
             on: on.into(),
@@ -119,7 +119,7 @@ impl<const D: usize> Step<D> {
         })
     }
 
-    /// A force per volume [N/mm³] in a group of cells.
+    /// A force per volume \[N/mm³\] in a group of cells.
     pub fn body_force(self, on: &str, density: [f64; D]) -> Self {
         self.with(Condition::BodyForce {
             on: on.into(),
@@ -127,7 +127,7 @@ impl<const D: usize> Step<D> {
         })
     }
 
-    /// Moves a tool by a total translation from its first position [mm].
+    /// Moves a tool by a total translation from its first position \[mm\].
     pub fn tool(self, name: &str, displacement: [f64; D]) -> Self {
         self.with(Condition::Tool {
             name: name.into(),
@@ -144,11 +144,11 @@ impl<const D: usize> Step<D> {
 /// All that acts on the model at an instant: totals, not increments.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loading<const D: usize> {
-    /// Prescribed displacements by degree of freedom, `D·node + axis` [mm].
+    /// Prescribed displacements by degree of freedom, `D·node + axis` \[mm\].
     pub displacement: BTreeMap<usize, f64>,
-    /// Applied force at every degree of freedom [N].
+    /// Applied force at every degree of freedom \[N\].
     pub force: Vec<f64>,
-    /// Translation of every tool from its first position [mm].
+    /// Translation of every tool from its first position \[mm\].
     pub tools: Vec<SVector<f64, D>>,
 }
 

@@ -5,7 +5,7 @@ use moreau_laws::{Local, Status};
 use moreau_mesh::NodeKind;
 use nalgebra::SVector;
 
-/// Energies since the virgin state [N·mm].
+/// Energies since the virgin state \[N·mm\].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Energies {
     /// Work of applied forces, prescribed displacements and tools, by the trapezoidal rule.
@@ -63,9 +63,9 @@ pub struct StepReport {
     pub energies: Energies,
     /// The bipotential gap of the increment and what it cannot see.
     pub certificate: Certificate,
-    /// Largest nodal force that nothing balances [N].
+    /// Largest nodal force that nothing balances \[N\].
     pub out_of_balance: f64,
-    /// Out-of-balance force of every Newton iteration [N].
+    /// Out-of-balance force of every Newton iteration \[N\].
     pub residuals: Vec<f64>,
 }
 
@@ -88,23 +88,23 @@ pub struct ContactRecord<const D: usize> {
     pub contact: usize,
     /// The node.
     pub node: usize,
-    /// Its position in the undeformed body [mm].
+    /// Its position in the undeformed body \[mm\].
     pub position: [f64; D],
     /// Corner or mid-side node of the surface.
     pub kind: NodeKind,
-    /// Gap and slip of the increment [mm].
+    /// Gap and slip of the increment \[mm\].
     pub u: Local<D>,
-    /// Force on the body, normal and tangential [N].
+    /// Force on the body, normal and tangential \[N\].
     pub t: Local<D>,
-    /// Force on the body in space [N].
+    /// Force on the body in space \[N\].
     pub force: SVector<f64, D>,
-    /// Consistent share of the surface [mm²]: t over it is a traction.
+    /// Consistent share of the surface \[mm²\]: t over it is a traction.
     pub area: f64,
     /// Status; for a point held along the surface, `Open` or `Stick`.
     pub status: Status,
     /// Whether a displacement condition holds the point along the surface.
     pub held: bool,
-    /// Displacement in the springs of the penalty method [mm]: total across the gap, of the
+    /// Displacement in the springs of the penalty method \[mm\]: total across the gap, of the
     /// increment along the surface; zero for the exact methods.
     pub spring: Local<D>,
 }

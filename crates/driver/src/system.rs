@@ -50,9 +50,9 @@ struct Scatter {
 /// Internal forces of an assembly.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Assembly {
-    /// ∫ Bᵀσ dΩ at every degree of freedom [N].
+    /// ∫ Bᵀσ dΩ at every degree of freedom \[N\].
     pub(crate) internal: Vec<f64>,
-    /// K times the prescribed displacements that are still missing [N].
+    /// K times the prescribed displacements that are still missing \[N\].
     pub(crate) coupling: Vec<f64>,
     /// Whether plastic strain grows anywhere.
     pub(crate) flows: bool,
@@ -62,9 +62,9 @@ pub(crate) struct Assembly {
 #[derive(Debug)]
 pub(crate) struct Condensed {
     factor: DMatrix<f64>,
-    /// S [N/mm], in the order of the interface unknowns.
+    /// S \[N/mm\], in the order of the interface unknowns.
     pub(crate) stiffness: DMatrix<f64>,
-    /// f̃ [N].
+    /// f̃ \[N\].
     pub(crate) load: DVector<f64>,
     /// L⁻¹ of the load of the system.
     forward: Vec<f64>,
@@ -161,7 +161,7 @@ impl System {
             .collect()
     }
 
-    /// σ [N/mm]: of the size of the elastic stiffness of an interface node.
+    /// σ \[N/mm\]: of the size of the elastic stiffness of an interface node.
     pub(crate) fn shift(&self) -> f64 {
         self.shift
     }
@@ -235,7 +235,7 @@ impl System {
         };
     }
 
-    /// Largest diagonal of the elastic stiffness [N/mm].
+    /// Largest diagonal of the elastic stiffness \[N/mm\].
     pub(crate) fn stiffest(&self) -> f64 {
         self.stiffest
     }
@@ -263,7 +263,7 @@ impl System {
         Ok(())
     }
 
-    /// Condenses the factorised system under a load given at every degree of freedom [N].
+    /// Condenses the factorised system under a load given at every degree of freedom \[N\].
     pub(crate) fn condense(&mut self, load: &[f64]) -> Condensed {
         let mut forward: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
         self.cholesky.forward(&mut forward);
@@ -282,7 +282,7 @@ impl System {
         }
     }
 
-    /// Solves the factorised system, without a shift, for a load at every degree of freedom [N];
+    /// Solves the factorised system, without a shift, for a load at every degree of freedom \[N\];
     /// prescribed displacements in `d_u` are left as they are.
     pub(crate) fn solve(&mut self, load: &[f64], d_u: &mut [f64]) {
         let mut solution: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();

@@ -45,12 +45,12 @@ pub fn deviator(a: &Sym2) -> Sym2 {
     s
 }
 
-/// Von Mises equivalent stress √(3/2 s : s) of a stress [MPa], eq. [5].
+/// Von Mises equivalent stress √(3/2 s : s) of a stress \[MPa\], eq. \[5\].
 pub fn von_mises(stress: &Sym2) -> f64 {
     1.5f64.sqrt() * deviator(stress).norm()
 }
 
-/// Equivalent strain √(2/3 e : e) of a deviatoric strain, eq. [60].
+/// Equivalent strain √(2/3 e : e) of a deviatoric strain, eq. \[60\].
 pub fn equivalent_strain(e: &Sym2) -> f64 {
     (2.0f64 / 3.0).sqrt() * e.norm()
 }

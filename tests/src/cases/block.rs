@@ -332,7 +332,7 @@ fn unload(
         if integration == Integration::Reduced {
             let points: Vec<[f64; 2]> =
                 history.last_contacts().iter().map(|c| [c.position[0], c.u[1]]).collect();
-            chart = chart.with(&format!("μ = {friction}"), Style::LinePoints, points);
+            chart = chart.with(format!("μ = {friction}"), Style::LinePoints, points);
         }
         outcome.checks.extend(consistency(&what, &driver, &history));
         rows.push(row(&what, &driver, &history));
@@ -340,7 +340,8 @@ fn unload(
     outcome.figures.push(Figure {
         name: "block-unload-slip".into(),
         caption: "Slip along the foundation in the last of three increments in which the punch is \
-            withdrawn: points near the axis slip back, others stick or still slip forward."
+            withdrawn: points near the axis stick, those further out slip back, with less \
+            friction sooner; beyond 32 mm the block hangs free."
             .into(),
         svg: chart.to_svg()?,
     });

@@ -14,14 +14,14 @@ pub(super) const INDEPENDENT: &str = "independent implementation, tests/referenc
 pub struct History {
     /// Reports.
     pub reports: Vec<StepReport>,
-    /// Load after every increment, as the run defines it [N/mm].
+    /// Load after every increment, as the run defines it \[N/mm\].
     pub loads: Vec<f64>,
     /// Contact points after every increment.
     pub contacts: Vec<Vec<ContactRecord<2>>>,
 }
 
 impl History {
-    /// The last load [N/mm]; NaN if there is none.
+    /// The last load \[N/mm\]; NaN if there is none.
     pub fn last_load(&self) -> f64 {
         self.loads.last().copied().unwrap_or(f64::NAN)
     }
@@ -41,7 +41,7 @@ impl History {
         self.reports.iter().map(|r| r.relative_gap().abs()).fold(0.0, f64::max)
     }
 
-    /// Largest penetration of the bodies at a contact point [mm], springs of a penalty included.
+    /// Largest penetration of the bodies at a contact point \[mm\], springs of a penalty included.
     pub fn largest_penetration(&self) -> f64 {
         self.contacts.iter().flatten().map(|c| -c.u[0]).fold(0.0, f64::max)
     }
@@ -144,7 +144,7 @@ pub(super) fn final_state_checks(what: &str, driver: &Driver<2>, file: &str) -> 
     ]
 }
 
-/// Positions [mm] and values of the contact points of one kind.
+/// Positions \[mm\] and values of the contact points of one kind.
 pub(super) fn along(
     contacts: &[ContactRecord<2>],
     kind: NodeKind,

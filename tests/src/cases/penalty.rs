@@ -24,7 +24,7 @@ pub(super) const CASE: Case = Case {
 
 const FRICTION: f64 = 0.05;
 
-/// Powers of ten of the penalty factors [N/mm].
+/// Powers of ten of the penalty factors \[N/mm\].
 const POWERS: std::ops::RangeInclusive<i32> = 2..=16;
 
 /// Relative error of the largest normal force and of the largest slip at some factors, 20 cells,
@@ -36,11 +36,14 @@ const EXPECTED: [(i32, f64, f64); 4] = [
     (10, 2.300837976e-6, 4.499446628e-7),
 ];
 
+/// Displacements of the contact points, and the history.
+type Pressed = (Vec<[f64; 2]>, History);
+
 fn press(
     cells: [usize; 2],
     friction: f64,
     contact: Box<dyn ContactSolver<2>>,
-) -> Result<(Vec<[f64; 2]>, History), Box<dyn Error>> {
+) -> Result<Pressed, Box<dyn Error>> {
     let settings = Settings { contact, ..Settings::default() };
     let mut driver = block(cells, friction, Integration::Reduced, settings)?;
     let mut history = History::default();

@@ -246,10 +246,11 @@ fn mesh_figure(driver: &Driver<2>) -> Result<Figure, Box<dyn Error>> {
 fn field_figure(driver: &Driver<2>, name: &str) -> Result<Figure, Box<dyn Error>> {
     let nodes = 0..driver.mesh().nodes().len();
     let displacement = nodes.map(|a| driver.displacement(a).into()).collect();
-    let p = nodal_average(driver.mesh(), &driver.points(), |s| s.plastic_strain);
-    let picture = MeshPicture::new(driver.mesh(), &format!("Equivalent plastic strain, {name}"))
+    // Around the edge of the punch the strain is singular and would hide all else.
+    let p = nodal_average(driver.mesh(), &driver.points(), |s| s.plastic_strain.min(0.02));
+    let picture = MeshPicture::new(driver.mesh(), format!("Equivalent plastic strain, {name}"))
         .deformed(displacement, 10.0)
-        .field("equivalent plastic strain p [–]", p)
+        .field("equivalent plastic strain p, cut at 0.02 [–]", p)
         .outline();
     Ok(Figure {
         name: "prandtl-plastic-strain".into(),

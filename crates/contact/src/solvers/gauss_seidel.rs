@@ -1,7 +1,7 @@
 //! Block Gauss–Seidel with an exact local solver; not a relaxation that needs a parameter.
 
-use super::{ContactSolution, ContactSolver, Tolerance, fixed_point, stack};
-use crate::problem::split;
+use super::{ContactSolution, ContactSolver, Tolerance, fixed_point};
+use crate::problem::{split, stack};
 use crate::{ContactError, ContactProblem, Delassus};
 use moreau_laws::{Coulomb, Local};
 use nalgebra::{DVector, SMatrix};

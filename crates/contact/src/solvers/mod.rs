@@ -11,7 +11,7 @@ pub use penalty::Penalty;
 pub use semismooth::SemismoothNewton;
 pub use uzawa::{Uzawa, uzawa_steps};
 
-use crate::problem::split;
+use crate::problem::{split, stack};
 use crate::{Certificate, ContactError, ContactProblem, Delassus};
 use anderson::Anderson;
 use moreau_laws::{Local, Status};
@@ -29,18 +29,18 @@ pub struct Tolerance {
 /// Solution of a contact problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSolution<const D: usize> {
-    /// Gap and slip u of every contact [mm].
+    /// Gap and slip u of every contact \[mm\].
     pub displacement: Vec<Local<D>>,
     /// The part of u that obeys Coulomb's law exactly: u itself, or under the penalty its
-    /// irreversible part Δuᶠ of [81] [mm].
+    /// irreversible part Δuᶠ of \[81\] \[mm\].
     pub irreversible: Vec<Local<D>>,
-    /// Force t of every contact on the body [N].
+    /// Force t of every contact on the body \[N\].
     pub force: Vec<Local<D>>,
-    /// Status of every contact, [35].
+    /// Status of every contact, \[35\].
     pub status: Vec<Status>,
     /// Iterations of the method.
     pub iterations: usize,
-    /// Largest natural-map residual of a contact [N].
+    /// Largest natural-map residual of a contact \[N\].
     pub residual: f64,
 }
 
@@ -66,11 +66,6 @@ pub trait ContactSolver<const D: usize>: std::fmt::Debug + Send + Sync {
     ) -> Result<ContactSolution<D>, ContactError>;
 }
 
-/// All components of all contacts in one vector.
-fn stack<const D: usize>(t: &[Local<D>]) -> DVector<f64> {
-    DVector::from_iterator(D * t.len(), t.iter().flat_map(|t| (0..D).map(|k| t[k])))
-}
-
 /// Iterates t ← T(t), extrapolated, on u = W t + q until the residual common to all methods is met.
 fn fixed_point<const D: usize>(
     solver: &'static str,
@@ -89,7 +84,7 @@ fn fixed_point<const D: usize>(
         let u = split::<D>(&(&form.operator * &stacked + &form.free));
         let residual = problem.residual(&u, &image);
         let target = tolerance.relative * problem.force_scale(&image);
-        let target = target.max(problem.rounding(&u));
+        let target = target.max(problem.rounding(&problem.relative(&u)));
         if residual <= target {
             let status = problem.statuses(&u, &image);
             return Ok(ContactSolution {

@@ -1,4 +1,4 @@
-//! The penalty method, [81]–[82]: Coulomb's law in series with springs; not the exact law.
+//! The penalty method, \[81\]–\[82\]: Coulomb's law in series with springs; not the exact law.
 
 use super::{ContactSolution, ContactSolver, Tolerance, semismooth};
 use crate::{ContactError, ContactProblem};
@@ -6,7 +6,7 @@ use moreau_laws::Local;
 
 /// Contact regularised by springs k_n on the penetration and k_t on the elastic slip.
 ///
-/// The inf-convolution [82] puts the springs in series with the exact law, which then holds
+/// The inf-convolution \[82\] puts the springs in series with the exact law, which then holds
 /// between the force and the irreversible displacement Δuᶠ = Δu + C (t − t₀*). The unknowns are
 /// solved for in this form, with a status prediction scaled by the structure and not by k: it
 /// converges for every k, where the return mapping of a force predicted as k·u multiplies
@@ -20,7 +20,7 @@ pub struct Penalty {
 }
 
 impl Penalty {
-    /// Springs k_n and k_t per contact node [N/mm].
+    /// Springs k_n and k_t per contact node \[N/mm\].
     ///
     /// # Errors
     /// [`ContactError::OutOfRange`] unless both are positive and finite.

@@ -1,11 +1,12 @@
 //! Semismooth Newton method on the natural map; not a regularisation: its zeros are the law.
 
-use super::{ContactSolution, ContactSolver, GaussSeidel, Tolerance, Uzawa, stack};
+use super::{ContactSolution, ContactSolver, GaussSeidel, Tolerance, Uzawa};
+use crate::problem::stack;
 use crate::{ContactError, ContactProblem};
 use moreau_laws::Local;
 use nalgebra::{DMatrix, DVector, SMatrix};
 
-/// Newton's method on t − proj(t − α ũ) = 0, [90′], with t = S (u − g) − f.
+/// Newton's method on t − proj(t − α ũ) = 0, \[90′\], with t = S (u − g) − f.
 ///
 /// It works on S, not on its inverse, so that it also treats bodies which only contact holds.
 /// The map is piecewise smooth and, once the statuses are right, almost linear: it ends after a
@@ -48,8 +49,10 @@ const PARTS: [f64; 3] = [0.1, 1.0, 0.01];
 /// Iterations for one of the parts.
 const ATTEMPT: usize = 30;
 
-/// The state of the iteration: displacements and all that follows from them.
+/// The state of the iteration: displacements x = u − g and all that follows from them. Gaps far
+/// from contact are large; their differences from the origin keep the forces free of rounding.
 struct Iterate<const D: usize> {
+    x: Vec<Local<D>>,
     u: Vec<Local<D>>,
     t: Vec<Local<D>>,
     /// u + C (t − t₀*): the part that obeys the law.
@@ -59,20 +62,21 @@ struct Iterate<const D: usize> {
     merit: f64,
 }
 
-/// Newton on the natural map at u + C (t − t₀*), with a diagonal compliance C [mm/N] per contact
-/// (zero: the exact law) and t₀* = (0, t₀ₜ), the penalty of [81]–[82] as a spring in series.
+/// Newton on the natural map at u + C (t − t₀*), with a diagonal compliance C \[mm/N\] per contact
+/// (zero: the exact law) and t₀* = (0, t₀ₜ), the penalty of \[81\]–\[82\] as a spring in series.
 pub(super) fn newton<const D: usize>(
     problem: &ContactProblem<D>,
     compliance: &[Local<D>],
     guess: Option<&ContactSolution<D>>,
     tolerance: Tolerance,
 ) -> Result<ContactSolution<D>, ContactError> {
-    let mut start = match guess {
-        Some(g) => g.displacement.clone(),
-        None => problem.origin().to_vec(),
-    };
+    let zero = vec![Local::zeros(); problem.contacts()];
+    let mut start = guess.map_or(zero, |g| problem.relative(&g.displacement));
     let mut iterations = 0;
     let mut part = 0;
+    // A body that only contact holds has no stiffness against contacts that are open at the start:
+    // then start again with all of them closed.
+    let mut closed = Some(close(problem, &start));
     loop {
         let newton = Newton {
             problem,
@@ -83,7 +87,7 @@ pub(super) fn newton<const D: usize>(
         for _ in 0..ATTEMPT {
             // The residual grows with α, at most in proportion: this bounds it for the common α.
             let target = newton.part * tolerance.relative * problem.force_scale(&now.t);
-            if now.residual <= target.max(problem.rounding(&now.u)) {
+            if now.residual <= target.max(problem.rounding(&now.x)) {
                 return Ok(newton.solution(now, iterations));
             }
             if iterations >= tolerance.iterations {
@@ -101,6 +105,12 @@ pub(super) fn newton<const D: usize>(
             };
             now = next;
         }
+        if newton.step(&now).is_none()
+            && let Some(other) = closed.take()
+        {
+            start = other;
+            continue;
+        }
         part += 1;
         // When all have stalled, sweeps find the statuses; where no inverse exists there are none.
         if part % PARTS.len() == 0 {
@@ -112,7 +122,7 @@ pub(super) fn newton<const D: usize>(
                 vec![Local::zeros(); now.t.len()]
             };
             match newton.sweep(&from) {
-                Ok(u) => start = u,
+                Ok(u) => start = problem.relative(&u),
                 Err(ContactError::Floating { .. }) => return Err(ContactError::Singular),
                 Err(_) => {}
             }
@@ -127,16 +137,17 @@ struct Newton<'a, const D: usize> {
 }
 
 impl<const D: usize> Newton<'_, D> {
-    /// α of [90′]: the stiffness of the structure and of the penalty spring in series.
+    /// α of \[90′\]: the stiffness of the structure and of the penalty spring in series.
     fn alpha(&self, i: usize) -> f64 {
         let alpha = self.part * self.problem.alpha(i);
         let compliance = self.compliance[i].mean();
         alpha / (1.0 + alpha * compliance)
     }
 
-    fn iterate(&self, u: Vec<Local<D>>) -> Iterate<D> {
+    fn iterate(&self, x: Vec<Local<D>>) -> Iterate<D> {
         let p = self.problem;
-        let t = p.force(&u);
+        let t = p.force_of(&x);
+        let u: Vec<Local<D>> = x.iter().zip(p.origin()).map(|(x, g)| x + g).collect();
         let irreversible: Vec<Local<D>> = (0..u.len())
             .map(|i| {
                 let mut origin = p.previous()[i];
@@ -152,6 +163,7 @@ impl<const D: usize> Newton<'_, D> {
         let energy = |(i, g): (usize, &Local<D>)| g.norm_squared() / self.alpha(i);
         let merit = map.iter().enumerate().map(energy).sum();
         Iterate {
+            x,
             u,
             t,
             irreversible,
@@ -200,7 +212,7 @@ impl<const D: usize> Newton<'_, D> {
         let step = self.step(now)?;
         let mut s = 1.0;
         while s > 1e-4 {
-            let next = self.iterate(add(&now.u, &step, s));
+            let next = self.iterate(add(&now.x, &step, s));
             if next.merit < (1.0 - 1e-4 * s) * now.merit {
                 return Some(next);
             }
@@ -229,7 +241,13 @@ impl<const D: usize> Newton<'_, D> {
             own += shift;
         }
         let rhs = DVector::from_iterator(n, now.map.iter().flat_map(|g| (0..D).map(|k| -g[k])));
-        let step = jacobian.lu().solve(&rhs)?;
+        let factors = jacobian.lu();
+        let pivots = factors.u().diagonal();
+        // A rigid motion that no contact stops leaves a pivot of the size of rounding.
+        if pivots.amin() <= 1e-14 * pivots.amax() {
+            return None;
+        }
+        let step = factors.solve(&rhs)?;
         step.iter().all(|v| v.is_finite()).then_some(step)
     }
 
@@ -252,6 +270,13 @@ impl<const D: usize> Newton<'_, D> {
             iterations,
         }
     }
+}
+
+/// The same slips at closed gaps.
+fn close<const D: usize>(problem: &ContactProblem<D>, x: &[Local<D>]) -> Vec<Local<D>> {
+    let closed =
+        |(x, g): (&Local<D>, &Local<D>)| Local::from_fn(|k, _| if k == 0 { -g[0] } else { x[k] });
+    x.iter().zip(problem.origin()).map(closed).collect()
 }
 
 fn add<const D: usize>(u: &[Local<D>], step: &DVector<f64>, s: f64) -> Vec<Local<D>> {

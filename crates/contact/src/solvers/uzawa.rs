@@ -1,7 +1,7 @@
-//! Uzawa's projection on the Coulomb cone, [85]–[90′]; not the nesting around the bulk solve.
+//! Uzawa's projection on the Coulomb cone, \[85\]–\[90′\]; not the nesting around the bulk solve.
 
-use super::{ContactSolution, ContactSolver, Tolerance, fixed_point, stack};
-use crate::problem::split;
+use super::{ContactSolution, ContactSolver, Tolerance, fixed_point};
+use crate::problem::{split, stack};
 use crate::{ContactError, ContactProblem, Delassus};
 use moreau_laws::Local;
 use nalgebra::{DMatrix, DVector};
@@ -63,7 +63,7 @@ impl Uzawa {
     }
 }
 
-/// Steps α of Uzawa's correction for a problem, one per contact [N/mm].
+/// Steps α of Uzawa's correction for a problem, one per contact \[N/mm\].
 ///
 /// # Errors
 /// [`ContactError::Floating`] if the stiffness is singular.

@@ -1,0 +1,151 @@
+//! Contract of a block: its forces are the gradient of its potential, its stiffness that of its
+//! forces, whatever element, hypothesis and law.
+
+use moreau_driver::{Block, SolidBlock, Stiffness};
+use moreau_laws::{Elastic, IncrementalPotential, VonMises};
+use moreau_mesh::{
+    Axisymmetric, CellKind, Element, Hex8, Hypothesis, Integration, Mesh, PlaneStrain, Quad4,
+    Quad8, Quad9, Solid, Tet4, Tri3, Tri6, block2, block3,
+};
+use nalgebra::DMatrix;
+
+struct Evaluated {
+    force: Vec<f64>,
+    stiffness: DMatrix<f64>,
+}
+
+/// Forces and stiffness assembled densely.
+fn evaluate<const D: usize>(block: &mut dyn Block<D>, d_u: &[f64], kind: Stiffness) -> Evaluated {
+    let dofs = d_u.len();
+    let cells: Vec<Vec<usize>> = (0..block.cells().len())
+        .map(|k| {
+            block
+                .nodes(k)
+                .iter()
+                .flat_map(|&a| D * a..D * a + D)
+                .collect()
+        })
+        .collect();
+    let mut out = Evaluated {
+        force: vec![0.0; dofs],
+        stiffness: DMatrix::zeros(dofs, dofs),
+    };
+    block.evaluate(d_u, kind, &mut |result| {
+        let own = &cells[result.cell];
+        for (i, &a) in own.iter().enumerate() {
+            out.force[a] += result.force[i];
+            for (j, &b) in own.iter().enumerate().skip(i) {
+                if !result.stiffness.is_empty() {
+                    let k = result.stiffness[i * own.len() + j];
+                    out.stiffness[(a, b)] += k;
+                    if a != b {
+                        out.stiffness[(b, a)] += k;
+                    }
+                }
+            }
+        }
+    });
+    out
+}
+
+/// A displacement that strains everywhere by about `size`, differently from point to point.
+fn displacement<const D: usize>(mesh: &Mesh<D>, size: f64, phase: f64) -> Vec<f64> {
+    let wave = |x: &[f64; D], i: usize| {
+        let s: f64 = x
+            .iter()
+            .enumerate()
+            .map(|(k, v)| v * (0.7 + 0.2 * k as f64))
+            .sum();
+        size * ((s + phase + 2.0 * i as f64).sin() + 0.3 * x[i])
+    };
+    mesh.nodes()
+        .iter()
+        .flat_map(|x| (0..D).map(move |i| wave(x, i)))
+        .collect()
+}
+
+fn contract<E, H, L, const D: usize, const N: usize>(mesh: &Mesh<D>, hypothesis: H, law: L)
+where
+    E: Element<D, N>,
+    H: Hypothesis<D>,
+    L: IncrementalPotential,
+{
+    let cells = (0..mesh.cell_count()).collect();
+    let mut block =
+        SolidBlock::<E, H, L, D, N>::new(mesh, cells, &hypothesis, law, Integration::Full);
+    // From a plastic state on, with a step that loads some points and unloads others.
+    let first = displacement(mesh, 4e-3, 0.0);
+    evaluate(&mut block, &first, Stiffness::None);
+    block.commit();
+    let d_u = displacement(mesh, 1.5e-3, 2.0);
+    let at = evaluate(&mut block, &d_u, Stiffness::Consistent);
+    let force_size = at.force.iter().fold(0.0f64, |a, f| a.max(f.abs()));
+    let stiffness_size = at.stiffness.amax();
+    let h = 1e-7;
+    for k in 0..d_u.len() {
+        let moved = |sign: f64| {
+            let mut v = d_u.clone();
+            v[k] += sign * h;
+            v
+        };
+        let slope = (block.potential(&moved(1.0)) - block.potential(&moved(-1.0))) / (2.0 * h);
+        assert!(
+            (slope - at.force[k]).abs() < 1e-6 * force_size,
+            "force {k}: {slope}"
+        );
+        let ahead = evaluate(&mut block, &moved(1.0), Stiffness::None).force;
+        let behind = evaluate(&mut block, &moved(-1.0), Stiffness::None).force;
+        for l in 0..d_u.len() {
+            let slope = (ahead[l] - behind[l]) / (2.0 * h);
+            let k_lk = at.stiffness[(l, k)];
+            assert!(
+                (slope - k_lk).abs() < 1e-5 * stiffness_size,
+                "stiffness {l} {k}: {slope} {k_lk}"
+            );
+        }
+    }
+    // Forces alone are the same forces.
+    assert_eq!(evaluate(&mut block, &d_u, Stiffness::None).force, at.force);
+}
+
+fn steel() -> VonMises {
+    VonMises::new(210e3, 0.3, 300.0)
+        .expect("valid")
+        .with_isotropic(500.0)
+        .expect("valid")
+}
+
+fn plane(kind: CellKind) -> Mesh<2> {
+    let mesh = block2("b", kind, &[1.0, 2.1], &[0.0, 0.9]).expect("valid");
+    // A slight distortion, so that nothing holds by symmetry alone.
+    mesh.map(|x| [x[0] + 0.1 * x[1], x[1] + 0.05 * x[0] * x[1]])
+        .expect("valid")
+}
+
+#[test]
+fn plane_strain_blocks() {
+    let h = PlaneStrain::new(2.0).expect("valid");
+    contract::<Tri3, _, _, 2, 3>(&plane(CellKind::Tri3), h, steel());
+    contract::<Tri6, _, _, 2, 6>(&plane(CellKind::Tri6), h, steel());
+    contract::<Quad4, _, _, 2, 4>(&plane(CellKind::Quad4), h, steel());
+    contract::<Quad8, _, _, 2, 8>(&plane(CellKind::Quad8), h, steel());
+    contract::<Quad9, _, _, 2, 9>(&plane(CellKind::Quad9), h, steel());
+}
+
+#[test]
+fn axisymmetric_blocks() {
+    contract::<Quad8, _, _, 2, 8>(&plane(CellKind::Quad8), Axisymmetric, steel());
+    let elastic = Elastic::new(210e3, 0.3).expect("valid");
+    contract::<Tri6, _, _, 2, 6>(&plane(CellKind::Tri6), Axisymmetric, elastic);
+}
+
+#[test]
+fn solid_blocks() {
+    let mesh = |kind| {
+        let mesh = block3("b", kind, &[0.0, 1.0], &[0.0, 1.2], &[0.0, 0.8]).expect("valid");
+        mesh.map(|x| [x[0] + 0.1 * x[1] * x[2], x[1] + 0.05 * x[0], x[2]])
+            .expect("valid")
+    };
+    contract::<Hex8, _, _, 3, 8>(&mesh(CellKind::Hex8), Solid, steel());
+    contract::<Tet4, _, _, 3, 4>(&mesh(CellKind::Tet4), Solid, steel());
+}

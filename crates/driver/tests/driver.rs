@@ -1,0 +1,366 @@
+//! The driver on small problems whose answers are known: bodies that only contact holds, gaps that
+//! close, tools that roll off, steps that are cut, supports that are released.
+
+use moreau_contact::{Ball, GaussSeidel, Penalty, Plane};
+use moreau_driver::{Axis, Driver, Model, Nesting, Settings, Step, StepError};
+use moreau_laws::{Coulomb, Elastic, Status, VonMises};
+use moreau_mesh::{CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform};
+
+const YOUNG: f64 = 210e3;
+
+fn coulomb(mu: f64) -> Coulomb {
+    Coulomb::new(mu).expect("valid")
+}
+
+fn steel() -> VonMises {
+    VonMises::new(YOUNG, 0.3, 300.0).expect("valid")
+}
+
+fn mesh(cells: [usize; 2]) -> Mesh<2> {
+    let (x, y) = (uniform(0.0, 50.0, cells[0]), uniform(0.0, 20.0, cells[1]));
+    let mut mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
+    mesh.node_group_where("punch", "block.top", |x| x[0] <= 25.0 + 1e-9)
+        .expect("not empty");
+    mesh
+}
+
+/// The block above a floor at height `floor`.
+fn on_floor(cells: [usize; 2], floor: f64, mu: f64, settings: Settings<2>) -> Driver<2> {
+    let model = Model::new(mesh(cells), PlaneStrain::default())
+        .material("block", steel(), Integration::Reduced)
+        .and_then(|m| {
+            m.tool(
+                "floor",
+                Plane::new([0.0, floor], [0.0, 1.0]).expect("valid"),
+            )
+        })
+        .and_then(|m| m.contact("block.bottom", "floor", coulomb(mu)))
+        .expect("valid");
+    Driver::new(model, settings).expect("valid")
+}
+
+#[test]
+fn a_block_that_only_contact_holds_carries_its_load() {
+    let mut driver = on_floor([6, 2], 0.0, 0.3, Settings::default());
+    let reports = driver
+        .run(&Step::new("load").pressure("block.top", 40.0), 2, |_, _| {})
+        .expect("held");
+    // Friction hinders the lateral strain; the resultant is the load all the same.
+    let force = driver.tool_force("floor").expect("exists");
+    assert!(
+        (force[1] - 40.0 * 50.0).abs() < 1e-8 && force[0].abs() < 1e-8,
+        "{force}"
+    );
+    assert!(
+        reports
+            .iter()
+            .all(|r| r.newton_iterations <= 2 && r.relative_gap() < 1e-12)
+    );
+    assert!(driver.contacts().iter().all(|c| c.status != Status::Open));
+}
+
+#[test]
+fn a_hovering_block_falls_on_the_floor() {
+    let gap = 0.05;
+    let mut driver = on_floor([6, 2], -gap, 0.0, Settings::default());
+    let step = Step::new("load")
+        .fix("block.left", &[Axis::X])
+        .pressure("block.top", 40.0);
+    driver.run(&step, 2, |_, _| {}).expect("the floor stops it");
+    for c in driver.contacts() {
+        assert!(
+            (driver.displacement(c.node)[1] + gap).abs() < 1e-12,
+            "not on the floor"
+        );
+    }
+    // Frictionless: the state is uniform uniaxial stress in plane strain.
+    for p in driver.points() {
+        assert!((p.stress[1] + 40.0).abs() < 1e-8 && p.stress[0].abs() < 1e-8);
+        assert!((p.stress[2] + 0.3 * 40.0).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn a_body_pulled_off_its_floor_is_an_error_that_changes_nothing() {
+    let mut driver = on_floor(
+        [4, 2],
+        0.0,
+        0.0,
+        Settings {
+            cuts: 2,
+            ..Settings::default()
+        },
+    );
+    let step = Step::new("pull")
+        .fix("block.left", &[Axis::X])
+        .pressure("block.top", -1.0);
+    match driver.run(&step, 1, |_, _| {}) {
+        Err(StepError::Stopped { reached, cause, .. }) => {
+            assert_eq!(reached, 0.0);
+            assert!(matches!(*cause, StepError::Contact { .. }), "{cause}");
+        }
+        other => panic!("expected Stopped, got {other:?}"),
+    }
+    assert_eq!(driver.increments(), 0);
+    assert!(
+        driver
+            .contacts()
+            .iter()
+            .all(|c| driver.displacement(c.node).norm() == 0.0)
+    );
+}
+
+#[test]
+fn a_cylinder_pressed_into_the_block_touches_without_penetration() {
+    let model = Model::new(mesh([40, 8]), PlaneStrain::default())
+        .material("block", steel(), Integration::Reduced)
+        .and_then(|m| m.tool("roll", Ball::new([0.0, 120.0], 100.0).expect("valid")))
+        .and_then(|m| m.contact("block.top", "roll", coulomb(0.2)))
+        .expect("valid");
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    let held = Step::new("press")
+        .fix("block.left", &[Axis::X])
+        .fix("block.bottom", &[Axis::Y]);
+    let reports = driver
+        .run(&held.tool("roll", [0.0, -0.1]), 5, |_, _| {})
+        .expect("converges");
+    let closed: Vec<_> = driver
+        .contacts()
+        .iter()
+        .filter(|c| c.status != Status::Open)
+        .collect();
+    assert!(closed.len() > 3 && closed.len() < driver.contacts().len());
+    for c in driver.contacts() {
+        let x = nalgebra::Vector2::from(c.position) + driver.displacement(c.node);
+        let center = nalgebra::Vector2::new(0.0, 119.9);
+        let gap = (x - center).norm() - 100.0;
+        assert!(gap > -1e-10, "penetration {gap}");
+        if c.status != Status::Open {
+            assert!(gap.abs() < 1e-10, "gap {gap} under load");
+            // The normal force points away from the centre.
+            let n = (x - center) / 100.0;
+            assert!((c.force.dot(&n) - c.t[0]).abs() < 1e-8 * c.t[0]);
+        }
+    }
+    assert!(
+        reports.iter().all(|r| r.newton_iterations < 12),
+        "curvature costs few iterations"
+    );
+}
+
+#[test]
+fn a_step_that_is_too_long_is_cut_and_ends_where_it_should() {
+    let press = |increments, iterations| {
+        let settings = Settings {
+            iterations,
+            ..Settings::default()
+        };
+        let mut driver = on_floor([10, 2], 0.0, 0.1, settings);
+        let step =
+            Step::new("press")
+                .fix("block.left", &[Axis::X])
+                .displace("punch", Axis::Y, -0.2);
+        let reports = driver
+            .run(&step, increments, |_, _| {})
+            .expect("converges when cut");
+        (-driver.reaction("punch").expect("exists")[1], reports)
+    };
+    let (load, reports) = press(4, 4);
+    let cuts: usize = reports.iter().map(|r| r.cuts).sum();
+    assert!(
+        cuts > 0,
+        "four iterations should not do for 0.05 mm at once"
+    );
+    assert_eq!(reports.last().map(|r| r.fraction), Some(1.0));
+    let fractions: Vec<f64> = reports.iter().map(|r| r.fraction).collect();
+    assert!(fractions.windows(2).all(|w| w[0] < w[1]));
+    for whole in [0.25, 0.5, 0.75] {
+        assert!(
+            fractions.contains(&whole),
+            "the ends of whole increments are met: {fractions:?}"
+        );
+    }
+    // Increments grow again: fewer than if all had the shortest length.
+    let shortest = fractions
+        .windows(2)
+        .map(|w| w[1] - w[0])
+        .fold(fractions[0], f64::min);
+    assert!((fractions.len() as f64) < 1.0 / shortest);
+    let (fine, _) = press(40, 40);
+    assert!((load / fine - 1.0).abs() < 1e-3, "{load} against {fine}");
+}
+
+#[test]
+fn a_released_support_lets_an_elastic_body_return() {
+    let elastic = Elastic::new(YOUNG, 0.3).expect("valid");
+    let model = Model::new(mesh([6, 2]), PlaneStrain::default())
+        .material("block", elastic, Integration::Reduced)
+        .expect("valid");
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    let held = || {
+        Step::new("held")
+            .fix("block.left", &[Axis::X])
+            .fix("block.bottom", &[Axis::Y])
+    };
+    driver
+        .run(&held().displace("block.top", Axis::Y, -0.1), 1, |_, _| {})
+        .expect("elastic");
+    let pressed = driver.reaction("block.top").expect("exists")[1];
+    assert!(pressed < -1.0);
+    let mut halfway = 0.0;
+    let reports = driver
+        .run(&held(), 2, |d, r| {
+            if r.fraction < 1.0 {
+                halfway = d.displacement(d.mesh().node_group("block.top").expect("exists")[0])[1];
+            }
+        })
+        .expect("elastic");
+    // The reaction is ramped to zero, so that half of it is left halfway.
+    assert!((halfway + 0.05).abs() < 1e-12, "{halfway}");
+    for node in 0..driver.mesh().nodes().len() {
+        assert!(driver.displacement(node).norm() < 1e-12);
+    }
+    let energies = reports.last().expect("two").energies;
+    assert!(energies.external_work.abs() < 1e-9 && energies.imbalance().abs() < 1e-9);
+}
+
+#[test]
+fn the_papers_nesting_ends_where_the_exact_method_ends() {
+    let press = |settings| {
+        let mut driver = on_floor([4, 2], 0.0, 0.2, settings);
+        let step =
+            Step::new("press")
+                .fix("block.left", &[Axis::X])
+                .displace("punch", Axis::Y, -0.015);
+        let reports = driver.run(&step, 2, |_, _| {}).expect("converges");
+        (driver, reports)
+    };
+    let (exact, _) = press(Settings::default());
+    let nesting = Nesting::Outside {
+        tolerance: 1e-8,
+        iterations: 20_000,
+    };
+    let (nested, reports) = press(Settings {
+        nesting,
+        ..Settings::default()
+    });
+    assert!(reports.iter().all(|r| r.nonlinear_solves > 10));
+    let largest = exact
+        .contacts()
+        .iter()
+        .map(|c| c.t.norm())
+        .fold(0.0, f64::max);
+    for (a, b) in exact.contacts().iter().zip(nested.contacts()) {
+        assert!((a.t - b.t).norm() < 1e-6 * largest, "{} {}", a.t, b.t);
+    }
+}
+
+#[test]
+fn the_papers_nesting_cannot_hold_a_floating_body() {
+    let nesting = Nesting::Outside {
+        tolerance: 1e-6,
+        iterations: 100,
+    };
+    let mut driver = on_floor(
+        [4, 2],
+        0.0,
+        0.3,
+        Settings {
+            nesting,
+            cuts: 0,
+            ..Settings::default()
+        },
+    );
+    let load = driver.run(&Step::new("load").pressure("block.top", 40.0), 1, |_, _| {});
+    assert!(matches!(load, Err(StepError::Stopped { .. })), "{load:?}");
+}
+
+#[test]
+fn a_solid_block_is_dragged_by_a_sliding_plate() {
+    for kind in [CellKind::Hex8, CellKind::Tet4] {
+        let lines = uniform(0.0, 10.0, 2);
+        let mesh = block3("block", kind, &lines, &lines, &lines).expect("valid");
+        let model = Model::new(mesh, Solid)
+            .material(
+                "block",
+                Elastic::new(YOUNG, 0.3).expect("valid"),
+                Integration::Full,
+            )
+            .and_then(|m| {
+                m.tool(
+                    "plate",
+                    Plane::new([0.0, 10.0, 0.0], [0.0, -1.0, 0.0]).expect("valid"),
+                )
+            })
+            .and_then(|m| m.contact("block.top", "plate", coulomb(0.25)))
+            .expect("valid");
+        let mut driver = Driver::new(model, Settings::default()).expect("valid");
+        let held = || Step::new("held").fix("block.bottom", &[Axis::X, Axis::Y, Axis::Z]);
+        driver
+            .run(&held().tool("plate", [0.0, -0.01, 0.0]), 1, |_, _| {})
+            .expect("presses");
+        let pressed = driver.tool_force("plate").expect("exists");
+        assert!(pressed[1] < -1000.0, "{kind}: {pressed}");
+        // Moved along (3, 4)/5 in the plane by far more than the block can follow: all slides.
+        let reports = driver
+            .run(&held().tool("plate", [0.3, -0.01, 0.4]), 4, |_, _| {})
+            .expect("slides");
+        let dragged = driver.tool_force("plate").expect("exists");
+        let friction = 0.25 * dragged[1].abs();
+        assert!(
+            (dragged[0] - 0.6 * friction).abs() < 0.02 * friction,
+            "{kind}: {dragged}"
+        );
+        assert!(
+            (dragged[2] - 0.8 * friction).abs() < 0.02 * friction,
+            "{kind}: {dragged}"
+        );
+        let last = reports.last().expect("four");
+        assert_eq!((last.open, last.stick), (0, 0), "{kind}");
+        assert!(last.energies.friction_dissipation > 0.0 && last.relative_gap() < 1e-10);
+        // Friction is opposed to the slip at every point, not only in the sum.
+        for c in driver.contacts() {
+            let (t, u) = (c.t.fixed_rows::<2>(1), c.u.fixed_rows::<2>(1));
+            assert!((t.norm() - 0.25 * c.t[0]).abs() < 1e-9 * c.t[0].max(1.0));
+            assert!(t.dot(&u) < -0.999_999 * t.norm() * u.norm());
+        }
+    }
+}
+
+#[test]
+fn energies_of_the_penalty_add_up_where_all_is_elastic_and_smooth() {
+    let settings = Settings {
+        contact: Box::new(Penalty::new(1e4, 1e4).expect("valid")),
+        ..Settings::default()
+    };
+    let mut driver = on_floor([6, 2], 0.0, 0.0, settings);
+    let step = Step::new("load")
+        .fix("block.left", &[Axis::X])
+        .pressure("block.top", 40.0);
+    let reports = driver.run(&step, 3, |_, _| {}).expect("converges");
+    let energies = reports.last().expect("three").energies;
+    assert!(
+        energies.penalty > 0.1 * energies.stored,
+        "soft springs hold much"
+    );
+    assert!(energies.imbalance().abs() < 1e-9 * energies.external_work);
+}
+
+#[test]
+fn gauss_seidel_says_that_it_cannot_hold_a_floating_body() {
+    let settings = Settings {
+        contact: Box::new(GaussSeidel::default()),
+        cuts: 0,
+        ..Settings::default()
+    };
+    let mut driver = on_floor([4, 2], 0.0, 0.3, settings);
+    let error = driver
+        .run(&Step::new("load").pressure("block.top", 40.0), 1, |_, _| {})
+        .expect_err("not definite");
+    assert!(
+        error
+            .to_string()
+            .contains("Gauss-Seidel needs bodies held without contact"),
+        "{error}"
+    );
+}
