@@ -174,8 +174,15 @@ impl<const D: usize> Driver<D> {
         let assembly = system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent);
         let at_start = slope(&now.assembly.internal, &now.contact);
         let at_end = slope(&assembly.internal, &target);
-        // While prescribed displacements are missing, ΔΦ is not what the step minimises.
-        if !complete || at_start >= 0.0 || at_end <= ACCEPTED_SLOPE * at_start.abs() {
+        let left = free
+            .iter()
+            .map(|&d| end.force[d] + target[d] - assembly.internal[d]);
+        let scale = force_scale(&assembly, end, &target);
+        let balanced = largest(left) <= self.target(system, scale, &d_u);
+        // While prescribed displacements are missing, ΔΦ is not what the step minimises; in balance
+        // its slope is rounding.
+        let descends = at_start < 0.0 && complete && !balanced;
+        if !descends || at_end <= ACCEPTED_SLOPE * at_start.abs() {
             return (
                 Iterate {
                     d_u,
