@@ -17,3 +17,8 @@ pub use moreau_driver as driver;
 pub use moreau_laws as laws;
 pub use moreau_mandel as mandel;
 pub use moreau_mesh as mesh;
+
+/// The example of the README, compiled and run.
+#[doc = include_str!("../../../README.md")]
+#[cfg(doctest)]
+pub struct Readme;
