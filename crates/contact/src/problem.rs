@@ -212,7 +212,7 @@ impl<const D: usize> ContactProblem<D> {
     }
 
     /// Size of the forces in play, against which a residual is judged \[N\]: the largest of the
-    /// forces, of the condensed load and of the force that would close the largest gap.
+    /// forces now and at the start of the step, and of the condensed load.
     pub fn force_scale(&self, t: &[Local<D>]) -> f64 {
         let forces = t
             .iter()

@@ -9,14 +9,14 @@ use rayon::prelude::*;
 use std::marker::PhantomData;
 
 /// Which stiffness an evaluation computes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stiffness {
     /// None: forces only.
     None,
     /// The consistent tangent ∂σ₁/∂Δε.
     Consistent,
-    /// The elastic stiffness.
-    Elastic,
+    /// This part of the elastic stiffness, in [0, 1], and the rest of the consistent tangent.
+    Blended(f64),
 }
 
 /// Forces of a cell and, if asked for, its stiffness.
@@ -77,7 +77,8 @@ pub trait Block<const D: usize>: Send + Sync {
         sink: &mut dyn FnMut(CellResult<'_>),
     ) -> bool;
 
-    /// ∫ ΔV(Δε) dΩ, the bulk part of ΔΦ \[74\] \[N·mm\].
+    /// ∫ ΔV(Δε) + σ₀ : Δε dΩ, the bulk part of ΔΦ \[74\] when total forces are
+    /// applied instead of increments \[N·mm\].
     fn potential(&self, d_u: &[f64]) -> f64;
 
     /// Energies of the candidate that the last evaluation left.
@@ -202,7 +203,7 @@ impl<S: Copy, const D: usize, const N: usize> CellView<'_, S, D, N> {
     fn evaluate<H: Hypothesis<D>, L: BulkLaw<State = S>>(
         &self,
         law: &L,
-        elastic: Option<&Sym4>,
+        blend: Option<&(f64, Sym4)>,
         d_u: &[f64],
         (force, stiffness, new): (&mut [f64], &mut [f64], &mut [S]),
     ) -> bool {
@@ -227,7 +228,12 @@ impl<S: Copy, const D: usize, const N: usize> CellView<'_, S, D, N> {
             if stiffness.is_empty() {
                 continue;
             }
-            let tangent = elastic.unwrap_or(&response.tangent) * weight;
+            let tangent = match blend {
+                None => response.tangent * weight,
+                Some((part, elastic)) => {
+                    elastic * (part * weight) + response.tangent * ((1.0 - part) * weight)
+                }
+            };
             for b in 0..N {
                 let column = tangent * operator[b];
                 for a in 0..=b {
@@ -275,7 +281,10 @@ where
         self.force.resize(panel * size, 0.0);
         // One entry a cell at least, so that the parallel chunks below stay aligned.
         self.stiffness.resize(panel * entries.max(1), 0.0);
-        let elastic = (stiffness == Stiffness::Elastic).then(|| self.law.elastic_tangent());
+        let blend = match stiffness {
+            Stiffness::Blended(part) => Some((part, self.law.elastic_tangent())),
+            Stiffness::None | Stiffness::Consistent => None,
+        };
         let law = &self.law;
         let mut flows = false;
         for start in (0..self.cells.len()).step_by(PANEL) {
@@ -301,7 +310,7 @@ where
                     .enumerate()
                     .map(|(k, ((force, matrix), new))| {
                         let matrix = &mut matrix[..entries];
-                        at(k).evaluate::<H, L>(law, elastic.as_ref(), d_u, (force, matrix, new))
+                        at(k).evaluate::<H, L>(law, blend.as_ref(), d_u, (force, matrix, new))
                     })
                     .fold(false, |a, b| a | b)
             } else {
@@ -313,7 +322,7 @@ where
                     .with_min_len(GRAIN)
                     .map(|(k, ((force, matrix), new))| {
                         let matrix = &mut matrix[..entries];
-                        at(k).evaluate::<H, L>(law, elastic.as_ref(), d_u, (force, matrix, new))
+                        at(k).evaluate::<H, L>(law, blend.as_ref(), d_u, (force, matrix, new))
                     })
                     .reduce(|| false, |a, b| a | b)
             };

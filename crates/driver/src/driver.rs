@@ -392,7 +392,7 @@ impl<const D: usize> Driver<D> {
         let mut system = self.prepare(end)?;
         let start = self.start_of(end);
         let outcome = match self.settings.nesting {
-            Nesting::Inside => self.increment(&mut system, &start, end),
+            Nesting::Inside => self.increment(&mut system, &start, end, &mut |_, _| {}),
             Nesting::Outside {
                 tolerance,
                 iterations,
@@ -404,7 +404,7 @@ impl<const D: usize> Driver<D> {
 
     /// The linear system for the prescribed degrees of freedom of a loading: the one at hand, or
     /// a new one if they have changed.
-    fn prepare(&mut self, loading: &Loading<D>) -> Result<System, ModelError> {
+    pub(crate) fn prepare(&mut self, loading: &Loading<D>) -> Result<System, ModelError> {
         let fixed = |dof: usize| loading.displacement.contains_key(&dof);
         let dofs = self.state.displacement.len();
         if let Some(system) = self
@@ -417,7 +417,7 @@ impl<const D: usize> Driver<D> {
         let interface: Vec<usize> = self.points.iter().map(|p| p.node).collect();
         let mut system = System::new(&self.mesh, &self.blocks, fixed, &interface)?;
         let zero = vec![0.0; dofs];
-        system.assemble(&mut self.blocks, &zero, &zero, Stiffness::Elastic);
+        system.assemble(&mut self.blocks, &zero, &zero, Stiffness::Blended(1.0));
         system.scale(self.settings.nesting == Nesting::Inside);
         Ok(system)
     }

@@ -5,6 +5,7 @@ use crate::block::Stiffness;
 use crate::driver::{Driver, State};
 use crate::error::{Imbalance, StepError};
 use crate::interface::{Condensation, Kinematics};
+use crate::line_search::Line;
 use crate::load::{Loading, axis_letter};
 use crate::report::{ContactRecord, StepReport};
 use crate::system::{Assembly, System};
@@ -46,19 +47,18 @@ pub(crate) struct Iterate {
     pub(crate) full: bool,
 }
 
-/// Step lengths that the line search tries before it takes the last.
-const TRIALS: usize = 12;
-
-/// Slope of ΔΦ at a step length over that at zero, below which the step is accepted.
-const ACCEPTED_SLOPE: f64 = 0.5;
+/// Parts of the elastic stiffness that are tried in turn where the tangent is a mechanism.
+const BLENDS: [f64; 4] = [1e-4, 1e-2, 0.2, 1.0];
 
 impl<const D: usize> Driver<D> {
-    /// Applies the increment from one loading to another and commits it.
+    /// Applies the increment from one loading to another and commits it; `observe` sees every
+    /// iterate.
     pub(crate) fn increment(
         &mut self,
         system: &mut System,
         start: &Loading<D>,
         end: &Loading<D>,
+        observe: &mut dyn FnMut(&Self, &Iterate),
     ) -> Result<StepReport, StepError> {
         let free: Vec<usize> = system.free_dofs();
         let mut counts = Counts {
@@ -113,7 +113,7 @@ impl<const D: usize> Driver<D> {
             }
             counts.newton += 1;
 
-            self.factorise(system, &now.assembly)?;
+            self.factorise(system, &mut now, &missing)?;
             let load =
                 |d: usize| end.force[d] - now.assembly.internal[d] - now.assembly.coupling[d];
             let load: Vec<f64> = (0..now.d_u.len()).map(load).collect();
@@ -136,94 +136,17 @@ impl<const D: usize> Driver<D> {
             system.expand(condensed, &x, &mut step);
             let target = self.contact_forces(&kinematics, &solved.force);
             solution = Some(solved);
-            let (next, shortened) = self.search(system, end, &free, now, &step, target, complete);
-            now = next;
-            counts.shortened += usize::from(shortened);
+            let line = Line {
+                end,
+                free: &free,
+                step: &step,
+                target: &target,
+                complete,
+            };
+            now = self.search(system, &line, now);
+            counts.shortened += usize::from(!now.full);
+            observe(self, &now);
         }
-    }
-
-    /// Goes along a Newton step as far as ΔΦ decreases: all the way unless the slope of ΔΦ, with
-    /// contact forces between those of both ends, says that the step overshoots.
-    #[allow(clippy::too_many_arguments)]
-    pub(crate) fn search(
-        &mut self,
-        system: &mut System,
-        end: &Loading<D>,
-        free: &[usize],
-        now: Iterate,
-        step: &[f64],
-        target: Vec<f64>,
-        complete: bool,
-    ) -> (Iterate, bool) {
-        let none = vec![0.0; step.len()];
-        let along =
-            |s: f64| -> Vec<f64> { now.d_u.iter().zip(step).map(|(u, v)| u + s * v).collect() };
-        let between = |s: f64| -> Vec<f64> {
-            now.contact
-                .iter()
-                .zip(&target)
-                .map(|(a, b)| a + s * (b - a))
-                .collect()
-        };
-        let slope = |internal: &[f64], contact: &[f64]| -> f64 {
-            free.iter()
-                .map(|&d| step[d] * (internal[d] - end.force[d] - contact[d]))
-                .sum()
-        };
-        let d_u = along(1.0);
-        let assembly = system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent);
-        let at_start = slope(&now.assembly.internal, &now.contact);
-        let at_end = slope(&assembly.internal, &target);
-        let left = free
-            .iter()
-            .map(|&d| end.force[d] + target[d] - assembly.internal[d]);
-        let scale = force_scale(&assembly, end, &target);
-        let balanced = largest(left) <= self.target(system, scale, &d_u);
-        // While prescribed displacements are missing, ΔΦ is not what the step minimises; in balance
-        // its slope is rounding.
-        let descends = at_start < 0.0 && complete && !balanced;
-        if !descends || at_end <= ACCEPTED_SLOPE * at_start.abs() {
-            return (
-                Iterate {
-                    d_u,
-                    assembly,
-                    contact: target,
-                    full: true,
-                },
-                false,
-            );
-        }
-        // Regula falsi on the slope, Illinois variant.
-        let (mut low, mut high) = ((0.0, at_start), (1.0, at_end));
-        let mut s = 1.0;
-        for _ in 0..TRIALS {
-            let margin = 0.05 * (high.0 - low.0);
-            s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
-            s = s.clamp(low.0 + margin, high.0 - margin);
-            let at = system.assemble(&mut self.blocks, &along(s), &none, Stiffness::None);
-            let value = slope(&at.internal, &between(s));
-            if value.abs() <= ACCEPTED_SLOPE * at_start.abs() {
-                break;
-            }
-            if value > 0.0 {
-                high = (s, value);
-                low.1 *= 0.5;
-            } else {
-                low = (s, value);
-                high.1 *= 0.5;
-            }
-        }
-        let d_u = along(s);
-        let assembly = system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent);
-        (
-            Iterate {
-                d_u,
-                assembly,
-                contact: between(s),
-                full: false,
-            },
-            true,
-        )
     }
 
     /// Out-of-balance force at which an increment is accepted \[N\]: the tolerance, or the rounding
@@ -234,18 +157,29 @@ impl<const D: usize> Driver<D> {
         (self.settings.tolerance * scale).max(rounding)
     }
 
+    /// Factorises the tangent at an iterate. Where that is a mechanism, as a plastic tangent may be
+    /// far from the solution, more and more of the elastic stiffness is blended in: the step is
+    /// then shorter and still downhill.
     pub(crate) fn factorise(
-        &self,
+        &mut self,
         system: &mut System,
-        assembly: &Assembly,
+        now: &mut Iterate,
+        missing: &[f64],
     ) -> Result<(), StepError> {
-        system
-            .factorise(!assembly.flows)
-            .map_err(|dof| StepError::Mechanism {
-                node: dof / D,
-                axis: axis_letter(dof % D),
-                position: self.mesh.nodes()[dof / D].to_vec(),
-            })
+        let mut outcome = system.factorise(!now.assembly.flows);
+        for part in BLENDS {
+            if outcome.is_ok() {
+                break;
+            }
+            let blended = Stiffness::Blended(part);
+            now.assembly = system.assemble(&mut self.blocks, &now.d_u, missing, blended);
+            outcome = system.factorise(false);
+        }
+        outcome.map_err(|dof| StepError::Mechanism {
+            node: dof / D,
+            axis: axis_letter(dof % D),
+            position: self.mesh.nodes()[dof / D].to_vec(),
+        })
     }
 
     /// First guess of the displacement increments: the last increment again, as far as the load

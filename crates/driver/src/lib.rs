@@ -33,6 +33,7 @@ mod driver;
 mod error;
 mod increment;
 mod interface;
+mod line_search;
 mod load;
 mod model;
 mod nested;

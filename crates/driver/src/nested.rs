@@ -6,6 +6,7 @@ use crate::driver::Driver;
 use crate::error::StepError;
 use crate::increment::{Candidate, Counts, Iterate, force_scale, largest};
 use crate::interface::Condensation;
+use crate::line_search::Line;
 use crate::load::Loading;
 use crate::report::StepReport;
 use crate::system::System;
@@ -43,7 +44,7 @@ impl<const D: usize> Driver<D> {
             iteration: 0,
             source,
         };
-        self.factorise(system, &now.assembly)?;
+        self.factorise(system, &mut now, &missing)?;
         let condensed = system.condense(&vec![0.0; now.d_u.len()]);
         let condensation =
             Condensation::new(system, &condensed, &self.points, &kinematics, t.clone())
@@ -149,7 +150,7 @@ impl<const D: usize> Driver<D> {
                 break;
             }
             counts.newton += 1;
-            self.factorise(system, &now.assembly)?;
+            self.factorise(system, &mut now, missing)?;
             let load = |d: usize| {
                 end.force[d] + now.contact[d] - now.assembly.internal[d] - now.assembly.coupling[d]
             };
@@ -158,9 +159,14 @@ impl<const D: usize> Driver<D> {
             let mut step = std::mem::replace(missing, none);
             system.solve(&load, &mut step);
             let target = now.contact.clone();
-            now = self
-                .search(system, end, free, now, &step, target, complete)
-                .0;
+            let line = Line {
+                end,
+                free,
+                step: &step,
+                target: &target,
+                complete,
+            };
+            now = self.search(system, &line, now);
         }
         let residual: Vec<f64> = free
             .iter()

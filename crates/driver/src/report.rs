@@ -21,7 +21,7 @@ pub struct Energies {
 }
 
 impl Energies {
-    /// External work − stored − dissipated: of the order of the step for implicit Euler.
+    /// External work − stored − dissipated − held by springs of a penalty: of the order of the step for implicit Euler.
     pub fn imbalance(&self) -> f64 {
         self.external_work
             - self.stored

@@ -81,6 +81,47 @@ fn a_hovering_block_falls_on_the_floor() {
 }
 
 #[test]
+fn an_opened_contact_closes_again_when_its_gap_is_used_up() {
+    // An elastic column on a floor, lifted by its top and set down again.
+    let elastic = Elastic::new(YOUNG, 0.3).expect("valid");
+    let model = Model::new(mesh([4, 2]), PlaneStrain::default())
+        .material("block", elastic, Integration::Reduced)
+        .and_then(|m| m.tool("floor", Plane::new([0.0, 0.0], [0.0, 1.0]).expect("valid")))
+        .and_then(|m| m.contact("block.bottom", "floor", coulomb(0.2)))
+        .expect("valid");
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    let top = |v| {
+        Step::new("move")
+            .fix("block.left", &[Axis::X])
+            .displace("block.top", Axis::Y, v)
+    };
+    driver.run(&top(-0.01), 1, |_, _| {}).expect("presses");
+    let pressed = driver.tool_force("floor").expect("exists")[1];
+    assert!(pressed > 1.0);
+    driver.run(&top(0.03), 2, |_, _| {}).expect("lifts");
+    // The gap closes at a rate, but is still open at every increment down to zero travel.
+    let mut gaps = Vec::new();
+    driver
+        .run(&top(0.001), 3, |d, r| {
+            assert_eq!((r.open, r.stick, r.slip), (d.contacts().len(), 0, 0));
+            assert!(
+                d.contacts()
+                    .iter()
+                    .all(|c| c.t.norm() == 0.0 && c.u[0] > 0.0)
+            );
+            gaps.push(d.contacts()[0].u[0]);
+        })
+        .expect("lowers");
+    assert!(gaps.windows(2).all(|g| g[1] < g[0]), "{gaps:?}");
+    driver
+        .run(&top(-0.01), 1, |_, _| {})
+        .expect("presses again");
+    assert!(driver.contacts().iter().all(|c| c.u[0].abs() < 1e-15));
+    let again = driver.tool_force("floor").expect("exists")[1];
+    assert!((again / pressed - 1.0).abs() < 1e-9, "{again} {pressed}");
+}
+
+#[test]
 fn a_body_pulled_off_its_floor_is_an_error_that_changes_nothing() {
     let mut driver = on_floor(
         [4, 2],

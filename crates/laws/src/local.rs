@@ -2,8 +2,8 @@
 
 use nalgebra::SVector;
 
-/// A vector in the frame of a contact: component 0 along the normal n, from the body Ω_A to the
-/// obstacle Ω_B, the rest tangential, \[10\].
+/// A vector in the frame of a contact: component 0 along the normal n, from the obstacle
+/// Ω_A into the body Ω_B, the rest tangential, \[10\].
 ///
 /// Displacements u \[mm\] open the contact when u_n > 0; forces t \[N\] compress it when t_n > 0;
 /// the flux conjugate to t is −u.

@@ -1,7 +1,9 @@
 //! Paper 8.2.2: regularisation against Uzawa, and against exact methods that the paper did not
 //! have; figures 15 to 17.
 
-use super::compare::{History, along, digits, record, scientific};
+use super::compare::{
+    History, along, certificate_row, certificate_table, digits, record, scientific,
+};
 use crate::paper::{BLOCK_INCREMENTS, BLOCK_TRAVEL, block, block_punch_load, block_step};
 use crate::{Case, Check, Figure, Kind, Options, Outcome, Table};
 use moreau::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
@@ -240,36 +242,13 @@ fn certificates(
     outer: usize,
     outcome: &mut Outcome,
 ) {
-    let row = |name: String, history: &History| {
-        vec![
-            name,
-            history.reports.len().to_string(),
-            scientific(history.largest_gap()),
-            scientific(history.largest_penetration()),
-            scientific(
-                history.reports.last().map_or(0.0, |r| r.energies.penalty / r.energies.external_work),
-            ),
-        ]
-    };
-    let mut rows: Vec<Vec<String>> =
-        runs.iter().map(|(method, _, history)| row(method.name().into(), history)).collect();
-    rows.push(row(format!("Uzawa around the nonlinear solve, {outer} increments"), nested));
-    outcome.tables.push(Table {
-        name: "algorithms-certificate".into(),
-        title: "Certificate: the bipotential gap, taken at the irreversible displacement, and what \
-            it cannot see"
-            .into(),
-        header: [
-            "method",
-            "increments",
-            "largest gap over external work",
-            "largest penetration [mm]",
-            "energy in the penalty springs over external work",
-        ]
-        .map(Into::into)
-        .to_vec(),
-        rows,
-    });
+    let mut rows: Vec<Vec<String>> = runs
+        .iter()
+        .map(|(method, _, history)| certificate_row(method.name(), history))
+        .collect();
+    let name = format!("Uzawa around the nonlinear solve, {outer} increments");
+    rows.push(certificate_row(&name, nested));
+    outcome.tables.push(certificate_table("algorithms-certificate", rows));
 }
 
 /// Figure 17.

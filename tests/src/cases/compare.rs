@@ -1,7 +1,7 @@
 //! Recorded runs and how far two of them are apart; not what is expected of them.
 
 use crate::paper::reference;
-use crate::{Check, Kind};
+use crate::{Check, Kind, Table};
 use moreau::driver::{ContactRecord, Driver, ModelError, Step, StepError, StepReport};
 use moreau::laws::Status;
 use moreau::mesh::NodeKind;
@@ -161,4 +161,36 @@ pub(super) fn digits(value: f64, digits: usize) -> String {
 /// A number in scientific notation.
 pub(super) fn scientific(value: f64) -> String {
     format!("{value:.2e}")
+}
+
+/// A row of [`certificate_table`].
+pub(super) fn certificate_row(method: &str, history: &History) -> Vec<String> {
+    let energies = history.reports.last().map(|r| r.energies).unwrap_or_default();
+    vec![
+        method.into(),
+        history.reports.len().to_string(),
+        scientific(history.largest_gap()),
+        scientific(history.largest_penetration()),
+        scientific(energies.penalty / energies.external_work),
+    ]
+}
+
+/// How exact the methods were.
+pub(super) fn certificate_table(name: &str, rows: Vec<Vec<String>>) -> Table {
+    Table {
+        name: name.into(),
+        title: "Certificate: the bipotential gap, taken at the irreversible displacement, and what \
+            it cannot see"
+            .into(),
+        header: [
+            "method",
+            "increments",
+            "largest gap over external work",
+            "largest penetration [mm]",
+            "energy in the penalty springs over external work",
+        ]
+        .map(Into::into)
+        .to_vec(),
+        rows,
+    }
 }

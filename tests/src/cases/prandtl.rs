@@ -2,14 +2,14 @@
 //! 6 to 8.
 
 use super::compare::{
-    History, INDEPENDENT, digits, final_state_checks, largest_difference, record, scientific,
+    History, INDEPENDENT, certificate_row, certificate_table, digits, final_state_checks, largest_difference, record, scientific,
 };
 use crate::paper::{
     PRANDTL_INCREMENTS, PRANDTL_TRAVEL, prandtl, prandtl_load, prandtl_punch_load, prandtl_step,
     reference,
 };
 use crate::{Case, Check, Figure, Kind, Options, Outcome, Table};
-use moreau::contact::{ContactSolver, GaussSeidel, SemismoothNewton, Uzawa};
+use moreau::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
 use moreau::driver::{Driver, Settings};
 use moreau::mesh::Integration;
 use moreau::plot::{Chart, MeshPicture, Style, nodal_average};
@@ -68,8 +68,14 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
     let limit = prandtl_load();
     let travel = |i: usize| (i + 1) as f64 * PRANDTL_TRAVEL / PRANDTL_INCREMENTS as f64;
     let finest = if options.quick { 2 } else { 8 };
-    let mut chart =
-        Chart::new("Load of the punch", "travel of the punch [mm]", "load [N per mm of thickness]");
+    let empty = |rule: &str| {
+        Chart::new(
+            format!("Load of the punch, {rule} quadrature"),
+            "travel of the punch [mm]",
+            "load [N per mm of thickness]",
+        )
+    };
+    let mut charts = [empty("2×2"), empty("3×3")];
     let mut rows = Vec::new();
     let mut coarser: Option<f64> = None;
     for (refinement, integration, expected) in LOADS.into_iter().filter(|l| l.0 <= finest) {
@@ -149,12 +155,10 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
                 "Prandtl 1921, Hill 1950",
             ));
         }
-        if integration == Integration::Reduced || refinement == 1 {
-            let style = if integration == Integration::Full { Style::Dashed } else { Style::Line };
-            let points = history.loads.iter().enumerate().map(|(i, &p)| [travel(i), p]);
-            let curve: Vec<[f64; 2]> = std::iter::once([0.0, 0.0]).chain(points).collect();
-            chart = chart.with(&name, style, curve);
-        }
+        let points = history.loads.iter().enumerate().map(|(i, &p)| [travel(i), p]);
+        let curve: Vec<[f64; 2]> = std::iter::once([0.0, 0.0]).chain(points).collect();
+        let chart = &mut charts[usize::from(integration == Integration::Full)];
+        *chart = chart.clone().with(&name, Style::Line, curve);
         if refinement == 1 && integration == Integration::Reduced {
             outcome.figures.push(mesh_figure(&driver)?);
         }
@@ -162,18 +166,17 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
             outcome.figures.push(field_figure(&driver, &name)?);
         }
     }
-    let line = vec![[0.0, limit], [PRANDTL_TRAVEL, limit]];
-    let chart = chart.with("Prandtl, Hill", Style::Dashed, line);
-    outcome.figures.insert(
-        1,
-        Figure {
-            name: "prandtl-load".into(),
-            caption: "Load against travel of the punch, for the paper's figure 8. All meshes lie \
-                above the limit load and tend to it."
-                .into(),
-            svg: chart.to_svg()?,
-        },
-    );
+    for (chart, (stem, rule)) in charts.into_iter().zip([("2x2", "reduced"), ("3x3", "full")]) {
+        let line = vec![[0.0, limit], [PRANDTL_TRAVEL, limit]];
+        outcome.figures.push(Figure {
+            name: format!("prandtl-load-{stem}"),
+            caption: format!(
+                "Load against travel of the punch with {rule} quadrature, for the paper's figure 8. \
+                 All meshes lie above the limit load and tend to it."
+            ),
+            svg: chart.with("Prandtl, Hill", Style::Dashed, line).to_svg()?,
+        });
+    }
     outcome.tables.push(Table {
         name: "prandtl-convergence".into(),
         title: "Load at 0.4 mm against the limit load".into(),
@@ -202,9 +205,11 @@ fn exact_solvers(options: &Options<'_>, outcome: &mut Outcome) -> Result<(), Box
         ("Uzawa inside", Box::new(Uzawa::default())),
     ];
     let mut first: Option<History> = None;
+    let mut rows = Vec::new();
     for (method, solver) in methods {
         (options.progress)(&format!("{}, {method}", name(1, Integration::Reduced)));
         let (_, history) = indent(1, Integration::Reduced, solver)?;
+        rows.push(certificate_row(method, &history));
         outcome.checks.push(Check::new(
             format!("{method}: largest bipotential gap over the external work"),
             (history.largest_gap(), "1"),
@@ -232,6 +237,10 @@ fn exact_solvers(options: &Options<'_>, outcome: &mut Outcome) -> Result<(), Box
             }
         }
     }
+    let penalty = Penalty::new(1e8, 1e8)?;
+    let (_, history) = indent(1, Integration::Reduced, Box::new(penalty))?;
+    rows.push(certificate_row("regularisation, k = 1e8 N/mm", &history));
+    outcome.tables.push(certificate_table("prandtl-certificate", rows));
     Ok(())
 }
 

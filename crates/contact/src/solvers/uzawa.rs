@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 /// Prediction t̂ = t − α ũ and correction t = proj(t̂) on u = W t + q, accelerated.
 ///
 /// α is the inverse of the largest eigenvalue of W in the scaling that gives every contact a unit
-/// diagonal, so there is no number to choose. Near a limit load W has eigenvalues of very unlike
+/// diagonal, over √(1 + μ²) for the slope of ũ: there is no number to choose. Near a limit load W has eigenvalues of very unlike
 /// size, on which the plain scheme takes 10⁵ corrections and more; Anderson's extrapolation brings
 /// them down to some hundreds and leaves the fixed point what it is.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,0 +1,275 @@
+//! How far to go along a Newton step; not which step.
+
+use crate::block::Stiffness;
+use crate::driver::Driver;
+use crate::increment::{Iterate, force_scale, largest};
+use crate::load::Loading;
+use crate::system::System;
+
+/// Step lengths that are tried before the last is taken.
+const TRIALS: usize = 12;
+
+/// Slope of ΔΦ at a step length over that at zero, below which the length is accepted.
+const ACCEPTED_SLOPE: f64 = 0.5;
+
+/// A Newton step from an iterate.
+pub(crate) struct Line<'a, const D: usize> {
+    pub(crate) end: &'a Loading<D>,
+    /// The free degrees of freedom.
+    pub(crate) free: &'a [usize],
+    /// Displacements of the step, at every degree of freedom.
+    pub(crate) step: &'a [f64],
+    /// Contact forces at its end, at every degree of freedom.
+    pub(crate) target: &'a [f64],
+    /// Whether the iterate has all prescribed displacements already.
+    pub(crate) complete: bool,
+}
+
+impl<const D: usize> Line<'_, D> {
+    fn displacement(&self, now: &Iterate, s: f64) -> Vec<f64> {
+        now.d_u
+            .iter()
+            .zip(self.step)
+            .map(|(u, v)| u + s * v)
+            .collect()
+    }
+
+    /// Contact forces between those of both ends.
+    fn contact(&self, now: &Iterate, s: f64) -> Vec<f64> {
+        now.contact
+            .iter()
+            .zip(self.target)
+            .map(|(a, b)| a + s * (b - a))
+            .collect()
+    }
+
+    /// Internal minus applied and contact forces on the free degrees of freedom.
+    fn imbalance<'a>(
+        &'a self,
+        internal: &'a [f64],
+        contact: &'a [f64],
+    ) -> impl Iterator<Item = (usize, f64)> + 'a {
+        let at = move |&d: &usize| (d, internal[d] - self.end.force[d] - contact[d]);
+        self.free.iter().map(at)
+    }
+
+    /// Slope of ΔΦ along the step.
+    fn slope(&self, internal: &[f64], contact: &[f64]) -> f64 {
+        self.imbalance(internal, contact)
+            .map(|(d, r)| self.step[d] * r)
+            .sum()
+    }
+
+    /// Norm of the imbalance.
+    fn norm(&self, internal: &[f64], contact: &[f64]) -> f64 {
+        self.imbalance(internal, contact)
+            .map(|(_, r)| r * r)
+            .sum::<f64>()
+            .sqrt()
+    }
+}
+
+impl<const D: usize> Driver<D> {
+    /// Goes along a Newton step: all the way, unless that overshoots the minimum of ΔΦ with contact
+    /// forces between those of both ends. Friction that changes can make ΔΦ no potential of the
+    /// step, which then does not begin downhill; there the norm of the imbalance decides.
+    pub(crate) fn search(
+        &mut self,
+        system: &mut System,
+        line: &Line<'_, D>,
+        now: Iterate,
+    ) -> Iterate {
+        let none = vec![0.0; line.step.len()];
+        let d_u = line.displacement(&now, 1.0);
+        let assembly = system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent);
+        let internal = &assembly.internal;
+        let scale = force_scale(&assembly, line.end, line.target);
+        let left = largest(line.imbalance(internal, line.target).map(|(_, r)| r));
+        let at_start = line.slope(&now.assembly.internal, &now.contact);
+        let at_end = line.slope(internal, line.target);
+        let overshoots = if at_start < 0.0 {
+            at_end > ACCEPTED_SLOPE * at_start.abs()
+        } else {
+            let before = line.norm(&now.assembly.internal, &now.contact);
+            line.norm(internal, line.target) > before
+        };
+        // While prescribed displacements are missing, ΔΦ is not what the step minimises; in balance
+        // its slope is rounding.
+        if !line.complete || !overshoots || left <= self.target(system, scale, &d_u) {
+            return Iterate {
+                d_u,
+                assembly,
+                contact: line.target.to_vec(),
+                full: true,
+            };
+        }
+        let s = if at_start < 0.0 {
+            self.minimise(system, line, &now, at_start, at_end)
+        } else {
+            self.backtrack(system, line, &now)
+        };
+        let d_u = line.displacement(&now, s);
+        Iterate {
+            assembly: system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent),
+            d_u,
+            contact: line.contact(&now, s),
+            full: false,
+        }
+    }
+
+    /// Step length at which the slope of ΔΦ about vanishes, by the Illinois variant of regula
+    /// falsi between the slopes at 0 and at 1.
+    fn minimise(
+        &mut self,
+        system: &mut System,
+        line: &Line<'_, D>,
+        now: &Iterate,
+        at_start: f64,
+        at_end: f64,
+    ) -> f64 {
+        let none = vec![0.0; line.step.len()];
+        let (mut low, mut high) = ((0.0, at_start), (1.0, at_end));
+        let mut last_side = 0.0;
+        let mut s = 1.0;
+        for _ in 0..TRIALS {
+            let margin = 0.05 * (high.0 - low.0);
+            s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            s = s.clamp(low.0 + margin, high.0 - margin);
+            let trial = line.displacement(now, s);
+            let at = system.assemble(&mut self.blocks, &trial, &none, Stiffness::None);
+            let slope = line.slope(&at.internal, &line.contact(now, s));
+            if slope.abs() <= ACCEPTED_SLOPE * at_start.abs() {
+                break;
+            }
+            // An end that stays twice weighs half.
+            if slope > 0.0 {
+                high = (s, slope);
+                low.1 *= if last_side > 0.0 { 0.5 } else { 1.0 };
+            } else {
+                low = (s, slope);
+                high.1 *= if last_side < 0.0 { 0.5 } else { 1.0 };
+            }
+            last_side = slope;
+        }
+        s
+    }
+
+    /// Step length at which the norm of the imbalance has decreased.
+    fn backtrack(&mut self, system: &mut System, line: &Line<'_, D>, now: &Iterate) -> f64 {
+        let none = vec![0.0; line.step.len()];
+        let before = line.norm(&now.assembly.internal, &now.contact);
+        let mut s = 1.0;
+        for _ in 0..TRIALS {
+            s *= 0.5;
+            let trial = line.displacement(now, s);
+            let at = system.assemble(&mut self.blocks, &trial, &none, Stiffness::None);
+            if line.norm(&at.internal, &line.contact(now, s)) < before {
+                break;
+            }
+        }
+        s
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Axis, Model, Settings, Step};
+    use moreau_laws::VonMises;
+    use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
+
+    /// A strip held over half of its width and pulled at the other end.
+    fn strip() -> Driver<2> {
+        let steel = VonMises::new(210e3, 0.3, 300.0).expect("valid");
+        let (x, y) = (uniform(0.0, 10.0, 8), uniform(0.0, 20.0, 8));
+        let mut mesh = block2("strip", CellKind::Quad8, &x, &y).expect("valid");
+        mesh.node_group_where("ligament", "strip.bottom", |x| x[0] <= 5.0)
+            .expect("not empty");
+        let model = Model::new(mesh, PlaneStrain::default())
+            .material("strip", steel, Integration::Reduced)
+            .expect("valid");
+        Driver::new(model, Settings::default()).expect("valid")
+    }
+
+    fn pull(driver: &Driver<2>, traction: f64) -> Loading<2> {
+        let step = Step::new("pull")
+            .fix("strip.left", &[Axis::X])
+            .fix("ligament", &[Axis::Y])
+            .pressure("strip.top", -traction);
+        driver.loading(&step).expect("valid")
+    }
+
+    /// ΔΦ, \[74\], without contact.
+    fn potential(driver: &Driver<2>, end: &Loading<2>, d_u: &[f64]) -> f64 {
+        let stored: f64 = driver.blocks.iter().map(|b| b.potential(d_u)).sum();
+        stored - end.force.iter().zip(d_u).map(|(f, u)| f * u).sum::<f64>()
+    }
+
+    /// Close to collapse in one increment: the imbalance rises on the way, ΔΦ never does.
+    #[test]
+    fn the_potential_decreases_from_iterate_to_iterate() {
+        let mut driver = strip();
+        let end = pull(&driver, 258.0);
+        let mut start = end.clone();
+        start.force.fill(0.0);
+        let mut system = driver.prepare(&end).expect("held");
+        let mut potentials = Vec::new();
+        let report = driver
+            .increment(&mut system, &start, &end, &mut |driver, now| {
+                potentials.push(potential(driver, &end, &now.d_u));
+            })
+            .expect("converges");
+        assert!(report.plastic_fraction > 0.05);
+        assert!(report.residuals.windows(2).any(|r| r[1] > r[0]));
+        let size = potentials[0].abs();
+        for pair in potentials.windows(2) {
+            assert!(pair[1] <= pair[0] + 1e-10 * size, "{potentials:?}");
+        }
+    }
+
+    /// Four times the elastic answer, which would end higher than it began.
+    #[test]
+    fn a_step_that_overshoots_is_shortened_to_where_the_potential_is_least() {
+        let mut driver = strip();
+        let end = pull(&driver, 200.0);
+        let mut system = driver.prepare(&end).expect("held");
+        let none = vec![0.0; end.force.len()];
+        let assembly = system.assemble(&mut driver.blocks, &none, &none, Stiffness::Consistent);
+        system.factorise(true).expect("elastic");
+        let condensed = system.condense(&end.force);
+        let mut step = none.clone();
+        system.expand(condensed, &nalgebra::DVector::zeros(0), &mut step);
+        step.iter_mut().for_each(|u| *u *= 4.0);
+        let now = Iterate {
+            d_u: none.clone(),
+            assembly,
+            contact: none.clone(),
+            full: false,
+        };
+        let free = system.free_dofs();
+        let line = Line {
+            end: &end,
+            free: &free,
+            step: &step,
+            target: &none,
+            complete: true,
+        };
+        let next = driver.search(&mut system, &line, now);
+        assert!(!next.full);
+        let length = next.d_u.iter().zip(&step).map(|(u, s)| u * s).sum::<f64>()
+            / step.iter().map(|s| s * s).sum::<f64>();
+        assert!(length > 0.1 && length < 0.6, "{length}");
+        let reached = potential(&driver, &end, &next.d_u);
+        assert!(reached < 0.0 && reached < potential(&driver, &end, &step));
+        // Not far from the least value on the line.
+        let least = (1..=100)
+            .map(|k| {
+                step.iter()
+                    .map(|u| u * k as f64 / 100.0)
+                    .collect::<Vec<_>>()
+            })
+            .map(|u| potential(&driver, &end, &u))
+            .fold(0.0, f64::min);
+        assert!(reached < 0.7 * least, "{reached} {least}");
+    }
+}
