@@ -54,7 +54,16 @@ impl Check {
             Kind::AtLeast => value >= reference,
         };
         let (name, unit, source) = (name.into(), unit.into(), source.into());
-        Self { name, value, unit, reference, tolerance, kind, source, pass }
+        Self {
+            name,
+            value,
+            unit,
+            reference,
+            tolerance,
+            kind,
+            source,
+            pass,
+        }
     }
 }
 

@@ -34,7 +34,11 @@ pub fn prandtl_load() -> f64 {
 /// Grid lines of the mesh of 56 cells: columns from the axis outwards, rows from the bottom up.
 pub fn prandtl_lines() -> (Vec<f64>, Vec<f64>) {
     let mut x = uniform(0.0, HALF_WIDTH, 4);
-    x.extend(geometric(HALF_WIDTH, 2.5 * 1.640849940365, 1.640849940365, 4).into_iter().skip(1));
+    x.extend(
+        geometric(HALF_WIDTH, 2.5 * 1.640849940365, 1.640849940365, 4)
+            .into_iter()
+            .skip(1),
+    );
     let mut y = geometric(0.0, -2.5, 1.342041860819, 7);
     y.reverse();
     // The ratios are rounded in the twelfth digit; the block ends at 50 mm.
@@ -57,9 +61,15 @@ pub fn prandtl(
     let (x, y) = prandtl_lines();
     let (x, y) = (refine(&x, refinement), refine(&y, refinement));
     let mut mesh = block2("block", CellKind::Quad8, &x, &y)?;
-    mesh.facet_group_where("contact", "block.top", |x| x[0] <= HALF_WIDTH * (1.0 + 1e-9))?;
+    mesh.facet_group_where("contact", "block.top", |x| {
+        x[0] <= HALF_WIDTH * (1.0 + 1e-9)
+    })?;
     let model = Model::new(mesh, PlaneStrain::default())
-        .material("block", VonMises::new(YOUNG, POISSON, YIELD_STRESS)?, integration)?
+        .material(
+            "block",
+            VonMises::new(YOUNG, POISSON, YIELD_STRESS)?,
+            integration,
+        )?
         .tool("punch", Plane::new([0.0, 0.0], [0.0, -1.0])?)?
         .contact("contact", "punch", Coulomb::new(0.0)?)?;
     Ok(Driver::new(model, settings)?)
@@ -95,7 +105,11 @@ pub fn block(
 ) -> Result<Driver<2>, Box<dyn Error>> {
     let mesh = block_mesh(cells)?;
     let model = Model::new(mesh, PlaneStrain::default())
-        .material("block", VonMises::new(YOUNG, POISSON, YIELD_STRESS)?, integration)?
+        .material(
+            "block",
+            VonMises::new(YOUNG, POISSON, YIELD_STRESS)?,
+            integration,
+        )?
         .tool("foundation", Plane::new([0.0, 0.0], [0.0, 1.0])?)?
         .contact("block.bottom", "foundation", Coulomb::new(friction)?)?;
     Ok(Driver::new(model, settings)?)
@@ -110,7 +124,9 @@ fn block_mesh([nx, ny]: [usize; 2]) -> Result<moreau::mesh::Mesh<2>, MeshError> 
 
 /// The punch moves to a total travel, downwards positive.
 pub fn block_step(travel: f64) -> Step<2> {
-    Step::new("press").fix("block.left", &[Axis::X]).displace("punch", Axis::Y, -travel)
+    Step::new("press")
+        .fix("block.left", &[Axis::X])
+        .displace("punch", Axis::Y, -travel)
 }
 
 /// Load of the punch on half of the block \[N/mm\].
@@ -159,12 +175,18 @@ pub mod reference {
         };
         let mut lines = text.lines();
         let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
-        lines.map(|line| header.iter().copied().zip(line.split(',')).collect()).collect()
+        lines
+            .map(|line| header.iter().copied().zip(line.split(',')).collect())
+            .collect()
     }
 
     /// A column as numbers; NaN where it is none.
     pub fn column(name: &str, column: &str) -> Vec<f64> {
-        let number = |row: &Row| row.get(column).and_then(|v| v.parse().ok()).unwrap_or(f64::NAN);
+        let number = |row: &Row| {
+            row.get(column)
+                .and_then(|v| v.parse().ok())
+                .unwrap_or(f64::NAN)
+        };
         rows(name).iter().map(number).collect()
     }
 }

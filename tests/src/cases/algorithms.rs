@@ -72,18 +72,31 @@ fn press(
     let mut history = History::default();
     let travel = BLOCK_TRAVEL * increments as f64 / BLOCK_INCREMENTS as f64;
     let start = Instant::now();
-    record(&mut driver, &block_step(travel), increments, block_punch_load, &mut history)?;
+    record(
+        &mut driver,
+        &block_step(travel),
+        increments,
+        block_punch_load,
+        &mut history,
+    )?;
     let seconds = start.elapsed().as_secs_f64();
     Ok((driver, history, seconds))
 }
 
 /// Shortest time of a method over some repetitions, in turn with the others so that all meet the
 /// same machine.
-fn fastest(cells: [usize; 2], increments: usize, repetitions: usize) -> Result<[f64; 4], Box<dyn Error>> {
+fn fastest(
+    cells: [usize; 2],
+    increments: usize,
+    repetitions: usize,
+) -> Result<[f64; 4], Box<dyn Error>> {
     let mut best = [f64::INFINITY; 4];
     for _ in 0..repetitions {
         for (method, best) in Method::ALL.into_iter().zip(&mut best) {
-            let settings = Settings { contact: method.solver()?, ..Settings::default() };
+            let settings = Settings {
+                contact: method.solver()?,
+                ..Settings::default()
+            };
             *best = best.min(press(cells, settings, increments)?.2);
         }
     }
@@ -96,22 +109,32 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
     let mut runs = Vec::new();
     for method in Method::ALL {
         (options.progress)(method.name());
-        let settings = Settings { contact: method.solver()?, ..Settings::default() };
+        let settings = Settings {
+            contact: method.solver()?,
+            ..Settings::default()
+        };
         let (driver, history, _) = press(coarse, settings, BLOCK_INCREMENTS)?;
         runs.push((method, driver, history));
     }
     agreement(&runs, &mut outcome);
     let outer = if options.quick { 3 } else { 6 };
-    (options.progress)(&format!("Uzawa around the nonlinear solve, {outer} increments"));
+    (options.progress)(&format!(
+        "Uzawa around the nonlinear solve, {outer} increments"
+    ));
     let settings = || Settings {
-        nesting: Nesting::Outside { tolerance: OUTER_TOLERANCE, iterations: 200_000 },
+        nesting: Nesting::Outside {
+            tolerance: OUTER_TOLERANCE,
+            iterations: 200_000,
+        },
         cuts: 0,
         ..Settings::default()
     };
     let (nested_driver, nested, nested_seconds) = press(coarse, settings(), outer)?;
     let (same_driver, same, _) = press(coarse, Settings::default(), outer)?;
     outcome.checks.push(Check::new(
-        format!("Uzawa around the nonlinear solve: forces against the exact ones, {outer} increments"),
+        format!(
+            "Uzawa around the nonlinear solve: forces against the exact ones, {outer} increments"
+        ),
         (same.force_difference(&nested), "1"),
         Kind::AtMost,
         (1e-4, 0.0),
@@ -178,7 +201,8 @@ fn figures(
     outcome: &mut Outcome,
 ) -> Result<(), Box<dyn Error>> {
     let slips = |driver: &Driver<2>| -> Vec<[f64; 2]> {
-        let slip = |c: &moreau::driver::ContactRecord<2>| [c.position[0], driver.displacement(c.node)[0]];
+        let slip =
+            |c: &moreau::driver::ContactRecord<2>| [c.position[0], driver.displacement(c.node)[0]];
         driver.contacts().iter().map(slip).collect()
     };
     let reactions = |driver: &Driver<2>| along(driver.contacts(), NodeKind::Midside, |c| c.t[0]);
@@ -207,8 +231,16 @@ fn figures(
             chart = chart.with(name, style(*method), value(driver));
         }
         chart = chart
-            .with(format!("semismooth Newton, {travel} mm"), Style::Line, value(exact))
-            .with(format!("Uzawa around, {travel} mm"), Style::Points, value(nested));
+            .with(
+                format!("semismooth Newton, {travel} mm"),
+                Style::Line,
+                value(exact),
+            )
+            .with(
+                format!("Uzawa around, {travel} mm"),
+                Style::Points,
+                value(nested),
+            );
         let figure = if name == "algorithms-slip" { 15 } else { 16 };
         outcome.figures.push(Figure {
             name: name.into(),
@@ -223,9 +255,18 @@ fn figures(
     if let (Some(penalty), Some(uzawa)) = (value(Method::Penalty), value(Method::Uzawa)) {
         for (what, unit, a, b) in [
             ("slip", "mm", slips(penalty), slips(uzawa)),
-            ("normal reaction at a mid-side node", "N/mm", reactions(penalty), reactions(uzawa)),
+            (
+                "normal reaction at a mid-side node",
+                "N/mm",
+                reactions(penalty),
+                reactions(uzawa),
+            ),
         ] {
-            let difference = a.iter().zip(&b).map(|(a, b)| (a[1] - b[1]).abs()).fold(0.0, f64::max);
+            let difference = a
+                .iter()
+                .zip(&b)
+                .map(|(a, b)| (a[1] - b[1]).abs())
+                .fold(0.0, f64::max);
             let largest = b.iter().map(|b| b[1].abs()).fold(0.0, f64::max);
             outcome.notes.push(format!(
                 "Regularisation against Uzawa at 0.2 mm: largest difference of a {what} \
@@ -248,7 +289,9 @@ fn certificates(
         .collect();
     let name = format!("Uzawa around the nonlinear solve, {outer} increments");
     rows.push(certificate_row(&name, nested));
-    outcome.tables.push(certificate_table("algorithms-certificate", rows));
+    outcome
+        .tables
+        .push(certificate_table("algorithms-certificate", rows));
 }
 
 /// Figure 17.
@@ -260,7 +303,11 @@ fn times(
     let mut rows = Vec::new();
     let repetitions = if options.quick { 5 } else { 15 };
     let mut ratios = Vec::new();
-    for (cells, increments) in [([10, 2], BLOCK_INCREMENTS), ([10, 2], outer), ([10, 6], BLOCK_INCREMENTS)] {
+    for (cells, increments) in [
+        ([10, 2], BLOCK_INCREMENTS),
+        ([10, 2], outer),
+        ([10, 6], BLOCK_INCREMENTS),
+    ] {
         let count = cells[0] * cells[1];
         (options.progress)(&format!("times, {count} cells, {increments} increments"));
         let seconds = fastest(cells, increments, repetitions)?;
@@ -313,10 +360,17 @@ fn times(
     }
     outcome.tables.push(Table {
         name: "algorithms-time".into(),
-        title: "Time, for the paper's figure 17 (regularisation 25 s, Uzawa 30 min: ratio 72)".into(),
-        header: ["method", "cells", "increments", "time [s]", "over regularisation"]
-            .map(Into::into)
-            .to_vec(),
+        title: "Time, for the paper's figure 17 (regularisation 25 s, Uzawa 30 min: ratio 72)"
+            .into(),
+        header: [
+            "method",
+            "cells",
+            "increments",
+            "time [s]",
+            "over regularisation",
+        ]
+        .map(Into::into)
+        .to_vec(),
         rows,
     });
     Ok(())

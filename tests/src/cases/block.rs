@@ -38,7 +38,13 @@ fn press(
     let mut driver = block(cells, friction, integration, Settings::default())?;
     let mut history = History::default();
     let step = block_step(BLOCK_TRAVEL);
-    record(&mut driver, &step, BLOCK_INCREMENTS, block_punch_load, &mut history)?;
+    record(
+        &mut driver,
+        &step,
+        BLOCK_INCREMENTS,
+        block_punch_load,
+        &mut history,
+    )?;
     Ok((driver, history))
 }
 
@@ -62,10 +68,17 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
         (0.1, Integration::Full, Some("B_mesh20_g3_mu0.1_exact")),
         (0.05, Integration::Full, None),
     ];
-    let mut chart =
-        Chart::new("Load of the punch", "travel of the punch [mm]", "load on the half [N per mm]");
+    let mut chart = Chart::new(
+        "Load of the punch",
+        "travel of the punch [mm]",
+        "load on the half [N per mm]",
+    );
     for (friction, integration, file) in runs {
-        let rule = if integration == Integration::Reduced { "2×2" } else { "3×3" };
+        let rule = if integration == Integration::Reduced {
+            "2×2"
+        } else {
+            "3×3"
+        };
         let what = format!("20 cells, {rule}, μ = {friction}");
         (options.progress)(&what);
         let (driver, history) = press(COARSE, friction, integration)?;
@@ -80,7 +93,11 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
                     .collect();
                 for (name, computed, expected) in [
                     ("load after every increment", &history.loads, &loads),
-                    ("sum of friction forces after every increment", &sums, &tangential),
+                    (
+                        "sum of friction forces after every increment",
+                        &sums,
+                        &tangential,
+                    ),
                 ] {
                     outcome.checks.push(Check::new(
                         format!("{what}: {name}, largest relative difference"),
@@ -128,8 +145,16 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
         outcome.checks.extend(consistency(&what, &driver, &history));
         rows.push(row(&what, &driver, &history));
         let travel = |i: usize| (i + 1) as f64 * BLOCK_TRAVEL / BLOCK_INCREMENTS as f64;
-        let points = history.loads.iter().enumerate().map(|(i, &p)| [travel(i), p]);
-        let style = if integration == Integration::Full { Style::Dashed } else { Style::Line };
+        let points = history
+            .loads
+            .iter()
+            .enumerate()
+            .map(|(i, &p)| [travel(i), p]);
+        let style = if integration == Integration::Full {
+            Style::Dashed
+        } else {
+            Style::Line
+        };
         let curve: Vec<[f64; 2]> = std::iter::once([0.0, 0.0]).chain(points).collect();
         chart = chart.with(&what, style, curve);
         if friction == 0.1 && integration == Integration::Reduced {
@@ -148,7 +173,11 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
         ([10, 4], Integration::Reduced, 10445.77305),
         ([10, 4], Integration::Full, 10702.96046),
     ] {
-        let rule = if integration == Integration::Reduced { "2×2" } else { "3×3" };
+        let rule = if integration == Integration::Reduced {
+            "2×2"
+        } else {
+            "3×3"
+        };
         let what = format!("40 cells, {rule}, μ = 0.1");
         (options.progress)(&what);
         let (driver, history) = press(cells, 0.1, integration)?;
@@ -192,8 +221,9 @@ fn consistency(what: &str, driver: &Driver<2>, history: &History) -> Vec<Check> 
     let largest = contacts().map(|c| c.t[0]).fold(0.0, f64::max);
     let pull = contacts().map(|c| -c.t[0]).fold(0.0, f64::max);
     // Power of friction on the body, which must not be positive.
-    let wrong_way =
-        contacts().filter(|c| c.status == Status::Slip && c.t[1] * c.u[1] > 0.0).count();
+    let wrong_way = contacts()
+        .filter(|c| c.status == Status::Slip && c.t[1] * c.u[1] > 0.0)
+        .count();
     vec![
         Check::new(
             format!("{what}: Σ t_n against the load of the punch"),
@@ -228,8 +258,10 @@ fn consistency(what: &str, driver: &Driver<2>, history: &History) -> Vec<Check> 
 
 fn row(what: &str, driver: &Driver<2>, history: &History) -> Vec<String> {
     let sum = |k: usize| driver.contacts().iter().map(|c| c.t[k]).sum::<f64>();
-    let (open, stick, slip) =
-        history.reports.last().map_or((0, 0, 0), |r| (r.open, r.stick, r.slip));
+    let (open, stick, slip) = history
+        .reports
+        .last()
+        .map_or((0, 0, 0), |r| (r.open, r.stick, r.slip));
     vec![
         what.into(),
         digits(history.last_load(), 4),
@@ -258,7 +290,10 @@ fn stick(options: &Options<'_>, outcome: &mut Outcome) -> Result<Vec<String>, Bo
     let all = |r: &&moreau::driver::StepReport| r.open > 0 && r.stick > 0 && r.slip > 0;
     outcome.checks.push(Check::new(
         format!("{what}: increments with open, sticking and slipping points"),
-        (history.reports.iter().filter(all).count() as f64, "increments"),
+        (
+            history.reports.iter().filter(all).count() as f64,
+            "increments",
+        ),
         Kind::AtLeast,
         (BLOCK_INCREMENTS as f64, 0.0),
         "the variant was made for it",
@@ -275,8 +310,16 @@ fn unload(
 ) -> Result<(), Box<dyn Error>> {
     let expected = [
         (0.05, Integration::Reduced, None),
-        (0.1, Integration::Reduced, Some([8673.464198, 6829.878162, 5070.747493])),
-        (0.1, Integration::Full, Some([8852.84126, 6993.521185, 5245.092925])),
+        (
+            0.1,
+            Integration::Reduced,
+            Some([8673.464198, 6829.878162, 5070.747493]),
+        ),
+        (
+            0.1,
+            Integration::Full,
+            Some([8852.84126, 6993.521185, 5245.092925]),
+        ),
     ];
     let mut chart = Chart::new(
         "Slip of the last increment",
@@ -284,7 +327,11 @@ fn unload(
         "slip increment [mm]",
     );
     for (friction, integration, loads) in expected {
-        let rule = if integration == Integration::Reduced { "2×2" } else { "3×3" };
+        let rule = if integration == Integration::Reduced {
+            "2×2"
+        } else {
+            "3×3"
+        };
         let what = format!("20 cells, {rule}, μ = {friction}, withdrawn 0.015 mm");
         (options.progress)(&what);
         let (mut driver, mut history) = press(COARSE, friction, integration)?;
@@ -292,7 +339,10 @@ fn unload(
         if let Some(loads) = loads {
             outcome.checks.push(Check::new(
                 format!("{what}: loads while withdrawn, largest relative difference"),
-                (largest_difference(&history.loads[BLOCK_INCREMENTS..], &loads), "1"),
+                (
+                    largest_difference(&history.loads[BLOCK_INCREMENTS..], &loads),
+                    "1",
+                ),
                 Kind::AtMost,
                 (1e-8, 0.0),
                 INDEPENDENT,
@@ -309,15 +359,26 @@ fn unload(
                 INDEPENDENT,
             ));
             let file = format!("{file}_contact_final");
-            outcome.checks.extend(final_state_checks(&what, &driver, &file));
+            outcome
+                .checks
+                .extend(final_state_checks(&what, &driver, &file));
         }
         let last = &history.contacts[BLOCK_INCREMENTS..];
         let seen = |wanted: &dyn Fn(&moreau::driver::ContactRecord<2>) -> bool| {
-            last.iter().flatten().filter(|c| !c.held && wanted(c)).count() as f64
+            last.iter()
+                .flatten()
+                .filter(|c| !c.held && wanted(c))
+                .count() as f64
         };
         for (name, count) in [
-            ("forward slip", seen(&|c| c.status == Status::Slip && c.u[1] > 0.0)),
-            ("reverse slip", seen(&|c| c.status == Status::Slip && c.u[1] < 0.0)),
+            (
+                "forward slip",
+                seen(&|c| c.status == Status::Slip && c.u[1] > 0.0),
+            ),
+            (
+                "reverse slip",
+                seen(&|c| c.status == Status::Slip && c.u[1] < 0.0),
+            ),
             ("stick", seen(&|c| c.status == Status::Stick)),
             ("release", seen(&|c| c.status == Status::Open)),
         ] {
@@ -330,8 +391,11 @@ fn unload(
             ));
         }
         if integration == Integration::Reduced {
-            let points: Vec<[f64; 2]> =
-                history.last_contacts().iter().map(|c| [c.position[0], c.u[1]]).collect();
+            let points: Vec<[f64; 2]> = history
+                .last_contacts()
+                .iter()
+                .map(|c| [c.position[0], c.u[1]])
+                .collect();
             chart = chart.with(format!("μ = {friction}"), Style::LinePoints, points);
         }
         outcome.checks.extend(consistency(&what, &driver, &history));
@@ -352,18 +416,29 @@ fn pictures(driver: &Driver<2>) -> Result<Vec<Figure>, Box<dyn Error>> {
     let nodes = 0..driver.mesh().nodes().len();
     let displacement = nodes.map(|a| driver.displacement(a).into()).collect();
     let p = nodal_average(driver.mesh(), &driver.points(), |s| s.plastic_strain);
-    let deformed = MeshPicture::new(driver.mesh(), "Equivalent plastic strain at 0.2 mm, μ = 0.1")
-        .deformed(displacement, 10.0)
-        .field("equivalent plastic strain p [–]", p)
-        .outline();
+    let deformed = MeshPicture::new(
+        driver.mesh(),
+        "Equivalent plastic strain at 0.2 mm, μ = 0.1",
+    )
+    .deformed(displacement, 10.0)
+    .field("equivalent plastic strain p [–]", p)
+    .outline();
     let reactions = |kind| along(driver.contacts(), kind, |c| c.t[0]);
     let chart = Chart::new(
         "Nodal reactions, μ = 0.1",
         "position along the foundation [mm]",
         "normal reaction [N per mm]",
     )
-    .with("corner nodes", Style::LinePoints, reactions(NodeKind::Corner))
-    .with("mid-side nodes", Style::LinePoints, reactions(NodeKind::Midside));
+    .with(
+        "corner nodes",
+        Style::LinePoints,
+        reactions(NodeKind::Corner),
+    )
+    .with(
+        "mid-side nodes",
+        Style::LinePoints,
+        reactions(NodeKind::Midside),
+    );
     Ok(vec![
         Figure {
             name: "block-mesh".into(),

@@ -38,12 +38,19 @@ impl History {
 
     /// Largest bipotential gap of an increment over the external work done until then.
     pub fn largest_gap(&self) -> f64 {
-        self.reports.iter().map(|r| r.relative_gap().abs()).fold(0.0, f64::max)
+        self.reports
+            .iter()
+            .map(|r| r.relative_gap().abs())
+            .fold(0.0, f64::max)
     }
 
     /// Largest penetration of the bodies at a contact point \[mm\], springs of a penalty included.
     pub fn largest_penetration(&self) -> f64 {
-        self.contacts.iter().flatten().map(|c| -c.u[0]).fold(0.0, f64::max)
+        self.contacts
+            .iter()
+            .flatten()
+            .map(|c| -c.u[0])
+            .fold(0.0, f64::max)
     }
 
     /// Largest difference of a contact force from another run, over the largest force; infinite
@@ -52,14 +59,23 @@ impl History {
         if self.contacts.len() != other.contacts.len() {
             return f64::INFINITY;
         }
-        let pairs = || self.contacts.iter().flatten().zip(other.contacts.iter().flatten());
+        let pairs = || {
+            self.contacts
+                .iter()
+                .flatten()
+                .zip(other.contacts.iter().flatten())
+        };
         let largest = pairs().map(|(a, _)| a.t.norm()).fold(0.0, f64::max);
         pairs().map(|(a, b)| (a.t - b.t).norm()).fold(0.0, f64::max) / largest
     }
 
     /// Contact points and increments at which the status differs from another run.
     pub fn status_differences(&self, other: &Self) -> usize {
-        let pairs = self.contacts.iter().flatten().zip(other.contacts.iter().flatten());
+        let pairs = self
+            .contacts
+            .iter()
+            .flatten()
+            .zip(other.contacts.iter().flatten());
         pairs.filter(|(a, b)| a.status != b.status).count()
     }
 }
@@ -90,14 +106,19 @@ pub(super) fn largest_difference(computed: &[f64], expected: &[f64]) -> f64 {
     }
     let relative = |(a, b): (&f64, &f64)| ((a - b) / b).abs();
     let largest = computed.iter().zip(expected).map(relative);
-    largest.fold(0.0, |a, b| if b.is_nan() { f64::INFINITY } else { a.max(b) })
+    largest.fold(
+        0.0,
+        |a, b| if b.is_nan() { f64::INFINITY } else { a.max(b) },
+    )
 }
 
 /// Checks of a final state against a reference file: nodal forces, displacements and statuses.
 pub(super) fn final_state_checks(what: &str, driver: &Driver<2>, file: &str) -> Vec<Check> {
     let rows = reference::rows(file);
     let number = |row: &reference::Row, column: &str| -> f64 {
-        row.get(column).and_then(|v| v.parse().ok()).unwrap_or(f64::NAN)
+        row.get(column)
+            .and_then(|v| v.parse().ok())
+            .unwrap_or(f64::NAN)
     };
     let largest_force = rows.iter().map(|r| number(r, "tn_N")).fold(0.0, f64::max);
     let (mut force, mut displacement) = (0.0f64, 0.0f64);
@@ -105,7 +126,11 @@ pub(super) fn final_state_checks(what: &str, driver: &Driver<2>, file: &str) -> 
     let mut seen = 0;
     for row in &rows {
         let at = number(row, "x_mm");
-        let Some(c) = driver.contacts().iter().find(|c| (c.position[0] - at).abs() < 1e-6) else {
+        let Some(c) = driver
+            .contacts()
+            .iter()
+            .find(|c| (c.position[0] - at).abs() < 1e-6)
+        else {
             continue;
         };
         seen += 1;
@@ -139,8 +164,16 @@ pub(super) fn final_state_checks(what: &str, driver: &Driver<2>, file: &str) -> 
             (displacement, "mm"),
             1e-9,
         ),
-        at_most(format!("{what}: statuses that differ"), (statuses as f64, "nodes"), 0.0),
-        at_most(format!("{what}: contact nodes without a partner"), (missing, "nodes"), 0.0),
+        at_most(
+            format!("{what}: statuses that differ"),
+            (statuses as f64, "nodes"),
+            0.0,
+        ),
+        at_most(
+            format!("{what}: contact nodes without a partner"),
+            (missing, "nodes"),
+            0.0,
+        ),
     ]
 }
 
@@ -150,7 +183,11 @@ pub(super) fn along(
     kind: NodeKind,
     value: impl Fn(&ContactRecord<2>) -> f64,
 ) -> Vec<[f64; 2]> {
-    contacts.iter().filter(|c| c.kind == kind).map(|c| [c.position[0], value(c)]).collect()
+    contacts
+        .iter()
+        .filter(|c| c.kind == kind)
+        .map(|c| [c.position[0], value(c)])
+        .collect()
 }
 
 /// A number with as many digits as a table needs.
@@ -165,7 +202,11 @@ pub(super) fn scientific(value: f64) -> String {
 
 /// A row of [`certificate_table`].
 pub(super) fn certificate_row(method: &str, history: &History) -> Vec<String> {
-    let energies = history.reports.last().map(|r| r.energies).unwrap_or_default();
+    let energies = history
+        .reports
+        .last()
+        .map(|r| r.energies)
+        .unwrap_or_default();
     vec![
         method.into(),
         history.reports.len().to_string(),
@@ -179,9 +220,10 @@ pub(super) fn certificate_row(method: &str, history: &History) -> Vec<String> {
 pub(super) fn certificate_table(name: &str, rows: Vec<Vec<String>>) -> Table {
     Table {
         name: name.into(),
-        title: "Certificate: the bipotential gap, taken at the irreversible displacement, and what \
+        title:
+            "Certificate: the bipotential gap, taken at the irreversible displacement, and what \
             it cannot see"
-            .into(),
+                .into(),
         header: [
             "method",
             "increments",

@@ -44,25 +44,41 @@ fn press(
     friction: f64,
     contact: Box<dyn ContactSolver<2>>,
 ) -> Result<Pressed, Box<dyn Error>> {
-    let settings = Settings { contact, ..Settings::default() };
+    let settings = Settings {
+        contact,
+        ..Settings::default()
+    };
     let mut driver = block(cells, friction, Integration::Reduced, settings)?;
     let mut history = History::default();
     let step = block_step(BLOCK_TRAVEL);
-    record(&mut driver, &step, BLOCK_INCREMENTS, block_punch_load, &mut history)?;
-    let slips = driver.contacts().iter().map(|c| driver.displacement(c.node).into()).collect();
+    record(
+        &mut driver,
+        &step,
+        BLOCK_INCREMENTS,
+        block_punch_load,
+        &mut history,
+    )?;
+    let slips = driver
+        .contacts()
+        .iter()
+        .map(|c| driver.displacement(c.node).into())
+        .collect();
     Ok((slips, history))
 }
 
 /// Largest difference over the largest value.
 fn error(computed: impl Iterator<Item = f64>, exact: impl Iterator<Item = f64> + Clone) -> f64 {
     let largest = exact.clone().map(f64::abs).fold(0.0, f64::max);
-    computed.zip(exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
+    computed
+        .zip(exact)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+        / largest
 }
 
 fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
     let mut outcome = Outcome::default();
-    let meshes: &[(usize, &str)] =
-        &[(2, "10⁸ to 10¹⁵"), (4, "10⁶ to 10¹²"), (6, "10⁵ to 10⁸")];
+    let meshes: &[(usize, &str)] = &[(2, "10⁸ to 10¹⁵"), (4, "10⁶ to 10¹²"), (6, "10⁵ to 10⁸")];
     let meshes = if options.quick { &meshes[..1] } else { meshes };
     let mut errors = Chart::new(
         "Error of the penalty method",
@@ -84,7 +100,10 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
             "position along the foundation [mm]",
             "normal reaction [N per mm]",
         );
-        let mut midsides = Chart { title: "Normal reactions at mid-side nodes".into(), ..corners.clone() };
+        let mut midsides = Chart {
+            title: "Normal reactions at mid-side nodes".into(),
+            ..corners.clone()
+        };
         for power in POWERS {
             (options.progress)(&format!("{count} cells, k = 1e{power} N/mm"));
             let k = 10f64.powi(power);
@@ -108,9 +127,10 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
             ]);
             let expected = EXPECTED.iter().find(|e| e.0 == power && rows == 2);
             if let Some(&(_, expected_force, expected_slip)) = expected {
-                for (what, value, reference) in
-                    [("normal force", force, expected_force), ("slip", slip, expected_slip)]
-                {
+                for (what, value, reference) in [
+                    ("normal force", force, expected_force),
+                    ("slip", slip, expected_slip),
+                ] {
                     outcome.checks.push(Check::new(
                         format!("{count} cells, k = 1e{power}: error of the {what}"),
                         (value, "1"),
@@ -154,7 +174,12 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
             "the law holds for every k",
         ));
         // Between 1e7 and 1e12 neither the nonlinearity nor rounding disturbs the rate.
-        let at = |power: i32| curve.iter().find(|p| p[0] == 10f64.powi(power)).map(|p| p[1]);
+        let at = |power: i32| {
+            curve
+                .iter()
+                .find(|p| p[0] == 10f64.powi(power))
+                .map(|p| p[1])
+        };
         if let (Some(low), Some(high)) = (at(7), at(12)) {
             outcome.checks.push(Check::new(
                 format!("{count} cells: order of the error in 1/k, from 1e7 to 1e12"),
@@ -168,8 +193,15 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
             (Some(a), Some(b)) => format!("1e{a} to 1e{b}"),
             _ => "none".into(),
         };
-        let good: Vec<i32> = POWERS.filter(|&p| at(p).is_some_and(|e| e < 1e-2)).collect();
-        ranges.push(vec![format!("{count} cells"), paper.into(), range(&converged), range(&good)]);
+        let good: Vec<i32> = POWERS
+            .filter(|&p| at(p).is_some_and(|e| e < 1e-2))
+            .collect();
+        ranges.push(vec![
+            format!("{count} cells"),
+            paper.into(),
+            range(&converged),
+            range(&good),
+        ]);
         errors = errors.with(format!("{count} cells"), Style::LinePoints, curve);
     }
     outcome.figures.push(Figure {
@@ -182,7 +214,9 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
     outcome.tables.push(Table {
         name: "penalty-range".into(),
         title: "Penalty factors that converge [N/mm], for the paper's figure 14".into(),
-        header: ["mesh", "paper", "here", "here with an error below 1 %"].map(Into::into).to_vec(),
+        header: ["mesh", "paper", "here", "here with an error below 1 %"]
+            .map(Into::into)
+            .to_vec(),
         rows: ranges,
     });
     outcome.tables.push(Table {
@@ -213,7 +247,8 @@ fn more_friction(options: &Options<'_>, outcome: &mut Outcome) -> Result<(), Box
         for power in POWERS {
             (options.progress)(&format!("20 cells, μ = {friction}, k = 1e{power} N/mm"));
             let k = 10f64.powi(power);
-            converged += usize::from(press([10, 2], friction, Box::new(Penalty::new(k, k)?)).is_ok());
+            converged +=
+                usize::from(press([10, 2], friction, Box::new(Penalty::new(k, k)?)).is_ok());
         }
         outcome.checks.push(Check::new(
             format!("20 cells, μ = {friction}: penalty factors from 1e2 to 1e16 that converge"),

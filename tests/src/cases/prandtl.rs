@@ -2,7 +2,8 @@
 //! 6 to 8.
 
 use super::compare::{
-    History, INDEPENDENT, certificate_row, certificate_table, digits, final_state_checks, largest_difference, record, scientific,
+    History, INDEPENDENT, certificate_row, certificate_table, digits, final_state_checks,
+    largest_difference, record, scientific,
 };
 use crate::paper::{
     PRANDTL_INCREMENTS, PRANDTL_TRAVEL, prandtl, prandtl_load, prandtl_punch_load, prandtl_step,
@@ -55,11 +56,20 @@ fn indent(
     integration: Integration,
     contact: Box<dyn ContactSolver<2>>,
 ) -> Result<(Driver<2>, History), Box<dyn Error>> {
-    let settings = Settings { contact, ..Settings::default() };
+    let settings = Settings {
+        contact,
+        ..Settings::default()
+    };
     let mut driver = prandtl(refinement, integration, settings)?;
     let mut history = History::default();
     let step = prandtl_step(PRANDTL_TRAVEL);
-    record(&mut driver, &step, PRANDTL_INCREMENTS, prandtl_punch_load, &mut history)?;
+    record(
+        &mut driver,
+        &step,
+        PRANDTL_INCREMENTS,
+        prandtl_punch_load,
+        &mut history,
+    )?;
     Ok((driver, history))
 }
 
@@ -81,8 +91,11 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
     for (refinement, integration, expected) in LOADS.into_iter().filter(|l| l.0 <= finest) {
         let name = name(refinement, integration);
         (options.progress)(&name);
-        let (driver, history) =
-            indent(refinement, integration, Box::new(SemismoothNewton::default()))?;
+        let (driver, history) = indent(
+            refinement,
+            integration,
+            Box::new(SemismoothNewton::default()),
+        )?;
         let ratio = history.last_load() / limit;
         outcome.checks.push(Check::new(
             format!("{name}: P/P_Prandtl at 0.4 mm"),
@@ -135,7 +148,8 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
         coarser = Some(error);
         let last = PRANDTL_INCREMENTS - 1;
         let tail = PRANDTL_INCREMENTS / 5;
-        let slope = (history.loads[last] - history.loads[last - tail]) / (travel(last) - travel(last - tail));
+        let slope = (history.loads[last] - history.loads[last - tail])
+            / (travel(last) - travel(last - tail));
         let elastic = history.loads[0] / travel(0);
         rows.push(vec![
             name.clone(),
@@ -155,7 +169,11 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
                 "Prandtl 1921, Hill 1950",
             ));
         }
-        let points = history.loads.iter().enumerate().map(|(i, &p)| [travel(i), p]);
+        let points = history
+            .loads
+            .iter()
+            .enumerate()
+            .map(|(i, &p)| [travel(i), p]);
         let curve: Vec<[f64; 2]> = std::iter::once([0.0, 0.0]).chain(points).collect();
         let chart = &mut charts[usize::from(integration == Integration::Full)];
         *chart = chart.clone().with(&name, Style::Line, curve);
@@ -166,7 +184,10 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
             outcome.figures.push(field_figure(&driver, &name)?);
         }
     }
-    for (chart, (stem, rule)) in charts.into_iter().zip([("2x2", "reduced"), ("3x3", "full")]) {
+    for (chart, (stem, rule)) in charts
+        .into_iter()
+        .zip([("2x2", "reduced"), ("3x3", "full")])
+    {
         let line = vec![[0.0, limit], [PRANDTL_TRAVEL, limit]];
         outcome.figures.push(Figure {
             name: format!("prandtl-load-{stem}"),
@@ -240,7 +261,9 @@ fn exact_solvers(options: &Options<'_>, outcome: &mut Outcome) -> Result<(), Box
     let penalty = Penalty::new(1e8, 1e8)?;
     let (_, history) = indent(1, Integration::Reduced, Box::new(penalty))?;
     rows.push(certificate_row("regularisation, k = 1e8 N/mm", &history));
-    outcome.tables.push(certificate_table("prandtl-certificate", rows));
+    outcome
+        .tables
+        .push(certificate_table("prandtl-certificate", rows));
     Ok(())
 }
 
@@ -256,7 +279,9 @@ fn field_figure(driver: &Driver<2>, name: &str) -> Result<Figure, Box<dyn Error>
     let nodes = 0..driver.mesh().nodes().len();
     let displacement = nodes.map(|a| driver.displacement(a).into()).collect();
     // Around the edge of the punch the strain is singular and would hide all else.
-    let p = nodal_average(driver.mesh(), &driver.points(), |s| s.plastic_strain.min(0.02));
+    let p = nodal_average(driver.mesh(), &driver.points(), |s| {
+        s.plastic_strain.min(0.02)
+    });
     let picture = MeshPicture::new(driver.mesh(), format!("Equivalent plastic strain, {name}"))
         .deformed(displacement, 10.0)
         .field("equivalent plastic strain p, cut at 0.02 [–]", p)

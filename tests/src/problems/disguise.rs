@@ -34,8 +34,15 @@ pub fn disguise(
     let mut cells = vec![(CellKind::Quad8, Vec::new()); mesh.cell_count()];
     for (old, &new) in cell.iter().enumerate() {
         let local = mesh.cell_nodes(old);
-        let order = if mirrored { reversed(mesh.kind(old)) } else { (0..local.len()).collect() };
-        cells[new] = (mesh.kind(old), order.iter().map(|&k| node[local[k]]).collect());
+        let order = if mirrored {
+            reversed(mesh.kind(old))
+        } else {
+            (0..local.len()).collect()
+        };
+        cells[new] = (
+            mesh.kind(old),
+            order.iter().map(|&k| node[local[k]]).collect(),
+        );
     }
     let mut new_mesh = Mesh::new(nodes, cells)?;
     let mut facets: BTreeMap<(usize, BTreeSet<usize>), Facet> = BTreeMap::new();
@@ -50,17 +57,25 @@ pub fn disguise(
         new_mesh.add_cell_group(name, members)?;
     }
     for name in groups.1 {
-        let members = mesh.facet_group(name)?.iter().map(|&f| {
-            facets[&(cell[f.cell], mesh.facet_nodes(f).map(|a| node[a]).collect())]
-        });
+        let members = mesh
+            .facet_group(name)?
+            .iter()
+            .map(|&f| facets[&(cell[f.cell], mesh.facet_nodes(f).map(|a| node[a]).collect())]);
         let members = members.collect();
         new_mesh.add_facet_group(name, members)?;
     }
     for name in groups.2 {
-        let members = mesh.node_group(name)?.into_iter().map(|a| node[a]).collect();
+        let members = mesh
+            .node_group(name)?
+            .into_iter()
+            .map(|a| node[a])
+            .collect();
         new_mesh.add_node_group(name, members)?;
     }
-    Ok(Disguised { mesh: new_mesh, node })
+    Ok(Disguised {
+        mesh: new_mesh,
+        node,
+    })
 }
 
 /// Nodes of a cell, walked the other way round from its first corner.
@@ -77,7 +92,7 @@ fn reversed(kind: CellKind) -> Vec<usize> {
 
 /// A shuffle of 0..n: multiplication by a number prime to n; or the identity.
 fn permutation(n: usize, shuffle: bool) -> Vec<usize> {
-    let divides = |a: usize, b: usize| (2..=a).any(|d| a % d == 0 && b % d == 0);
+    let divides = |a: usize, b: usize| (2..=a).any(|d| a.is_multiple_of(d) && b.is_multiple_of(d));
     let start = (0.618 * n as f64) as usize;
     let factor = (start.max(1)..).find(|&f| !divides(f, n)).unwrap_or(1);
     let place = |k: usize| if shuffle { (k * factor + n / 3) % n } else { k };

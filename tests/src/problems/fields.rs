@@ -20,17 +20,19 @@ pub fn prescribed<const D: usize>(
     let mut loading = driver.loading(step)?;
     for &node in nodes {
         let u = field(&driver.mesh().nodes()[node]);
-        loading.displacement.extend((0..D).map(|i| (D * node + i, u[i])));
+        loading
+            .displacement
+            .extend((0..D).map(|i| (D * node + i, u[i])));
     }
     Ok(loading)
 }
 
 /// An exact solution: displacement and its gradient ∂u_i/∂x_j in the plane.
 pub trait PlaneField {
-    /// u(x) [mm].
+    /// u(x) \[mm\].
     fn displacement(&self, x: &[f64; 2]) -> [f64; 2];
 
-    /// ∂u_i/∂x_j [–].
+    /// ∂u_i/∂x_j \[–\].
     fn gradient(&self, x: &[f64; 2]) -> [[f64; 2]; 2];
 
     /// The Mandel strain in plane strain.
@@ -51,8 +53,12 @@ pub fn error_norms<H: Hypothesis<2>>(
     let mut sum = (0.0, 0.0);
     for cell in 0..mesh.cell_count() {
         let part = match mesh.kind(cell) {
-            CellKind::Tri3 => on_cell::<Tri3, H, 3>(driver, mesh, cell, law, exact, &Rule::triangle(5)),
-            CellKind::Tri6 => on_cell::<Tri6, H, 6>(driver, mesh, cell, law, exact, &Rule::triangle(5)),
+            CellKind::Tri3 => {
+                on_cell::<Tri3, H, 3>(driver, mesh, cell, law, exact, &Rule::triangle(5))
+            }
+            CellKind::Tri6 => {
+                on_cell::<Tri6, H, 6>(driver, mesh, cell, law, exact, &Rule::triangle(5))
+            }
             CellKind::Quad4 => on_cell::<Quad4, H, 4>(driver, mesh, cell, law, exact, &square()),
             CellKind::Quad8 => on_cell::<Quad8, H, 8>(driver, mesh, cell, law, exact, &square()),
             CellKind::Quad9 => on_cell::<Quad9, H, 9>(driver, mesh, cell, law, exact, &square()),

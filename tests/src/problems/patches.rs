@@ -24,7 +24,10 @@ pub fn plane_patch(kind: CellKind) -> Result<Mesh<2>, MeshError> {
     let mut quads = vec![[4, 5, 6, 7]];
     quads.extend((0..4).map(|a| [4 + a, a, (a + 1) % 4, 4 + (a + 1) % 4]));
     let polygons: Vec<Vec<usize>> = match kind.corner_count() {
-        3 => quads.iter().flat_map(|&[a, b, c, d]| [vec![a, b, c], vec![a, c, d]]).collect(),
+        3 => quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [vec![a, b, c], vec![a, c, d]])
+            .collect(),
         _ => quads.iter().map(|q| q.to_vec()).collect(),
     };
     named("patch", with_middles(kind, corners, &polygons)?)
@@ -74,7 +77,11 @@ pub fn solid_patch(kind: CellKind) -> Result<Mesh<3>, MeshError> {
         let mesh = block3("patch", kind, &lines, &lines, &lines)?;
         let inside = |x: &[f64; 3]| x.iter().all(|&v| v > 0.0 && v < 1.0);
         let mut mesh = mesh.map(|x| match inside(&x) {
-            true => [x[0] + 0.11 * x[1] * x[2], x[1] - 0.08 * x[0], x[2] + 0.09 * x[0] * x[1]],
+            true => [
+                x[0] + 0.11 * x[1] * x[2],
+                x[1] - 0.08 * x[0],
+                x[2] + 0.09 * x[0] * x[1],
+            ],
             false => x,
         })?;
         let outline = mesh.boundary_facets();

@@ -22,9 +22,9 @@ pub struct Punched {
     pub cells: (usize, usize),
     /// Quadrature.
     pub integration: Integration,
-    /// Yield stress [MPa].
+    /// Yield stress \[MPa\].
     pub yield_stress: f64,
-    /// Linear isotropic hardening [MPa].
+    /// Linear isotropic hardening \[MPa\].
     pub hardening: f64,
 }
 
@@ -62,10 +62,14 @@ impl Punched {
 
     fn mesh(&self, left: f64, columns: usize) -> Fallible<Mesh<2>> {
         let [x0, y0] = self.origin;
-        let x: Vec<f64> =
-            uniform(left, 50.0, columns).iter().map(|x| x0 + x / self.length).collect();
-        let y: Vec<f64> =
-            uniform(0.0, 20.0, self.cells.1).iter().map(|y| y0 + y / self.length).collect();
+        let x: Vec<f64> = uniform(left, 50.0, columns)
+            .iter()
+            .map(|x| x0 + x / self.length)
+            .collect();
+        let y: Vec<f64> = uniform(0.0, 20.0, self.cells.1)
+            .iter()
+            .map(|y| y0 + y / self.length)
+            .collect();
         let mut mesh = block2("block", CellKind::Quad8, &x, &y)?;
         let reach = 25.0 / self.length * (1.0 + 1e-9);
         mesh.node_group_where("punch", "block.top", |x| (x[0] - x0).abs() <= reach)?;
@@ -94,7 +98,7 @@ impl Punched {
         self.driver(self.half_mesh()?, Settings::default())
     }
 
-    /// Presses the punch of the half to a depth [mm].
+    /// Presses the punch of the half to a depth \[mm\].
     pub fn press(&self, depth: f64) -> Step<2> {
         Step::new("press").fix("block.left", &[Axis::X]).displace(
             "punch",
@@ -103,7 +107,7 @@ impl Punched {
         )
     }
 
-    /// Load of the punch, downwards [N].
+    /// Load of the punch, downwards \[N\].
     ///
     /// # Errors
     /// None if the mesh is one of this block.

@@ -18,8 +18,12 @@ pub fn quarter_ring(
     (inner, outer): (f64, f64),
     (radial, around): (usize, usize),
 ) -> Result<Mesh<2>, MeshError> {
-    let mesh =
-        block2("body", kind, &uniform(inner, outer, radial), &uniform(0.0, FRAC_PI_2, around))?;
+    let mesh = block2(
+        "body",
+        kind,
+        &uniform(inner, outer, radial),
+        &uniform(0.0, FRAC_PI_2, around),
+    )?;
     mesh.map(|x| match x[1] == FRAC_PI_2 {
         true => [0.0, x[0]],
         false => polar(x),
@@ -57,11 +61,22 @@ pub fn holed_plate(
     (width, length, hole): (f64, f64, f64),
     n: usize,
 ) -> Result<Mesh<2>, MeshError> {
-    let mesh = block2("body", kind, &uniform(0.0, 1.0, n), &uniform(0.0, 2.0, 2 * n))?;
+    let mesh = block2(
+        "body",
+        kind,
+        &uniform(0.0, 1.0, n),
+        &uniform(0.0, 2.0, 2 * n),
+    )?;
     let (w, l, r) = (0.5 * width, 0.5 * length, 0.5 * hole);
     let mut mesh = mesh.map(|[s, t]| {
         // Up the right edge, then along the top to the axis.
-        let rectangle = |a: f64, b: f64| if t <= 1.0 { [a, b * t] } else { [a * (2.0 - t), b] };
+        let rectangle = |a: f64, b: f64| {
+            if t <= 1.0 {
+                [a, b * t]
+            } else {
+                [a * (2.0 - t), b]
+            }
+        };
         let inner = match shape {
             Hole::Square => rectangle(r, r),
             Hole::Round if t == 2.0 => [0.0, r],

@@ -1,0 +1,34 @@
+//! Verification: problems with known answers, from one contact to elastoplastic bodies; not the
+//! unit tests of the crates.
+
+mod cattaneo;
+mod contact_patch;
+mod cook;
+mod cylinder;
+mod energy;
+mod faults;
+mod greco;
+mod hertz;
+mod hole;
+mod incline;
+mod invariance;
+mod modes;
+mod newton;
+mod notch;
+mod patch;
+mod rates;
+mod report;
+mod sliders;
+mod sphere;
+mod strip;
+mod transactions;
+
+/// Asserts |value − reference| ≤ tolerance · |reference|; NaN fails.
+#[track_caller]
+fn close(what: &str, value: f64, reference: f64, tolerance: f64) {
+    assert!(
+        (value - reference).abs() <= tolerance * reference.abs(),
+        "{what}: {value} differs from {reference} by {:.3e}, more than {tolerance:e}",
+        value / reference - 1.0
+    );
+}

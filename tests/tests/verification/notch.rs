@@ -1,0 +1,87 @@
+//! Deep double-edge notch in plane strain tension: the limit load that locking elements never
+//! reach; not a crack.
+//!
+//! Source: J. C. Nagtegaal, D. M. Parks and J. R. Rice, *Computer Methods in Applied Mechanics and
+//! Engineering* 4 (1974) 153-177.
+
+use crate::close;
+use moreau::driver::{Axis, Driver, Model, Settings, Step};
+use moreau::laws::VonMises;
+use moreau::mesh::{CellKind, Integration, PlaneStrain};
+use std::f64::consts::PI;
+use verification::problems::Fallible;
+use verification::problems::limit::{final_slope, load_curve};
+use verification::problems::shapes::notched_plate;
+
+const YIELD: f64 = 0.45;
+
+/// Net stress over the exact one, (2 + π) k, and the final slope, with n cells in half a ligament.
+fn net_stress(kind: CellKind, rule: Integration, n: usize) -> Fallible<(f64, f64)> {
+    let model = Model::new(notched_plate(kind, n)?, PlaneStrain::default()).material(
+        "body",
+        VonMises::new(206.9, 0.29, YIELD)?,
+        rule,
+    )?;
+    let mut driver = Driver::new(model, Settings::default())?;
+    let step = Step::new("pull")
+        .fix("body.left", &[Axis::X])
+        .fix("ligament", &[Axis::Y])
+        .displace("body.top", Axis::Y, 0.3);
+    let curve = load_curve(&mut driver, &step, 60, |driver| {
+        driver.reaction("body.top").map_or(f64::NAN, |f| f[1])
+    })?;
+    let exact = (2.0 + PI) * YIELD / 3f64.sqrt() * 0.5;
+    Ok((curve[59] / exact, final_slope(&curve)))
+}
+
+#[test]
+fn nagtegaal_parks_rice_notch_collapses_from_above() -> Fallible {
+    close(
+        "limit stress over yield stress",
+        (2.0 + PI) / 3f64.sqrt(),
+        2.96850,
+        1e-5,
+    );
+    // Net stress over yield stress: no more than an independent code found.
+    let table = [
+        (Integration::Full, [3.57, 3.15, 3.02]),
+        (Integration::Reduced, [3.32, 3.07, 2.999]),
+    ];
+    for (rule, row) in table {
+        let mut before = f64::INFINITY;
+        for (n, expected) in [2, 4, 8].into_iter().zip(row) {
+            let (ratio, slope) = net_stress(CellKind::Quad8, rule, n)?;
+            assert!(
+                ratio > 1.0 && ratio < before,
+                "not from above: {ratio} after {before}"
+            );
+            assert!(
+                ratio * 2.96850 <= expected,
+                "error larger than expected: {ratio}"
+            );
+            assert!(
+                slope.abs() < 1e-3,
+                "{rule:?} n = {n}: no plateau, slope {slope:.1e}"
+            );
+            before = ratio;
+        }
+    }
+    Ok(())
+}
+
+/// Fully integrated linear quadrilaterals cannot flow without changing their volume.
+#[test]
+fn linear_quadrilaterals_lock_in_the_notch() -> Fallible {
+    let mut before = f64::INFINITY;
+    for n in [2, 4] {
+        let (ratio, slope) = net_stress(CellKind::Quad4, Integration::Full, n)?;
+        // Above the error of the quadratic elements, and rising still.
+        assert!(
+            ratio > 3.57 / 2.96850 && slope > 1e-3,
+            "they should lock: {ratio}, {slope:e}"
+        );
+        assert!(ratio < before);
+        before = ratio;
+    }
+    Ok(())
+}

@@ -1,0 +1,60 @@
+//! The cases of `cargo xtask verify`, in their quick form; not what they compute, which is in the
+//! library of this package.
+
+use verification::{Options, cases};
+
+/// Checks of a case by name. Times are left to the report: a test is no place to measure them.
+fn assert_passes(name: &str) {
+    let all = cases::all();
+    let case = all
+        .iter()
+        .find(|c| c.name == name)
+        .expect("the case exists");
+    let options = Options {
+        quick: true,
+        progress: &|_| {},
+    };
+    let outcome = (case.run)(&options).expect("the case runs");
+    let timed = |name: &str| name.starts_with("time of");
+    let failed: Vec<_> = outcome
+        .checks
+        .iter()
+        .filter(|c| !c.pass && !timed(&c.name))
+        .collect();
+    assert!(failed.is_empty(), "{failed:#?}");
+    assert!(outcome.checks.len() > 10 && !outcome.figures.is_empty());
+    for figure in &outcome.figures {
+        assert!(
+            figure.svg.starts_with("<svg") && figure.svg.ends_with("</svg>"),
+            "{}",
+            figure.name
+        );
+    }
+    for table in &outcome.tables {
+        assert!(
+            table.rows.iter().all(|r| r.len() == table.header.len()),
+            "{}",
+            table.name
+        );
+    }
+}
+
+#[test]
+fn prandtl_indentation() {
+    assert_passes("prandtl");
+}
+
+#[test]
+fn punched_block() {
+    assert_passes("block");
+}
+
+#[test]
+fn penalty_study() {
+    assert_passes("penalty");
+}
+
+#[test]
+fn comparison_of_algorithms() {
+    assert_passes("algorithms");
+}
