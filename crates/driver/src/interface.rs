@@ -138,13 +138,41 @@ fn frame_in<const D: usize>(e: &SVector<f64, D>, free: [bool; D]) -> SMatrix<f64
 /// The contact problem of a linearised increment, and the way back to the interface unknowns.
 pub(crate) struct Condensation<const D: usize> {
     pub(crate) problem: ContactProblem<D>,
-    /// x = M (u − u_now).
-    to_interface: DMatrix<f64>,
+    places: Vec<Place<D>>,
     now: Vec<Local<D>>,
+    unknowns: usize,
+}
+
+/// Where a contact point is among the interface unknowns.
+struct Place<const D: usize> {
+    /// Interface unknown of every free component of the node; the first `count` are used.
+    rows: [usize; D],
+    count: usize,
+    /// Rows of M for these components: x = M (u − u_now).
+    to_node: SMatrix<f64, D, D>,
+}
+
+impl<const D: usize> Place<D> {
+    fn new(system: &System, node: usize, kinematics: &Kinematics<D>) -> Self {
+        let mut place = Self {
+            rows: [0; D],
+            count: 0,
+            to_node: SMatrix::zeros(),
+        };
+        for i in 0..D {
+            if let Some(row) = system.interface_index(D * node + i) {
+                place.rows[place.count] = row;
+                let from = kinematics.to_node.row(i);
+                place.to_node.set_row(place.count, &from);
+                place.count += 1;
+            }
+        }
+        place
+    }
 }
 
 impl<const D: usize> Condensation<D> {
-    /// Turns the condensed system into the local frames of the contacts.
+    /// Turns the condensed system into the local frames of the contacts: S ← Mᵀ S M, f ← Mᵀ f.
     pub(crate) fn new(
         system: &System,
         condensed: &Condensed,
@@ -153,47 +181,67 @@ impl<const D: usize> Condensation<D> {
         previous: Vec<Local<D>>,
     ) -> Result<Self, ContactError> {
         let size = D * points.len();
-        let mut to_interface = DMatrix::zeros(condensed.load.len(), size);
-        for (c, (point, k)) in points.iter().zip(kinematics).enumerate() {
-            for i in 0..D {
-                if let Some(row) = system.interface_index(D * point.node + i) {
-                    for j in 0..D {
-                        to_interface[(row, D * c + j)] = k.to_node[(i, j)];
+        let places: Vec<Place<D>> = points
+            .iter()
+            .zip(kinematics)
+            .map(|(point, k)| Place::new(system, point.node, k))
+            .collect();
+        let mut stiffness = DMatrix::zeros(size, size);
+        let mut load = DVector::zeros(size);
+        for (d, right) in places.iter().enumerate() {
+            for (c, left) in places.iter().enumerate().skip(d) {
+                let mut block = SMatrix::<f64, D, D>::zeros();
+                for a in 0..left.count {
+                    for b in 0..right.count {
+                        block[(a, b)] = condensed.stiffness[(left.rows[a], right.rows[b])];
                     }
                 }
+                let local = left.to_node.tr_mul(&(block * right.to_node));
+                stiffness
+                    .fixed_view_mut::<D, D>(D * c, D * d)
+                    .copy_from(&local);
+                stiffness
+                    .fixed_view_mut::<D, D>(D * d, D * c)
+                    .copy_from(&local.transpose());
             }
+            let own = Local::<D>::from_fn(|a, _| match a < right.count {
+                true => condensed.load[right.rows[a]],
+                false => 0.0,
+            });
+            load.fixed_rows_mut::<D>(D * d)
+                .copy_from(&right.to_node.tr_mul(&own));
         }
-        let mut stiffness = to_interface.tr_mul(&(&condensed.stiffness * &to_interface));
-        let load = to_interface.tr_mul(&condensed.load);
         // Components switched off: alone on their diagonal, of the size of their neighbours.
         let typical = stiffness.diagonal().amax().max(f64::MIN_POSITIVE);
-        let mut now = Vec::with_capacity(points.len());
         for (c, k) in kinematics.iter().enumerate() {
-            now.push(k.u);
             for j in 0..D {
                 if !k.active[j] {
                     stiffness[(D * c + j, D * c + j)] = typical;
                 }
             }
         }
+        let now: Vec<Local<D>> = kinematics.iter().map(|k| k.u).collect();
         let laws = points.iter().map(|p| p.law).collect();
         let problem = ContactProblem::new(stiffness, load, now.clone(), laws, previous)?;
+        let unknowns = condensed.load.len();
         Ok(Self {
             problem,
-            to_interface,
+            places,
             now,
+            unknowns,
         })
     }
 
     /// Interface displacements x for gaps and slips u.
     pub(crate) fn interface(&self, u: &[Local<D>]) -> DVector<f64> {
-        let relative = DVector::from_iterator(
-            self.to_interface.ncols(),
-            u.iter()
-                .zip(&self.now)
-                .flat_map(|(u, g)| (0..D).map(move |k| u[k] - g[k])),
-        );
-        &self.to_interface * relative
+        let mut x = DVector::zeros(self.unknowns);
+        for ((place, u), now) in self.places.iter().zip(u).zip(&self.now) {
+            let motion = place.to_node * (u - now);
+            for a in 0..place.count {
+                x[place.rows[a]] = motion[a];
+            }
+        }
+        x
     }
 }
 

@@ -4,22 +4,24 @@ use super::Violation;
 use super::lexer::Kind;
 use super::source::Source;
 
-/// Sparse linear algebra: a library to be replaced in one file.
-const SPARSE: (&str, &str) = ("faer", "crates/driver/src/cholesky.rs");
+/// Linear algebra: a library to be replaced in one file for sparse and in one for dense matrices.
+const ALGEBRA: (&str, [&str; 2]) = (
+    "faer",
+    [
+        "crates/driver/src/cholesky.rs",
+        "crates/contact/src/dense.rs",
+    ],
+);
 /// Plots: one file, somewhere below this.
 const PLOTS: (&str, &str) = ("kuva", "crates/moreau/src/plot");
 
 /// Files that name a library that is not theirs.
 pub fn violations(sources: &[Source]) -> Vec<Violation> {
     let mut violations = Vec::new();
-    for (path, line) in naming(sources, SPARSE.0) {
-        if path != SPARSE.1 {
-            violations.push(Violation::new(
-                path,
-                line,
-                "names faer",
-                format!("only {} to", SPARSE.1),
-            ));
+    for (path, line) in naming(sources, ALGEBRA.0) {
+        if !ALGEBRA.1.contains(&path) {
+            let expected = format!("only {} to", ALGEBRA.1.join(" and "));
+            violations.push(Violation::new(path, line, "names faer", expected));
         }
     }
     let mut home: Option<&str> = None;

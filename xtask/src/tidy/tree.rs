@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::source::Source;
 
-/// Larger files are data, not text to be checked [bytes].
+/// Larger files are data, not text to be checked \[bytes\].
 const LARGEST: u64 = 1 << 20;
 
 /// A text file.

@@ -14,7 +14,7 @@ use super::progress::Progress;
 pub struct Run<'a> {
     /// The case.
     pub case: &'a Case,
-    /// How long it took [s].
+    /// How long it took \[s\].
     pub seconds: f64,
     /// Its outcome, or why there is none.
     pub result: Result<Outcome, String>,

@@ -13,7 +13,7 @@ pub struct Verdict {
     pub failed: usize,
     /// Cases without an outcome.
     pub erred: usize,
-    /// Time of all cases together [s].
+    /// Time of all cases together \[s\].
     pub seconds: f64,
 }
 

@@ -1,0 +1,92 @@
+//! Factorisation of the dense matrices of the contact problem; the only file of this crate that
+//! names the library that does it.
+
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::linalg::lu::partial_pivoting::{factor, solve};
+use faer::perm::PermRef;
+use faer::{MatMut, MatRef, Par};
+use nalgebra::{DMatrix, DVector};
+
+/// Pivots below this part of the largest are rounding: the matrix is singular.
+const SINGULAR: f64 = 1e-14;
+
+/// L U = P A with partial pivoting.
+pub(crate) struct Lu {
+    factors: DMatrix<f64>,
+    forward: Vec<usize>,
+    inverse: Vec<usize>,
+    memory: MemBuffer,
+}
+
+impl Lu {
+    /// Factorises a square matrix; `None` if it is singular to rounding or holds NaN.
+    pub(crate) fn new(mut a: DMatrix<f64>) -> Option<Self> {
+        let n = a.nrows();
+        let (mut forward, mut inverse) = (vec![0usize; n], vec![0usize; n]);
+        let request = StackReq::or(
+            factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Default::default()),
+            solve::solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq),
+        );
+        let mut memory = MemBuffer::try_new(request).ok()?;
+        // One thread: the same factors to the bit wherever it runs.
+        factor::lu_in_place(
+            MatMut::from_column_major_slice_mut(a.as_mut_slice(), n, n),
+            &mut forward,
+            &mut inverse,
+            Par::Seq,
+            MemStack::new(&mut memory),
+            Default::default(),
+        );
+        let pivots = a.diagonal();
+        // Written so that NaN is refused, too.
+        let regular = n == 0 || pivots.amin() > SINGULAR * pivots.amax();
+        regular.then_some(Self {
+            factors: a,
+            forward,
+            inverse,
+            memory,
+        })
+    }
+
+    /// x of A x = b.
+    pub(crate) fn solve(&mut self, mut b: DVector<f64>) -> DVector<f64> {
+        let n = b.len();
+        let factors = MatRef::from_column_major_slice(self.factors.as_slice(), n, n);
+        solve::solve_in_place(
+            factors,
+            factors,
+            PermRef::new_checked(&self.forward, &self.inverse, n),
+            MatMut::from_column_major_slice_mut(b.as_mut_slice(), n, 1),
+            Par::Seq,
+            MemStack::new(&mut self.memory),
+        );
+        b
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn solves_what_is_regular(
+            n in 1usize..60, entries in prop::collection::vec(-1.0..1.0f64, 97),
+        ) {
+            let a = DMatrix::from_fn(n, n, |i, j| {
+                entries[(i * 31 + j * 7) % entries.len()] + if i == j { 4.0 * n as f64 } else { 0.0 }
+            });
+            let x = DVector::from_fn(n, |i, _| (i as f64).sin());
+            let solved = Lu::new(a.clone()).expect("regular").solve(&a * &x);
+            prop_assert!((solved - x).norm() < 1e-10);
+        }
+    }
+
+    #[test]
+    fn refuses_what_is_not() {
+        let singular = DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 4.0]);
+        assert!(Lu::new(singular).is_none());
+        assert!(Lu::new(DMatrix::from_element(3, 3, f64::NAN)).is_none());
+    }
+}
