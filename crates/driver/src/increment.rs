@@ -47,6 +47,10 @@ pub(crate) struct Iterate {
     pub(crate) full: bool,
 }
 
+/// What an increment may be off by, over the residual of its contact solution: that weighs
+/// displacements with a somewhat smaller α.
+const CONTACT_SLACK: f64 = 10.0;
+
 /// Parts of the elastic stiffness that are tried in turn where the tangent is a mechanism.
 const BLENDS: [f64; 4] = [1e-4, 1e-2, 0.2, 1.0];
 
@@ -92,7 +96,11 @@ impl<const D: usize> Driver<D> {
             if counts.newton > 0 {
                 counts.residuals.push(out_of_balance);
             }
-            let target = self.target(system, scale, &now.d_u);
+            // Forces of an iterative contact solver are out of balance by what it left.
+            let left = solution
+                .as_ref()
+                .map_or(0.0, |s| CONTACT_SLACK * s.residual);
+            let target = self.target(system, scale, &now.d_u) + left;
             let balanced = now.full && out_of_balance <= target;
             if balanced
                 && let Some(s) = solution.take_if(|s| self.law_holds(system, &kinematics, s, scale))
@@ -135,6 +143,7 @@ impl<const D: usize> Driver<D> {
             let x = condensation.interface(&solved.displacement);
             system.expand(condensed, &x, &mut step);
             let target = self.contact_forces(&kinematics, &solved.force);
+            let slack = CONTACT_SLACK * solved.residual;
             solution = Some(solved);
             let line = Line {
                 end,
@@ -142,6 +151,7 @@ impl<const D: usize> Driver<D> {
                 step: &step,
                 target: &target,
                 complete,
+                slack,
             };
             now = self.search(system, &line, now);
             counts.shortened += usize::from(!now.full);
@@ -281,8 +291,8 @@ impl<const D: usize> Driver<D> {
         let stiffness = system.shift();
         // Below this the difference of two positions is rounding.
         let rounding = 16.0 * f64::EPSILON * reach * stiffness;
-        // The residual of the contact solver weighs displacements with a somewhat smaller α.
-        let tolerance = self.settings.tolerance * scale + 10.0 * solution.residual + rounding;
+        let tolerance =
+            self.settings.tolerance * scale + CONTACT_SLACK * solution.residual + rounding;
         (0..kinematics.len()).all(|i| {
             let elastic = solution.irreversible[i] - solution.displacement[i];
             let mut u = kinematics[i].u + elastic;

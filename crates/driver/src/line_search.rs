@@ -23,6 +23,8 @@ pub(crate) struct Line<'a, const D: usize> {
     pub(crate) target: &'a [f64],
     /// Whether the iterate has all prescribed displacements already.
     pub(crate) complete: bool,
+    /// Imbalance left by the contact solver \[N\].
+    pub(crate) slack: f64,
 }
 
 impl<const D: usize> Line<'_, D> {
@@ -95,7 +97,7 @@ impl<const D: usize> Driver<D> {
         };
         // While prescribed displacements are missing, ΔΦ is not what the step minimises; in balance
         // its slope is rounding.
-        if !line.complete || !overshoots || left <= self.target(system, scale, &d_u) {
+        if !line.complete || !overshoots || left <= self.target(system, scale, &d_u) + line.slack {
             return Iterate {
                 d_u,
                 assembly,
@@ -253,6 +255,7 @@ mod tests {
             step: &step,
             target: &none,
             complete: true,
+            slack: 0.0,
         };
         let next = driver.search(&mut system, &line, now);
         assert!(!next.full);

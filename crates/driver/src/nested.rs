@@ -165,6 +165,7 @@ impl<const D: usize> Driver<D> {
                 step: &step,
                 target: &target,
                 complete,
+                slack: 0.0,
             };
             now = self.search(system, &line, now);
         }

@@ -1,5 +1,5 @@
 //! Finite elements, quadrature, modelling hypotheses and meshes with named groups; nothing here
-//! knows a constitutive law, an unknown or a file.
+//! knows a constitutive law or an unknown, or opens a file.
 //!
 //! | to … | use |
 //! |---|---|
@@ -8,6 +8,7 @@
 //! | strain it, `ε = B U` \[77\] | [`Hypothesis`]: [`PlaneStrain`], [`Axisymmetric`], [`Solid`] |
 //! | hold nodes, cells and named groups | [`Mesh`], always valid once constructed |
 //! | make one | [`block2`], [`block3`] on the lines of [`uniform`], [`geometric`], [`refine`] |
+//! | read one, from the bytes of a file | [`read_gmsh`], [`read_abaqus`] |
 //!
 //! Cells are numbered as in Gmsh, lengths are in millimetres, tensors are Mandel vectors
 //! `[11, 22, 33, √2·23, √2·13, √2·12]`.
@@ -40,22 +41,28 @@
 //! # }
 //! ```
 
+pub mod abaqus;
 pub mod cell;
 pub mod element;
 pub mod error;
 pub mod generate;
 mod geometry;
+pub mod gmsh;
 pub mod hypothesis;
 pub mod mesh;
 mod nearest;
 pub mod quadrature;
+pub mod read;
 mod sample;
 
+pub use abaqus::read_abaqus;
 pub use cell::{CellKind, FacetKind};
 pub use element::{Element, Hex8, Line2, Line3, Mapped, Quad4, Quad8, Quad9, Tet4, Tri3, Tri6};
 pub use error::{GroupKind, MeshError};
 pub use generate::{block2, block3, geometric, refine, uniform};
+pub use gmsh::read_gmsh;
 pub use hypothesis::{Axisymmetric, Hypothesis, PlaneStrain, Solid};
 pub use mesh::{Facet, Mesh, NodeKind, Share};
 pub use nearest::nearest;
 pub use quadrature::{Integration, Point, Rule, gauss};
+pub use read::{Place, ReadError};

@@ -1,7 +1,11 @@
-//! Contracts and properties of elements, quadrature, hypotheses, meshes and blocks; no mechanics.
+//! Contracts and properties of elements, quadrature, hypotheses, meshes, blocks and readers; no
+//! mechanics.
 
+mod abaqus;
 mod blocks;
+mod damaged;
 mod elements;
+mod gmsh;
 mod groups;
 mod hypotheses;
 mod integrals;
