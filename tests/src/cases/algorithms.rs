@@ -31,6 +31,9 @@ const PENALTY: f64 = 1e8;
 /// Natural-map residual over the largest force at which the paper's nesting accepts an increment.
 const OUTER_TOLERANCE: f64 = 1e-6;
 
+/// Runs of every method of which the fastest counts: the others met another program.
+const REPETITIONS: usize = 15;
+
 /// A method under comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Method {
@@ -85,13 +88,9 @@ fn press(
 
 /// Shortest time of a method over some repetitions, in turn with the others so that all meet the
 /// same machine.
-fn fastest(
-    cells: [usize; 2],
-    increments: usize,
-    repetitions: usize,
-) -> Result<[f64; 4], Box<dyn Error>> {
+fn fastest(cells: [usize; 2], increments: usize) -> Result<[f64; 4], Box<dyn Error>> {
     let mut best = [f64::INFINITY; 4];
-    for _ in 0..repetitions {
+    for _ in 0..REPETITIONS {
         for (method, best) in Method::ALL.into_iter().zip(&mut best) {
             let settings = Settings {
                 contact: method.solver()?,
@@ -301,7 +300,6 @@ fn times(
     outcome: &mut Outcome,
 ) -> Result<(), Box<dyn Error>> {
     let mut rows = Vec::new();
-    let repetitions = if options.quick { 5 } else { 15 };
     let mut ratios = Vec::new();
     for (cells, increments) in [
         ([10, 2], BLOCK_INCREMENTS),
@@ -310,7 +308,7 @@ fn times(
     ] {
         let count = cells[0] * cells[1];
         (options.progress)(&format!("times, {count} cells, {increments} increments"));
-        let seconds = fastest(cells, increments, repetitions)?;
+        let seconds = fastest(cells, increments)?;
         for (method, time) in Method::ALL.into_iter().zip(seconds) {
             rows.push(vec![
                 method.name().into(),
