@@ -9,8 +9,27 @@
 //! | contact problem and solvers | `moreau-contact` | [`contact`] |
 //! | steps and reports | `moreau-driver` | [`driver`] |
 //! | charts and pictures | | [`plot`] |
+//! | problems in text files | | [`deck`] |
+//! | their results | | [`run`] |
+//!
+//! ```
+//! use moreau::{contact::*, driver::*, laws::*, mesh::*};
+//!
+//! // An elastic block that nothing but a rough floor holds, under pressure.
+//! let mesh = block2("block", CellKind::Quad8, &uniform(0.0, 4.0, 4), &uniform(0.0, 2.0, 2))?;
+//! let model = Model::new(mesh, PlaneStrain::default())
+//!     .material("block", Elastic::new(210e3, 0.3)?, Integration::Reduced)?
+//!     .tool("floor", Plane::new([0.0, 0.0], [0.0, 1.0])?)?
+//!     .contact("block.bottom", "floor", Coulomb::new(0.3)?)?;
+//! let mut driver = Driver::new(model, Settings::default())?;
+//! driver.run(&Step::new("load").pressure("block.top", 10.0), 1, |_, _| {})?;
+//! assert!((driver.tool_force("floor")?[1] - 40.0).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
+pub mod deck;
 pub mod plot;
+pub mod run;
 
 pub use moreau_contact as contact;
 pub use moreau_driver as driver;

@@ -1,0 +1,160 @@
+//! `moreau check`: what a deck was understood to say; nothing is solved.
+
+use super::{INPUT_ERROR, read, report};
+use moreau::deck::{Action, Deck, Method, Problem, Setup, Shape, open};
+use std::path::Path;
+
+/// Checks a deck; the exit status.
+pub(crate) fn check(path: &Path) -> u8 {
+    let Some(text) = read(path) else {
+        return INPUT_ERROR;
+    };
+    let (deck, problem, findings) = open(&text);
+    report(&findings, path, &text);
+    match problem {
+        None => INPUT_ERROR,
+        Some(problem) => {
+            head(&deck);
+            match &problem {
+                Problem::Plane(setup) => model(&deck, setup),
+                Problem::Solid(setup) => model(&deck, setup),
+            }
+            conditions(&deck);
+            println!("no rigid motion is free; the deck can be run");
+            0
+        }
+    }
+}
+
+fn head(deck: &Deck) {
+    if !deck.title.is_empty() {
+        println!("{}", deck.title);
+    }
+    println!("units      {}", deck.units.name());
+    let thickness = match deck.analysis {
+        moreau::deck::Analysis::PlaneStrain => {
+            format!(", {} {} thick", deck.thickness.value, deck.units.length())
+        }
+        moreau::deck::Analysis::Axisymmetric => " (forces are of the whole ring)".into(),
+        moreau::deck::Analysis::Solid => String::new(),
+    };
+    println!("analysis   {}{thickness}", deck.analysis.name());
+}
+
+fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
+    let length = deck.units.length();
+    let mesh = setup.driver.mesh();
+    println!(
+        "mesh       {} nodes, {} cells, {} degrees of freedom",
+        mesh.nodes().len(),
+        mesh.cell_count(),
+        D * mesh.nodes().len()
+    );
+    for (block, volume) in deck.blocks.iter().zip(&setup.volumes) {
+        println!(
+            "body       {}: {}, volume {volume:.6e} {length}³",
+            block.name.value, block.element.value
+        );
+    }
+    for group in &setup.groups {
+        let unit = if group.kind == "cells" { "³" } else { "²" };
+        let measure = group
+            .measure
+            .map_or(String::new(), |m| format!(", {m:.6e} {length}{unit}"));
+        println!(
+            "group      {}: {} {}, {} nodes{measure}",
+            group.name, group.members, group.kind, group.nodes
+        );
+    }
+    let stress = deck.units.stress();
+    for m in &deck.materials {
+        let plastic = match &m.yield_stress {
+            None => "elastic".to_owned(),
+            Some(y) => {
+                let modulus =
+                    |m: &Option<moreau::deck::At<f64>>| m.as_ref().map_or(0.0, |m| m.value);
+                format!(
+                    "yield stress {} {stress}, hardening {} isotropic and {} kinematic",
+                    y.value,
+                    modulus(&m.isotropic),
+                    modulus(&m.kinematic)
+                )
+            }
+        };
+        println!(
+            "material   {}: E {} {stress}, ν {}, {plastic}; {} quadrature",
+            m.on.value,
+            m.young.value,
+            m.poisson.value,
+            deck.quadrature(m)
+        );
+    }
+    for tool in &deck.tools {
+        let shape = match &tool.shape.value {
+            Shape::Plane(point, normal) => format!("plane through {point:?}, normal {normal:?}"),
+            Shape::Ball(center, radius, hollow, key) => {
+                let inside = if *hollow { ", hollow" } else { "" };
+                format!("{key} around {center:?}, radius {radius} {length}{inside}")
+            }
+        };
+        println!("tool       {}: {shape}", tool.name.value);
+    }
+    for (k, contact) in deck.contacts.iter().enumerate() {
+        let points = setup.driver.contacts().iter().filter(|c| c.contact == k);
+        println!(
+            "contact    {} against {}, friction {}, {} points",
+            contact.surface.value,
+            contact.against.value,
+            contact.friction.value,
+            points.count()
+        );
+    }
+    let method = match &deck.solver.method {
+        _ if deck.solver.outside => "Uzawa around the nonlinear solve".to_owned(),
+        Method::Exact => "exact, semismooth Newton".to_owned(),
+        Method::Uzawa => "exact, Uzawa".to_owned(),
+        Method::GaussSeidel => "exact, Gauss-Seidel".to_owned(),
+        Method::Penalty(n, t) => format!("penalty, {} and {}", n.value, t.value),
+    };
+    println!("solver     {method}");
+}
+
+fn conditions(deck: &Deck) {
+    const AXES: [&str; 3] = ["x", "y", "z"];
+    let (length, force, stress) = (deck.units.length(), deck.units.force(), deck.units.stress());
+    for step in &deck.steps {
+        println!(
+            "step       {}: {} increments",
+            step.name.value, step.increments
+        );
+        for condition in &step.conditions {
+            let what = match &condition.action {
+                Action::Fix(axes) => {
+                    let axes: Vec<&str> = axes.iter().map(|&i| AXES[i]).collect();
+                    format!("fixed along {}", axes.join(", "))
+                }
+                Action::Move(u) => {
+                    let u: Vec<String> = u
+                        .iter()
+                        .map(|(i, v)| format!("u_{} = {v} {length}", AXES[*i]))
+                        .collect();
+                    u.join(", ")
+                }
+                Action::Pressure(p) => format!("pressure {p} {stress}"),
+                Action::Traction(t) => format!("traction {t:?} {stress}"),
+                Action::Force(f) => format!("force {f:?} {force}"),
+                Action::BodyForce(f) => format!("body force {f:?} {force}/{length}³"),
+                Action::Tool(u) => format!("tool moves by {u:?} {length}"),
+            };
+            println!("           {}: {what}", condition.on.value);
+        }
+    }
+    for e in &deck.expectations {
+        println!(
+            "expect     {} = {} ± {:.3e}",
+            e.column.value,
+            e.value,
+            e.tolerance()
+        );
+    }
+}

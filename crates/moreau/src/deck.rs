@@ -1,0 +1,71 @@
+//! Decks: one TOML file describes one problem; neither how it is solved nor what is written.
+//!
+//! A deck is read into typed [`entries`](Deck), every value with its place in the file, and built
+//! into a [`Problem`], a driver with its steps. What is wrong or doubtful is collected as
+//! [`Findings`], each with its place and what was expected; nothing is printed.
+//!
+//! ```
+//! let text = r#"
+//! units = "mm-N-MPa"
+//! analysis = "plane-strain"
+//! [[mesh.block]]
+//! name = "block"
+//! element = "quad8"
+//! x = [0, 50]
+//! y = [0, 20]
+//! cells = [10, 2]
+//! [[material]]
+//! on = "blok"
+//! young = 210000.0
+//! poisson = 0.3
+//! [[step]]
+//! name = "pull"
+//! increments = 1
+//! fix = [{ on = "block.left", u = ["x", "y"] }]
+//! move = [{ on = "block.right", u = { x = 0.1 } }]
+//! "#;
+//! let (_, problem, findings) = moreau::deck::open(text);
+//! assert!(problem.is_none());
+//! let shown = findings.render("bar.toml", text, false);
+//! assert!(shown.contains("bar.toml:11:6") && shown.contains("did you mean \"block\"?"));
+//!
+//! let (_, problem, findings) = moreau::deck::open(&text.replace("blok", "block"));
+//! assert!(problem.is_some() && findings.errors() == 0);
+//! ```
+
+mod build;
+mod echo;
+mod entries;
+mod finding;
+mod grammar;
+mod reader;
+mod units;
+
+pub use build::{GroupFacts, Problem, Setup, Stage};
+pub use entries::{
+    Action, Analysis, BlockEntry, ConditionEntry, ContactEntry, Deck, Expectation, Grid,
+    GroupEntry, MaterialEntry, Method, Part, Shape, SolverEntry, StepEntry, ToolEntry, Vtu,
+};
+pub use finding::{At, Finding, Findings, Severity};
+pub use units::Units;
+
+/// Reads a deck and builds its problem, if it has no error. The findings are errors and warnings.
+pub fn open(text: &str) -> (Deck, Option<Problem>, Findings) {
+    let (deck, mut findings) = grammar::read(text);
+    let problem = build::build(&deck, &mut findings);
+    if let Some(problem) = &problem {
+        let columns = match problem {
+            Problem::Plane(setup) => crate::run::columns(setup),
+            Problem::Solid(setup) => crate::run::columns(setup),
+        };
+        for expectation in &deck.expectations {
+            let column = &expectation.column;
+            if !columns.contains(&column.value) {
+                let near = finding::did_you_mean(&column.value, columns.iter().map(String::as_str));
+                let message = format!("no result is called \"{}\"{near}", column.value);
+                findings.error(&column.span, message, "not a column of history.csv");
+            }
+        }
+    }
+    (deck, problem.filter(|_| findings.errors() == 0), findings)
+}

@@ -1,0 +1,108 @@
+//! Steps from their entries, and doubts about them; values are not checked here.
+
+use super::Stage;
+use super::groups::Groups;
+use crate::deck::entries::{Action, Deck};
+use crate::deck::finding::Findings;
+use crate::driver::{Axis, Step};
+
+const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
+
+/// The steps of a deck.
+pub(super) fn stages<const D: usize>(deck: &Deck, groups: &Groups<D>) -> Vec<Stage<D>> {
+    let fixed = |v: &[f64]| std::array::from_fn(|i| v.get(i).copied().unwrap_or(0.0));
+    let held = held(deck, groups);
+    let stage = |entry: &crate::deck::StepEntry| {
+        let mut step = Step::new(&entry.name.value);
+        for condition in &entry.conditions {
+            let on = condition.on.value.as_str();
+            let nodes = groups.nodes_of(on);
+            step = match &condition.action {
+                Action::Fix(axes) => {
+                    let axes: Vec<Axis> = axes.iter().map(|&i| AXES[i]).collect();
+                    step.fix(nodes, &axes)
+                }
+                Action::Move(components) => components
+                    .iter()
+                    .fold(step, |s, &(i, value)| s.displace(nodes, AXES[i], value)),
+                Action::Force(force) => step.force(nodes, fixed(force)),
+                Action::Pressure(pressure) => step.pressure(on, *pressure),
+                Action::Traction(traction) => step.traction(on, fixed(traction)),
+                Action::BodyForce(density) => step.body_force(on, fixed(density)),
+                Action::Tool(motion) => step.tool(on, fixed(motion)),
+            };
+        }
+        let directions = |name: &String| {
+            let own = entry.conditions.iter().filter(|c| c.on.value == *name);
+            own.flat_map(|c| directions(&c.action)).collect()
+        };
+        Stage {
+            step,
+            increments: entry.increments,
+            directions: held.iter().map(|[name, _]| directions(name)).collect(),
+        }
+    };
+    deck.steps.iter().map(stage).collect()
+}
+
+/// Directions in which a condition prescribes displacements.
+fn directions(action: &Action) -> Vec<usize> {
+    match action {
+        Action::Fix(axes) => axes.clone(),
+        Action::Move(components) => components.iter().map(|(axis, _)| *axis).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Groups in `fix` and `move`, each once, with the group of their nodes.
+pub(super) fn held<const D: usize>(deck: &Deck, groups: &Groups<D>) -> Vec<[String; 2]> {
+    let mut held: Vec<[String; 2]> = Vec::new();
+    for condition in deck.steps.iter().flat_map(|s| &s.conditions) {
+        let name = &condition.on.value;
+        let holds = matches!(condition.action, Action::Fix(_) | Action::Move(_));
+        if holds && !held.iter().any(|[n, _]| n == name) {
+            held.push([name.clone(), groups.nodes_of(name).to_owned()]);
+        }
+    }
+    held
+}
+
+/// Loads that are zero throughout, and a deck that loads nothing.
+pub(super) fn doubts(deck: &Deck, findings: &mut Findings) {
+    let size = |action: &Action| -> Option<f64> {
+        let largest = |v: &[f64]| v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        match action {
+            Action::Fix(_) => None,
+            Action::Move(components) => Some(components.iter().fold(0.0, |m, c| c.1.abs().max(m))),
+            Action::Pressure(p) => Some(p.abs()),
+            Action::Traction(v) | Action::Force(v) | Action::BodyForce(v) | Action::Tool(v) => {
+                Some(largest(v))
+            }
+        }
+    };
+    let all = || deck.steps.iter().flat_map(|s| &s.conditions);
+    let loaded =
+        |name: &str| all().any(|c| c.on.value == name && size(&c.action).is_some_and(|s| s > 0.0));
+    for condition in all().filter(|c| size(&c.action) == Some(0.0)) {
+        // A load that returns to zero is an unloading.
+        let held = matches!(condition.action, Action::Move(_));
+        if !held && !loaded(&condition.on.value) {
+            findings.warning(
+                &condition.span,
+                format!(
+                    "the load on \"{}\" is zero in all steps",
+                    condition.on.value
+                ),
+                "zero",
+            );
+        }
+    }
+    if !all().any(|c| size(&c.action).is_some_and(|s| s > 0.0)) {
+        let span = deck.steps.first().map_or(0..0, |s| s.name.span.clone());
+        findings.warning(
+            &span,
+            "nothing loads the model: no move, load or tool motion is other than zero",
+            "no load",
+        );
+    }
+}

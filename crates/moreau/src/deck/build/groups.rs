@@ -1,0 +1,204 @@
+//! The groups of a deck on its mesh: parts by limits and by nearness, and what they measure.
+
+use super::GroupFacts;
+use crate::deck::entries::{BlockEntry, Deck, GroupEntry, Part};
+use crate::deck::finding::{Findings, did_you_mean};
+use crate::driver::Analysis;
+use crate::mesh::{Facet, Mesh};
+use std::collections::BTreeMap;
+
+/// Limits are inclusive within this part of the size of the model.
+const INCLUSIVE: f64 = 1e-9;
+/// Ending of the hidden group of the nodes of a part whose limits cut facets or cells.
+const NODES: &str = "~nodes";
+
+/// A mesh with all groups of the deck.
+pub(super) struct Groups<const D: usize> {
+    /// The mesh.
+    pub(super) mesh: Mesh<D>,
+    /// Groups whose nodes are more than those of their facets or cells, and the group of these.
+    nodes: BTreeMap<String, String>,
+    /// Groups that could not be made: not to be complained about again.
+    broken: Vec<String>,
+}
+
+impl<const D: usize> Groups<D> {
+    pub(super) fn new(deck: &Deck, mesh: Mesh<D>, findings: &mut Findings) -> Self {
+        let mut groups = Self {
+            mesh,
+            nodes: BTreeMap::new(),
+            broken: Vec::new(),
+        };
+        for entry in &deck.groups {
+            if groups.add(entry, findings).is_none() {
+                groups.broken.push(entry.name.value.clone());
+            }
+        }
+        groups
+    }
+
+    fn add(&mut self, entry: &GroupEntry, findings: &mut Findings) -> Option<()> {
+        let (name, on) = (&entry.name.value, &entry.on.value);
+        if self.has(name) {
+            findings.error(
+                &entry.name.span,
+                format!("the group \"{name}\" exists already: the names of groups must differ"),
+                "used twice",
+            );
+            return None;
+        }
+        if !self.has(on) {
+            if !self.broken.contains(on) {
+                findings.error(
+                    &entry.on.span,
+                    format!(
+                        "no group \"{on}\" before this one{}",
+                        did_you_mean(on, self.names())
+                    ),
+                    "not a group",
+                );
+            }
+            return None;
+        }
+        let candidates = self.mesh.node_group(self.nodes_of(on)).ok()?;
+        let added = match &entry.part.value {
+            Part::Nearest(point) => {
+                let distance = |node: &usize| -> f64 {
+                    let x = &self.mesh.nodes()[*node];
+                    x.iter().zip(point).map(|(a, b)| (a - b) * (a - b)).sum()
+                };
+                let node = candidates
+                    .into_iter()
+                    .min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+                self.mesh.add_node_group(name, vec![node])
+            }
+            Part::Box(limits) => {
+                let margin = INCLUSIVE * self.mesh.size();
+                let limits = limits.clone();
+                let inside = move |x: &[f64; D]| {
+                    x.iter().zip(&limits).all(|(x, limit)| match limit {
+                        Some([low, high]) => (low - margin..=high + margin).contains(x),
+                        None => true,
+                    })
+                };
+                let mut nodes = candidates;
+                nodes.retain(|&node| inside(&self.mesh.nodes()[node]));
+                if nodes.is_empty() {
+                    findings.error(
+                        &entry.part.span,
+                        format!("the group \"{name}\" is empty: no node of \"{on}\" lies within these limits"),
+                        "of this group",
+                    );
+                    return None;
+                }
+                self.add_box(entry, nodes, inside, findings)
+            }
+        };
+        added
+            .map_err(|error| findings.error(&entry.name.span, error.to_string(), "of this group"))
+            .ok()
+    }
+
+    /// Facets or cells that lie inside as a whole, and all nodes that do; only the nodes, if no
+    /// facet or cell does.
+    fn add_box(
+        &mut self,
+        entry: &GroupEntry,
+        nodes: Vec<usize>,
+        inside: impl Fn(&[f64; D]) -> bool,
+        findings: &mut Findings,
+    ) -> Result<(), crate::mesh::MeshError> {
+        let (name, on) = (&entry.name.value, &entry.on.value);
+        let mesh = &mut self.mesh;
+        let kept = |node: usize, mesh: &Mesh<D>| inside(&mesh.nodes()[node]);
+        if let Ok(facets) = mesh.facet_group(on) {
+            let whole = |f: &&Facet| mesh.facet_nodes(**f).all(|n| kept(n, mesh));
+            let facets: Vec<Facet> = facets.iter().filter(whole).copied().collect();
+            if facets.is_empty() {
+                return mesh.add_node_group(name, nodes);
+            }
+            mesh.add_facet_group(name, facets)?;
+        } else if let Ok(cells) = mesh.cell_group(on) {
+            let whole = |c: &&usize| mesh.cell_nodes(**c).iter().all(|&n| kept(n, mesh));
+            let cells: Vec<usize> = cells.iter().filter(whole).copied().collect();
+            if cells.is_empty() {
+                return mesh.add_node_group(name, nodes);
+            }
+            mesh.add_cell_group(name, cells)?;
+        } else {
+            return mesh.add_node_group(name, nodes);
+        }
+        let covered = mesh.node_group(name)?;
+        if covered != nodes {
+            let hidden = format!("{name}{NODES}");
+            findings.warning(
+                &entry.part.span,
+                format!(
+                    "the limits of \"{name}\" cut through the mesh: pressure, traction, contact and \
+                     material take what lies inside as a whole ({} nodes), displacements and \
+                     forces all nodes inside ({})",
+                    covered.len(),
+                    nodes.len()
+                ),
+                "limits between the lines of the mesh",
+            );
+            mesh.add_node_group(&hidden, nodes)?;
+            self.nodes.insert(name.clone(), hidden);
+        }
+        Ok(())
+    }
+
+    /// Whether there is such a group.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.names().any(|n| n == name)
+    }
+
+    /// Whether such a group was to be made, but could not.
+    pub(super) fn is_broken(&self, name: &str) -> bool {
+        self.broken.iter().any(|n| n == name)
+    }
+
+    /// Names of all groups.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.mesh.group_names().filter(|n| !n.ends_with(NODES))
+    }
+
+    /// The group that holds the nodes of a group.
+    pub(super) fn nodes_of<'a>(&'a self, name: &'a str) -> &'a str {
+        self.nodes.get(name).map_or(name, String::as_str)
+    }
+
+    /// The block of a cell.
+    pub(super) fn block_of<'d>(&self, deck: &'d Deck, cell: usize) -> Option<&'d BlockEntry> {
+        deck.blocks.iter().find(|b| {
+            let cells = self.mesh.cell_group(&b.name.value);
+            cells.is_ok_and(|cells| cells.contains(&cell))
+        })
+    }
+
+    /// What the groups measure.
+    pub(super) fn facts<H: Analysis<D>>(&self, hypothesis: &H) -> Vec<GroupFacts> {
+        let facts = |name: &str| {
+            let nodes = self.mesh.node_group(self.nodes_of(name));
+            let nodes = nodes.map_or(0, |n| n.len());
+            let (kind, members, measure) = if let Ok(cells) = self.mesh.cell_group(name) {
+                let volume = self.mesh.measure(cells, hypothesis);
+                ("cells", cells.len(), Some(volume))
+            } else if let Ok(facets) = self.mesh.facet_group(name) {
+                let shares = self.mesh.facet_shares(facets, hypothesis);
+                let area = shares.iter().map(|s| s.area).sum();
+                ("facets", facets.len(), Some(area))
+            } else {
+                ("nodes", nodes, None)
+            };
+            GroupFacts {
+                name: name.to_owned(),
+                kind,
+                members,
+                nodes,
+                measure,
+            }
+        };
+        self.names().map(facts).collect()
+    }
+}

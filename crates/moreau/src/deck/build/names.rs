@@ -1,0 +1,163 @@
+//! Names: every one used exists, holds what is needed, and no name is given twice.
+
+use super::groups::Groups;
+use crate::deck::entries::{Action, Deck};
+use crate::deck::finding::{At, Findings, did_you_mean};
+use std::collections::BTreeSet;
+
+/// What a group must hold.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Needed {
+    Cells,
+    Facets,
+    Nodes,
+}
+
+pub(super) fn check<const D: usize>(
+    deck: &Deck,
+    groups: Option<&Groups<D>>,
+    findings: &mut Findings,
+) {
+    let mut used = BTreeSet::new();
+    for material in &deck.materials {
+        group(&material.on, Needed::Cells, groups, &mut used, findings);
+    }
+    for contact in &deck.contacts {
+        group(
+            &contact.surface,
+            Needed::Facets,
+            groups,
+            &mut used,
+            findings,
+        );
+        let is_facets = groups.is_some_and(|g| g.mesh.facet_group(&contact.against.value).is_ok());
+        if is_facets && !deck.tool_names.contains(&contact.against.value) {
+            findings.error_with(
+                &contact.against.span,
+                "contact between two deformable bodies: not available yet",
+                "not available yet",
+                "give the name of a [[tool]]",
+            );
+        } else {
+            tool(&contact.against, deck, &mut used, findings);
+        }
+    }
+    for step in &deck.steps {
+        for condition in &step.conditions {
+            match condition.action {
+                Action::Tool(_) => tool(&condition.on, deck, &mut used, findings),
+                Action::Fix(_) | Action::Move(_) | Action::Force(_) => {
+                    group(&condition.on, Needed::Nodes, groups, &mut used, findings);
+                }
+                Action::Pressure(_) | Action::Traction(_) => {
+                    group(&condition.on, Needed::Facets, groups, &mut used, findings);
+                }
+                Action::BodyForce(_) => {
+                    group(&condition.on, Needed::Cells, groups, &mut used, findings);
+                }
+            }
+        }
+    }
+    used.extend(deck.groups.iter().map(|g| g.on.value.clone()));
+    for entry in &deck.groups {
+        if !used.contains(&entry.name.value) && findings.errors() == 0 {
+            let message = format!("no condition uses the group \"{}\"", entry.name.value);
+            findings.warning(&entry.name.span, message, "not used");
+        }
+    }
+    for entry in &deck.tools {
+        let touched = deck
+            .contacts
+            .iter()
+            .any(|c| c.against.value == entry.name.value);
+        if !touched && findings.errors() == 0 {
+            let message = format!("no [[contact]] uses the tool \"{}\"", entry.name.value);
+            findings.warning(&entry.name.span, message, "touches nothing");
+        }
+    }
+    twice(deck, groups, findings);
+}
+
+fn group<const D: usize>(
+    name: &At<String>,
+    needed: Needed,
+    groups: Option<&Groups<D>>,
+    used: &mut BTreeSet<String>,
+    findings: &mut Findings,
+) {
+    used.insert(name.value.clone());
+    let Some(groups) = groups else { return };
+    if groups.is_broken(&name.value) {
+        return;
+    }
+    let fits = |n: &str| match needed {
+        Needed::Cells => groups.mesh.cell_group(n).is_ok(),
+        Needed::Facets => groups.mesh.facet_group(n).is_ok(),
+        Needed::Nodes => true,
+    };
+    if !groups.has(&name.value) {
+        let near = did_you_mean(&name.value, groups.names().filter(|n| fits(n)));
+        let message = format!("no group \"{}\"{near}", name.value);
+        findings.error(&name.span, message, "not a group");
+    } else if !fits(&name.value) {
+        let what = match needed {
+            Needed::Cells => "a group of cells (a body)",
+            _ => "a group of facets (a side of a body)",
+        };
+        let found = match groups.mesh.cell_group(&name.value).is_ok() {
+            true => "cells",
+            false if groups.mesh.facet_group(&name.value).is_ok() => "facets",
+            false => "nodes",
+        };
+        let near = did_you_mean(&name.value, groups.names().filter(|n| fits(n)));
+        findings.error(
+            &name.span,
+            format!("\"{}\" holds {found}, expected {what}{near}", name.value),
+            format!("holds {found}"),
+        );
+    }
+}
+
+fn tool(name: &At<String>, deck: &Deck, used: &mut BTreeSet<String>, findings: &mut Findings) {
+    used.insert(name.value.clone());
+    if !deck.tool_names.contains(&name.value) {
+        let near = did_you_mean(&name.value, deck.tool_names.iter().map(String::as_str));
+        let message = format!("no tool \"{}\"{near}", name.value);
+        findings.error(&name.span, message, "not a tool");
+    }
+}
+
+/// Names of tools and steps that are given twice. Groups complain for themselves.
+fn twice<const D: usize>(deck: &Deck, groups: Option<&Groups<D>>, findings: &mut Findings) {
+    for (k, tool) in deck.tools.iter().enumerate() {
+        let name = &tool.name.value;
+        if deck.tools[..k].iter().any(|t| t.name.value == *name) {
+            let message = format!("a tool named \"{name}\" exists already: names must differ");
+            findings.error(&tool.name.span, message, "used twice");
+        } else if groups.is_some_and(|g| g.has(name)) {
+            let message = format!("a group is named \"{name}\" as well: names must differ");
+            findings.error(&tool.name.span, message, "used twice");
+        }
+    }
+    for (k, step) in deck.steps.iter().enumerate() {
+        let name = &step.name.value;
+        if deck.steps[..k].iter().any(|s| s.name.value == *name) {
+            let message = format!("a step named \"{name}\" exists already: names must differ");
+            findings.error(&step.name.span, message, "used twice");
+        }
+    }
+    for (k, block) in deck.blocks.iter().enumerate() {
+        let name = &block.name.value;
+        if deck.blocks[..k].iter().any(|b| b.name.value == *name) {
+            let message = format!("a block named \"{name}\" exists already: names must differ");
+            findings.error(&block.name.span, message, "used twice");
+        }
+    }
+    for (k, material) in deck.materials.iter().enumerate() {
+        let name = &material.on.value;
+        if deck.materials[..k].iter().any(|m| m.on.value == *name) {
+            let message = format!("\"{name}\" has a material already, expected one for each body");
+            findings.error(&material.on.span, message, "given twice");
+        }
+    }
+}

@@ -1,0 +1,202 @@
+//! A deck written out again with every default spelt; not a copy of the file.
+
+use super::build::quadrature;
+use super::entries::{Action, ConditionEntry, Deck, Grid, Method, Part, Shape, Vtu};
+use crate::mesh::{CellKind, Integration};
+use std::fmt::{self, Write};
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl Deck {
+    /// The deck as TOML, with every default spelt out: it describes the same problem.
+    pub fn resolved(&self) -> String {
+        let mut out = String::new();
+        // Writing to a string does not fail.
+        let _ = write(self, &mut out);
+        out
+    }
+
+    /// The quadrature of a material, chosen by the deck or by its elements.
+    pub fn quadrature(&self, material: &super::MaterialEntry) -> &'static str {
+        let kind = super::build::kinds(self, material).next();
+        match quadrature(kind.unwrap_or(CellKind::Quad8), material) {
+            Integration::Reduced => "reduced",
+            Integration::Full => "full",
+        }
+    }
+}
+
+fn text(value: &str) -> String {
+    toml::Value::String(value.to_owned()).to_string()
+}
+
+fn write(deck: &Deck, out: &mut String) -> fmt::Result {
+    writeln!(out, "title = {}", text(&deck.title))?;
+    writeln!(out, "units = \"{}\"", deck.units.name())?;
+    writeln!(out, "analysis = \"{}\"", deck.analysis.name())?;
+    if deck.analysis == super::Analysis::PlaneStrain {
+        writeln!(out, "thickness = {:?}", deck.thickness.value)?;
+    }
+    for block in &deck.blocks {
+        writeln!(out, "\n[[mesh.block]]\nname = {}", text(&block.name.value))?;
+        writeln!(out, "element = \"{}\"", block.element.value)?;
+        for (axis, grid) in AXES.iter().zip(&block.grid) {
+            match &grid.value {
+                Grid::Range(ends, _) => writeln!(out, "{axis} = {ends:?}")?,
+                Grid::Lines(lines) => writeln!(out, "{axis} = {{ lines = {lines:?} }}")?,
+            }
+        }
+        let cells: Vec<usize> = block.grid.iter().map(|g| g.value.cells()).collect();
+        writeln!(out, "cells = {cells:?}")?;
+    }
+    for group in &deck.groups {
+        writeln!(out, "\n[[mesh.group]]\nname = {}", text(&group.name.value))?;
+        writeln!(out, "on = {}", text(&group.on.value))?;
+        match &group.part.value {
+            Part::Nearest(point) => writeln!(out, "nearest = {point:?}")?,
+            Part::Box(limits) => {
+                for (axis, limit) in AXES.iter().zip(limits) {
+                    if let Some(ends) = limit {
+                        writeln!(out, "{axis} = {ends:?}")?;
+                    }
+                }
+            }
+        }
+    }
+    for material in &deck.materials {
+        writeln!(out, "\n[[material]]\non = {}", text(&material.on.value))?;
+        writeln!(out, "young = {:?}", material.young.value)?;
+        writeln!(out, "poisson = {:?}", material.poisson.value)?;
+        if let Some(yield_stress) = &material.yield_stress {
+            let value = |m: &Option<super::At<f64>>| m.as_ref().map_or(0.0, |m| m.value);
+            writeln!(out, "yield-stress = {:?}", yield_stress.value)?;
+            let linear = value(&material.isotropic);
+            writeln!(out, "hardening = {{ linear = {linear:?} }}")?;
+            let modulus = value(&material.kinematic);
+            writeln!(
+                out,
+                "kinematic = [{{ modulus = {modulus:?}, recall = 0.0 }}]"
+            )?;
+        }
+        writeln!(out, "quadrature = \"{}\"", deck.quadrature(material))?;
+    }
+    for tool in &deck.tools {
+        writeln!(out, "\n[[tool]]\nname = {}", text(&tool.name.value))?;
+        match &tool.shape.value {
+            Shape::Plane(point, normal) => {
+                writeln!(out, "plane = {{ point = {point:?}, normal = {normal:?} }}")?;
+            }
+            Shape::Ball(center, radius, hollow, key) => {
+                writeln!(
+                    out,
+                    "{key} = {{ center = {center:?}, radius = {radius:?} }}"
+                )?;
+                writeln!(out, "inside = {hollow}")?;
+            }
+        }
+    }
+    for contact in &deck.contacts {
+        writeln!(
+            out,
+            "\n[[contact]]\nsurface = {}",
+            text(&contact.surface.value)
+        )?;
+        writeln!(out, "against = {}", text(&contact.against.value))?;
+        writeln!(out, "friction = {:?}", contact.friction.value)?;
+    }
+    for step in &deck.steps {
+        writeln!(out, "\n[[step]]\nname = {}", text(&step.name.value))?;
+        match step.cuts {
+            None => writeln!(out, "increments = {}", step.increments)?,
+            Some(cuts) => {
+                let start = 1.0 / step.increments as f64;
+                let min = start * 0.5f64.powi(cuts as i32);
+                writeln!(
+                    out,
+                    "increments = {{ start = {start:?}, min = {min:?}, max = {start:?} }}"
+                )?;
+            }
+        }
+        for (key, list) in lists(&step.conditions) {
+            writeln!(out, "{key} = [{}]", list.join(", "))?;
+        }
+    }
+    tail(deck, out)
+}
+
+/// The conditions of a step, by key.
+fn lists(conditions: &[ConditionEntry]) -> [(&'static str, Vec<String>); 4] {
+    let mut lists = [
+        ("fix", Vec::new()),
+        ("move", Vec::new()),
+        ("load", Vec::new()),
+        ("tools", Vec::new()),
+    ];
+    for condition in conditions {
+        let on = text(&condition.on.value);
+        let (list, item) = match &condition.action {
+            Action::Fix(axes) => {
+                let axes: Vec<&str> = axes.iter().map(|&i| AXES[i]).collect();
+                (0, format!("{{ on = {on}, u = {axes:?} }}"))
+            }
+            Action::Move(components) => {
+                let u: Vec<String> = components
+                    .iter()
+                    .map(|(i, v)| format!("{} = {v:?}", AXES[*i]))
+                    .collect();
+                (1, format!("{{ on = {on}, u = {{ {} }} }}", u.join(", ")))
+            }
+            Action::Pressure(p) => (2, format!("{{ on = {on}, pressure = {p:?} }}")),
+            Action::Traction(v) => (2, format!("{{ on = {on}, traction = {v:?} }}")),
+            Action::Force(v) => (2, format!("{{ on = {on}, force = {v:?} }}")),
+            Action::BodyForce(v) => (2, format!("{{ on = {on}, body-force = {v:?} }}")),
+            Action::Tool(v) => (3, format!("{{ name = {on}, move = {v:?} }}")),
+        };
+        lists[list].1.push(item);
+    }
+    lists
+}
+
+fn tail(deck: &Deck, out: &mut String) -> fmt::Result {
+    let method = match &deck.solver.method {
+        Method::Exact => "\"exact\"".to_owned(),
+        Method::Uzawa => "\"uzawa\"".to_owned(),
+        Method::GaussSeidel => "\"gauss-seidel\"".to_owned(),
+        Method::Penalty(n, t) => format!(
+            "{{ penalty = {{ normal = {:?}, tangent = {:?} }} }}",
+            n.value, t.value
+        ),
+    };
+    let nesting = if deck.solver.outside {
+        "outside"
+    } else {
+        "inside"
+    };
+    writeln!(
+        out,
+        "\n[solver]\ncontact = {method}\nnesting = \"{nesting}\""
+    )?;
+    writeln!(out, "threads = {}", deck.solver.threads)?;
+    writeln!(out, "\n[output]")?;
+    if let Some(directory) = &deck.directory {
+        writeln!(out, "directory = {}", text(directory))?;
+    }
+    writeln!(out, "vtu = \"{}\"", Vtu::NAMES[deck.vtu as usize])?;
+    if !deck.expectations.is_empty() {
+        writeln!(out, "\n[expect]")?;
+    }
+    for expectation in &deck.expectations {
+        let column = text(&expectation.column.value);
+        write!(out, "{column} = {{ value = {:?}", expectation.value)?;
+        for (key, tolerance) in [
+            ("relative", expectation.relative),
+            ("absolute", expectation.absolute),
+        ] {
+            if let Some(tolerance) = tolerance {
+                write!(out, ", {key} = {tolerance:?}")?;
+            }
+        }
+        writeln!(out, " }}")?;
+    }
+    Ok(())
+}

@@ -1,0 +1,281 @@
+//! The typed content of a deck, each value with its place in the file; not yet a model.
+
+use super::finding::At;
+use super::units::Units;
+use crate::mesh::{CellKind, Integration};
+use std::ops::Range;
+
+/// The modelling hypothesis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Analysis {
+    /// Plane strain.
+    PlaneStrain,
+    /// Axial symmetry, x = radius, y = axis.
+    Axisymmetric,
+    /// Three-dimensional solid.
+    Solid,
+}
+
+impl Analysis {
+    /// Names in a deck, in the order of the variants.
+    pub const NAMES: [&'static str; 3] = ["plane-strain", "axisymmetric", "solid"];
+
+    /// Name in a deck.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+
+    /// 2 or 3.
+    pub fn dimension(self) -> usize {
+        if self == Self::Solid { 3 } else { 2 }
+    }
+}
+
+/// Grid lines of a block along one axis.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Grid {
+    /// From, to, and the number of equal cells.
+    Range([f64; 2], usize),
+    /// The lines themselves.
+    Lines(Vec<f64>),
+}
+
+impl Grid {
+    /// Number of cells.
+    pub fn cells(&self) -> usize {
+        match self {
+            Self::Range(_, cells) => *cells,
+            Self::Lines(lines) => lines.len().saturating_sub(1),
+        }
+    }
+
+    /// The lines.
+    pub fn lines(&self) -> Vec<f64> {
+        match self {
+            Self::Range([a, b], cells) => crate::mesh::uniform(*a, *b, *cells),
+            Self::Lines(lines) => lines.clone(),
+        }
+    }
+}
+
+/// `[[mesh.block]]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlockEntry {
+    /// Name of the body and its groups.
+    pub name: At<String>,
+    /// Element.
+    pub element: At<CellKind>,
+    /// Grid lines along x, y and, in 3D, z.
+    pub grid: Vec<At<Grid>>,
+}
+
+/// What part of a group a new group takes.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Part {
+    /// What lies between these limits, one entry a coordinate.
+    Box(Vec<Option<[f64; 2]>>),
+    /// The node nearest to a point.
+    Nearest(Vec<f64>),
+}
+
+/// `[[mesh.group]]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GroupEntry {
+    /// Name.
+    pub name: At<String>,
+    /// Group that it is a part of.
+    pub on: At<String>,
+    /// Which part.
+    pub part: At<Part>,
+}
+
+/// `[[material]]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaterialEntry {
+    /// Group of cells.
+    pub on: At<String>,
+    /// Young's modulus.
+    pub young: At<f64>,
+    /// Poisson's ratio.
+    pub poisson: At<f64>,
+    /// Initial yield stress; none: elastic.
+    pub yield_stress: Option<At<f64>>,
+    /// Modulus of linear isotropic hardening.
+    pub isotropic: Option<At<f64>>,
+    /// Modulus of linear kinematic hardening.
+    pub kinematic: Option<At<f64>>,
+    /// Quadrature, if given.
+    pub quadrature: Option<At<Integration>>,
+}
+
+/// Surface of a tool.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// A point and the normal out of the tool.
+    Plane(Vec<f64>, Vec<f64>),
+    /// Centre, radius and whether the tool is hollow; with the name that it was given by.
+    Ball(Vec<f64>, f64, bool, &'static str),
+}
+
+/// `[[tool]]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ToolEntry {
+    /// Name.
+    pub name: At<String>,
+    /// Surface.
+    pub shape: At<Shape>,
+}
+
+/// `[[contact]]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactEntry {
+    /// Group of facets.
+    pub surface: At<String>,
+    /// Tool.
+    pub against: At<String>,
+    /// Coefficient of Coulomb friction.
+    pub friction: At<f64>,
+}
+
+/// A condition of a step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConditionEntry {
+    /// Group or tool.
+    pub on: At<String>,
+    /// What is put on it.
+    pub action: Action,
+    /// Place of the whole condition.
+    pub span: Range<usize>,
+}
+
+/// What a condition does.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Action {
+    /// Holds components of the displacement at zero.
+    Fix(Vec<usize>),
+    /// Prescribes components of the displacement.
+    Move(Vec<(usize, f64)>),
+    /// Pressure.
+    Pressure(f64),
+    /// Traction.
+    Traction(Vec<f64>),
+    /// Force on a group.
+    Force(Vec<f64>),
+    /// Force per volume.
+    BodyForce(Vec<f64>),
+    /// Translation of a tool.
+    Tool(Vec<f64>),
+}
+
+/// `[[step]]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StepEntry {
+    /// Name.
+    pub name: At<String>,
+    /// Equal increments.
+    pub increments: usize,
+    /// Times an increment may be halved, if the deck says so.
+    pub cuts: Option<usize>,
+    /// Conditions.
+    pub conditions: Vec<ConditionEntry>,
+    /// Place of the step.
+    pub span: Range<usize>,
+}
+
+/// Method for the contact problem.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Method {
+    /// The exact law, by a semismooth Newton method.
+    Exact,
+    /// The exact law, by Uzawa's projections.
+    Uzawa,
+    /// The exact law, one contact at a time.
+    GaussSeidel,
+    /// Springs, normal and tangential.
+    Penalty(At<f64>, At<f64>),
+}
+
+/// `[solver]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolverEntry {
+    /// Method.
+    pub method: Method,
+    /// Whether the contact problem is solved around the nonlinear solve.
+    pub outside: bool,
+    /// Threads; 0: all.
+    pub threads: usize,
+}
+
+/// Which increments are written as VTU.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Vtu {
+    /// All.
+    All,
+    /// The last that converged.
+    Last,
+    /// None.
+    None,
+}
+
+impl Vtu {
+    /// Names in a deck, in the order of the variants.
+    pub const NAMES: [&'static str; 3] = ["all", "last", "none"];
+}
+
+/// `[expect]`: a final value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expectation {
+    /// A column of `history.csv`, as in `force.punch.y`.
+    pub column: At<String>,
+    /// The value expected at the end.
+    pub value: f64,
+    /// Tolerance: relative to the value, absolute, or the larger of both.
+    pub relative: Option<f64>,
+    /// See `relative`.
+    pub absolute: Option<f64>,
+}
+
+impl Expectation {
+    /// Largest difference that is accepted.
+    pub fn tolerance(&self) -> f64 {
+        let relative = self.relative.unwrap_or(0.0) * self.value.abs();
+        relative.max(self.absolute.unwrap_or(0.0))
+    }
+}
+
+/// A deck: what one file says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Deck {
+    /// Title; may be empty.
+    pub title: String,
+    /// Units.
+    pub units: Units,
+    /// Modelling hypothesis.
+    pub analysis: Analysis,
+    /// Thickness of plane strain.
+    pub thickness: At<f64>,
+    /// Blocks.
+    pub blocks: Vec<BlockEntry>,
+    /// Groups.
+    pub groups: Vec<GroupEntry>,
+    /// Whether all that the deck says of the mesh was understood.
+    pub mesh_understood: bool,
+    /// Materials.
+    pub materials: Vec<MaterialEntry>,
+    /// Tools.
+    pub tools: Vec<ToolEntry>,
+    /// Names of all tools, also of those that were not understood.
+    pub tool_names: Vec<String>,
+    /// Contacts.
+    pub contacts: Vec<ContactEntry>,
+    /// Steps.
+    pub steps: Vec<StepEntry>,
+    /// Solver.
+    pub solver: SolverEntry,
+    /// Directory of the results, if given.
+    pub directory: Option<String>,
+    /// Which VTU files.
+    pub vtu: Vtu,
+    /// Expectations.
+    pub expectations: Vec<Expectation>,
+}

@@ -1,0 +1,216 @@
+//! What is found wrong or doubtful in a deck, and where; not the decision to go on or to stop.
+
+use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource};
+use std::fmt;
+use std::ops::Range;
+
+/// A value of a deck and the bytes of the file that it was read from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct At<T> {
+    /// The value.
+    pub value: T,
+    /// Where it stands in the text of the deck.
+    pub span: Range<usize>,
+}
+
+impl<T> At<T> {
+    /// A value and its place.
+    pub fn new(value: T, span: Range<usize>) -> Self {
+        Self { value, span }
+    }
+}
+
+/// Whether a deck with a finding can be run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Severity {
+    /// It cannot.
+    Error,
+    /// It can, but perhaps is not what was meant.
+    Warning,
+}
+
+/// One finding.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// Error or warning.
+    pub severity: Severity,
+    /// What was found and what was expected.
+    pub message: String,
+    /// What stands at the place.
+    pub label: String,
+    /// The place in the text.
+    pub span: Range<usize>,
+    /// What to do, if there is more to say.
+    pub help: Option<String>,
+}
+
+/// All findings of a deck, in the order in which they were made.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Findings {
+    list: Vec<Finding>,
+}
+
+impl Findings {
+    /// Adds an error: the message, and the label at the place.
+    pub fn error(
+        &mut self,
+        span: &Range<usize>,
+        message: impl Into<String>,
+        label: impl Into<String>,
+    ) {
+        self.add(Severity::Error, span, message.into(), label.into(), None);
+    }
+
+    /// Adds an error with an advice.
+    pub fn error_with(
+        &mut self,
+        span: &Range<usize>,
+        message: impl Into<String>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        let help = Some(help.into());
+        self.add(Severity::Error, span, message.into(), label.into(), help);
+    }
+
+    /// Adds a warning.
+    pub fn warning(
+        &mut self,
+        span: &Range<usize>,
+        message: impl Into<String>,
+        label: impl Into<String>,
+    ) {
+        self.add(Severity::Warning, span, message.into(), label.into(), None);
+    }
+
+    fn add(
+        &mut self,
+        severity: Severity,
+        span: &Range<usize>,
+        message: String,
+        label: String,
+        help: Option<String>,
+    ) {
+        let finding = Finding {
+            severity,
+            message,
+            label,
+            span: span.clone(),
+            help,
+        };
+        if !self.list.contains(&finding) {
+            self.list.push(finding);
+        }
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = &Finding> {
+        self.list.iter()
+    }
+
+    /// Number of errors.
+    pub fn errors(&self) -> usize {
+        self.count(Severity::Error)
+    }
+
+    /// Number of warnings.
+    pub fn warnings(&self) -> usize {
+        self.count(Severity::Warning)
+    }
+
+    fn count(&self, severity: Severity) -> usize {
+        self.list.iter().filter(|f| f.severity == severity).count()
+    }
+
+    /// The findings as text for a terminal, in the order of the file: file, line and column, the
+    /// line itself, and what is wrong with it.
+    pub fn render(&self, file: &str, text: &str, colour: bool) -> String {
+        let theme = match colour {
+            true => GraphicalTheme::unicode(),
+            false => GraphicalTheme::unicode_nocolor(),
+        };
+        let handler = GraphicalReportHandler::new_themed(theme)
+            .with_links(false)
+            .with_context_lines(1)
+            .with_width(100);
+        let source = NamedSource::new(file, text.to_owned());
+        let mut sorted: Vec<&Finding> = self.list.iter().collect();
+        sorted.sort_by_key(|f| f.span.start);
+        let mut out = String::new();
+        for finding in sorted {
+            let shown = Shown {
+                finding,
+                source: &source,
+                text,
+            };
+            // Writing to a string does not fail; a place that cannot be shown leaves the message.
+            if handler.render_report(&mut out, &shown).is_err() {
+                out.push_str(&finding.message);
+            }
+            out.push('\n');
+        }
+        out
+    }
+}
+
+/// A finding beside the text it is about.
+#[derive(Debug)]
+struct Shown<'a> {
+    finding: &'a Finding,
+    source: &'a NamedSource<String>,
+    text: &'a str,
+}
+
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.finding.message)
+    }
+}
+
+impl std::error::Error for Shown<'_> {}
+
+impl Diagnostic for Shown<'_> {
+    fn severity(&self) -> Option<miette::Severity> {
+        Some(match self.finding.severity {
+            Severity::Error => miette::Severity::Error,
+            Severity::Warning => miette::Severity::Warning,
+        })
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
+        let help = self.finding.help.as_ref()?;
+        Some(Box::new(help))
+    }
+
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        Some(self.source)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        // The first line of the place is enough, and it must lie in the text.
+        let start = self.finding.span.start.min(self.text.len());
+        let end = self.finding.span.end.clamp(start, self.text.len());
+        let piece = self.text.get(start..end).unwrap_or_default();
+        let length = piece.find('\n').unwrap_or(piece.len());
+        let label = LabeledSpan::new(Some(self.finding.label.clone()), start, length);
+        Some(Box::new(std::iter::once(label)))
+    }
+}
+
+/// `"; did you mean \"…\"?"`, if there is anything near.
+pub(super) fn did_you_mean<'a>(
+    name: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+) -> String {
+    crate::mesh::nearest(name, candidates)
+        .map_or_else(String::new, |n| format!("; did you mean \"{n}\"?"))
+}
+
+/// `"a", "b" or "c"`.
+pub(super) fn one_of(names: &[&str]) -> String {
+    let quoted: Vec<String> = names.iter().map(|n| format!("\"{n}\"")).collect();
+    match quoted.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+        _ => quoted.join(""),
+    }
+}

@@ -1,0 +1,114 @@
+//! The keys of a deck and what they mean: from text to entries; names are not looked up here.
+
+mod material;
+mod mesh;
+mod solver;
+mod step;
+mod tool;
+
+use super::entries::{Analysis, Deck};
+use super::finding::{At, Findings};
+use super::reader::{self, Log, Table};
+use super::units::Units;
+use toml::de::DeTable;
+
+/// Reads a deck. What was not understood is left out, and noted.
+pub(super) fn read(text: &str) -> (Deck, Findings) {
+    let (document, errors) = DeTable::parse_recoverable(text);
+    let log = Log::default();
+    for error in errors {
+        let span = error.span().unwrap_or(0..0);
+        let message = format!("not TOML: {}", error.message().replace('\n', ", "));
+        log.borrow_mut().error(&span, message, "here");
+    }
+    let root = Table::new(document.get_ref(), 0..0, "the deck", &log);
+    let deck = deck(&root);
+    root.finish();
+    (deck, log.into_inner())
+}
+
+fn deck(root: &Table<'_>) -> Deck {
+    let log = root.log();
+    let title = root
+        .get("title")
+        .and_then(|v| reader::text(v, "title", log));
+    let units = root.choice("units", &Units::NAMES);
+    let units = units.and_then(|u| Units::named(u.value));
+    let analysis = root.choice("analysis", &Analysis::NAMES);
+    let analysis = match analysis.as_ref().map(|a| a.value) {
+        Some("axisymmetric") => Analysis::Axisymmetric,
+        Some("solid") => Analysis::Solid,
+        _ => Analysis::PlaneStrain,
+    };
+    let dimension = analysis.dimension();
+    let thickness = root.number_if("thickness");
+    if let (Some(t), true) = (&thickness, analysis != Analysis::PlaneStrain) {
+        log.borrow_mut().error(
+            &t.span,
+            format!(
+                "a thickness has no meaning for analysis = \"{}\"",
+                analysis.name()
+            ),
+            "remove this key, or use analysis = \"plane-strain\"",
+        );
+    }
+    let before = log.borrow().errors();
+    let (blocks, groups) = mesh::read(root, dimension);
+    let mesh_understood = log.borrow().errors() == before;
+    let materials = root
+        .tables("material", "[[material]]")
+        .into_iter()
+        .filter_map(material::read)
+        .collect();
+    if root.get("material").is_none() {
+        missing(root, "[[material]]", "on, young and poisson");
+    }
+    let (tools, tool_names) = tool::read_tools(root, analysis);
+    let contacts = tool::read_contacts(root);
+    let steps = root
+        .tables("step", "[[step]]")
+        .into_iter()
+        .filter_map(|t| step::read(t, dimension))
+        .collect();
+    if root.get("step").is_none() {
+        missing(root, "[[step]]", "name, increments, fix, move and load");
+    }
+    let solver = solver::read_solver(root);
+    let (directory, vtu) = solver::read_output(root);
+    Deck {
+        title: title.map_or_else(String::new, |t| t.value),
+        units: units.unwrap_or(Units::MmNMpa),
+        analysis,
+        thickness: thickness.unwrap_or(At::new(1.0, 0..0)),
+        blocks,
+        groups,
+        mesh_understood,
+        materials,
+        tools,
+        tool_names,
+        contacts,
+        steps,
+        solver,
+        directory,
+        vtu,
+        expectations: solver::read_expectations(root),
+    }
+}
+
+fn missing(root: &Table<'_>, what: &str, keys: &str) {
+    root.log().borrow_mut().error(
+        &root.span,
+        format!("the deck has no {what}, expected at least one with {keys}"),
+        format!("{what} is missing"),
+    );
+}
+
+/// Notes that something of the grammar is not available yet.
+fn not_yet(log: &Log, span: &std::ops::Range<usize>, what: &str, instead: &str) {
+    log.borrow_mut().error_with(
+        span,
+        format!("{what}: not available yet"),
+        "not available yet",
+        instead,
+    );
+}

@@ -1,0 +1,131 @@
+//! `[solver]`, `[output]` and `[expect]`: how to solve, what to write, what to expect.
+
+use super::not_yet;
+use crate::deck::entries::{Expectation, Method, SolverEntry, Vtu};
+use crate::deck::reader::{self, Table};
+
+const METHODS: [&str; 3] = ["exact", "uzawa", "gauss-seidel"];
+
+fn section<'a>(root: &Table<'a>, key: &'static str, shown: &str) -> Option<Table<'a>> {
+    reader::table(root.get(key)?, key, shown, root.log())
+}
+
+pub(super) fn read_solver(root: &Table<'_>) -> SolverEntry {
+    let mut solver = SolverEntry {
+        method: Method::Exact,
+        outside: false,
+        threads: 0,
+    };
+    let Some(table) = section(root, "solver", "[solver]") else {
+        return solver;
+    };
+    let log = table.log();
+    let method = method(&table);
+    let nesting = table.choice_if("nesting", &["inside", "outside"]);
+    solver.outside = nesting.is_some_and(|n| n.value == "outside");
+    if let Some(value) = table.get("contact")
+        && solver.outside
+        && method != Some(Method::Uzawa)
+    {
+        log.borrow_mut().warning(
+            &value.span(),
+            "nesting = \"outside\" is Uzawa's method around the nonlinear solve: this is not used",
+            "not used",
+        );
+    }
+    solver.method = method.unwrap_or(Method::Exact);
+    let threads = table.get("threads");
+    let threads = threads.and_then(|v| reader::integer(v, "threads", 0..=1024, log));
+    solver.threads = threads.map_or(0, |t| t.value);
+    table.finish();
+    solver
+}
+
+fn method(table: &Table<'_>) -> Option<Method> {
+    let log = table.log();
+    let value = table.get("contact")?;
+    if !value.get_ref().is_table() {
+        let choice = reader::choice(value, "contact", &METHODS, log)?;
+        return Some(match choice.value {
+            "uzawa" => Method::Uzawa,
+            "gauss-seidel" => Method::GaussSeidel,
+            _ => Method::Exact,
+        });
+    }
+    let inner = reader::table(value, "contact", "contact", log)?;
+    if let Some(value) = inner.get("penetration") {
+        let instead = "use contact = \"exact\", which lets nothing penetrate";
+        not_yet(log, &value.span(), "contact = { penetration = … }", instead);
+        return None;
+    }
+    let springs = inner.need("penalty", "{ normal = …, tangent = … }");
+    let method = springs.and_then(|v| {
+        let springs = reader::table(v, "penalty", "penalty", log)?;
+        let (normal, tangent) = (springs.number("normal"), springs.number("tangent"));
+        springs.finish();
+        Some(Method::Penalty(normal?, tangent?))
+    });
+    inner.finish();
+    method
+}
+
+pub(super) fn read_output(root: &Table<'_>) -> (Option<String>, Vtu) {
+    let Some(table) = section(root, "output", "[output]") else {
+        return (None, Vtu::All);
+    };
+    let log = table.log();
+    let directory = table
+        .get("directory")
+        .and_then(|v| reader::text(v, "directory", log));
+    let vtu = table.choice_if("vtu", &Vtu::NAMES);
+    let vtu = match vtu.map(|v| v.value) {
+        Some("last") => Vtu::Last,
+        Some("none") => Vtu::None,
+        _ => Vtu::All,
+    };
+    if let Some(value) = table.get("checkpoint") {
+        let every = reader::integer(value, "checkpoint", 0..=1_000_000, log);
+        if every.is_some_and(|e| e.value > 0) {
+            log.borrow_mut().warning(
+                &value.span(),
+                "resuming a run is not available yet: no checkpoints are written",
+                "not used",
+            );
+        }
+    }
+    table.finish();
+    (directory.map(|d| d.value), vtu)
+}
+
+pub(super) fn read_expectations(root: &Table<'_>) -> Vec<Expectation> {
+    let log = root.log();
+    let Some(table) = section(root, "expect", "[expect]") else {
+        return Vec::new();
+    };
+    let mut list = Vec::new();
+    for (column, value) in table.entries() {
+        let Some(inner) = reader::table(value, &column.value, "an expectation", log) else {
+            continue;
+        };
+        let number = inner.number("value");
+        let tolerance = |key| inner.number_if(key).filter(|t| t.value >= 0.0);
+        let (relative, absolute) = (tolerance("relative"), tolerance("absolute"));
+        if relative.is_none() && absolute.is_none() {
+            log.borrow_mut().error(
+                &value.span(),
+                format!("\"{}\" has no tolerance ≥ 0", column.value),
+                "expected relative = … or absolute = …",
+            );
+        }
+        inner.finish();
+        if let Some(number) = number {
+            list.push(Expectation {
+                column,
+                value: number.value,
+                relative: relative.map(|t| t.value),
+                absolute: absolute.map(|t| t.value),
+            });
+        }
+    }
+    list
+}

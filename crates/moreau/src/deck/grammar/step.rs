@@ -1,0 +1,165 @@
+//! `[[step]]`: increments and conditions as they are given.
+
+use super::not_yet;
+use crate::deck::entries::{Action, ConditionEntry, StepEntry};
+use crate::deck::finding::At;
+use crate::deck::reader::{self, Table, Value};
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+/// Most increments of a step.
+const MOST: usize = 100_000;
+
+pub(super) fn read(table: Table<'_>, dimension: usize) -> Option<StepEntry> {
+    let name = table.name("name");
+    let increments = table.need("increments", "a positive integer");
+    let increments = increments.and_then(|v| increments_of(v, &table));
+    let mut conditions = Vec::new();
+    for (key, read) in [
+        (
+            "fix",
+            fix as fn(&Table<'_>, usize) -> Option<ConditionEntry>,
+        ),
+        ("move", shift),
+        ("load", load),
+        ("tools", tool),
+    ] {
+        let list = table.tables(key, &format!("{key} of a step"));
+        conditions.extend(list.into_iter().filter_map(|t| {
+            let condition = read(&t, dimension);
+            t.finish();
+            condition
+        }));
+    }
+    let span = table.span.clone();
+    table.finish();
+    // A stand-in for what was refused, so that the conditions are still checked.
+    let (increments, cuts) = increments.unwrap_or((1, None));
+    Some(StepEntry {
+        name: name?,
+        increments,
+        cuts,
+        conditions,
+        span,
+    })
+}
+
+/// The number of increments, and how often they may be halved.
+fn increments_of(value: Value<'_>, table: &Table<'_>) -> Option<(usize, Option<usize>)> {
+    let log = table.log();
+    if !value.get_ref().is_table() {
+        return Some((
+            reader::integer(value, "increments", 1..=MOST, log)?.value,
+            None,
+        ));
+    }
+    let inner = reader::table(value, "increments", "increments", log)?;
+    let (start, min, max) = (
+        inner.number("start"),
+        inner.number("min"),
+        inner.number("max"),
+    );
+    inner.finish();
+    let (start, min, max) = (start?.value, min?.value, max?.value);
+    if !(1.0 / MOST as f64 <= start && 0.0 < min && min <= start && start <= max && max <= 1.0) {
+        let expected = "0 < min ≤ start ≤ max ≤ 1, parts of the step, start at least 1e-5";
+        return reader::wrong(value, "increments", expected, log);
+    }
+    if max > start {
+        log.borrow_mut().warning(
+            &value.span(),
+            format!(
+                "increments do not grow beyond start = {start} yet: they are cut down to min \
+                 where needed and grow back to start"
+            ),
+            "max is not used",
+        );
+    }
+    let cuts = (start / min).log2().ceil().clamp(0.0, 40.0) as usize;
+    Some((((1.0 / start).ceil() as usize).clamp(1, MOST), Some(cuts)))
+}
+
+fn condition(on: Option<At<String>>, action: Action, table: &Table<'_>) -> Option<ConditionEntry> {
+    Some(ConditionEntry {
+        on: on?,
+        action,
+        span: table.span.clone(),
+    })
+}
+
+fn fix(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
+    let log = table.log();
+    let on = table.text("on");
+    let value = table.need("u", "[\"x\", …]")?;
+    let axes: Option<Vec<usize>> = reader::items(value, "u", "[\"x\", …]", log)?
+        .into_iter()
+        .map(|v| {
+            let axis = reader::choice(v, "a direction", &AXES[..dimension], log)?;
+            AXES.iter().position(|a| *a == axis.value)
+        })
+        .collect();
+    let axes = axes?;
+    if axes.is_empty() {
+        return reader::wrong(value, "u", "at least one direction", log);
+    }
+    condition(on, Action::Fix(axes), table)
+}
+
+fn shift(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
+    let log = table.log();
+    let on = table.text("on");
+    let value = table.need("u", "{ x = …, y = … }")?;
+    let inner = reader::table(value, "u", "u", log)?;
+    let components: Vec<(usize, f64)> = AXES[..dimension]
+        .iter()
+        .enumerate()
+        .filter_map(|(axis, key)| Some((axis, inner.number_if(key)?.value)))
+        .collect();
+    let empty = inner.entries().is_empty();
+    inner.finish();
+    if empty {
+        return reader::wrong(value, "u", "at least one component", log);
+    }
+    condition(on, Action::Move(components), table)
+}
+
+fn load(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
+    const KINDS: [&str; 4] = ["pressure", "traction", "force", "body-force"];
+    let log = table.log();
+    let on = table.text("on");
+    let given: Vec<_> = KINDS
+        .iter()
+        .filter_map(|key| Some((*key, table.get(key)?)))
+        .collect();
+    let [(key, value)] = given[..] else {
+        log.borrow_mut().error(
+            &table.span,
+            format!(
+                "a load has {} of pressure, traction, force, body-force, expected one",
+                given.len()
+            ),
+            "one kind of load each",
+        );
+        return None;
+    };
+    let vector = || Some(reader::vector(value, key, dimension, log)?.value);
+    let action = match key {
+        "pressure" => Action::Pressure(reader::number(value, key, log)?.value),
+        "traction" => Action::Traction(vector()?),
+        "force" => Action::Force(vector()?),
+        _ => Action::BodyForce(vector()?),
+    };
+    condition(on, action, table)
+}
+
+fn tool(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
+    let log = table.log();
+    let name = table.text("name");
+    if let Some(force) = table.get("force") {
+        let instead = "prescribe its motion: { name = …, move = [ … ] }";
+        not_yet(log, &force.span(), "tools driven by a force", instead);
+        return None;
+    }
+    let value = table.need("move", "[ … ]")?;
+    let motion = reader::vector(value, "move", dimension, log)?;
+    condition(name, Action::Tool(motion.value), table)
+}

@@ -1,0 +1,307 @@
+//! Reading tables and values of a deck, noting what is not as expected; it knows no key.
+
+use super::finding::{At, Findings, did_you_mean, one_of};
+use std::cell::RefCell;
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// A value with its place.
+pub(super) type Value<'a> = &'a Spanned<DeValue<'a>>;
+
+/// Where findings are collected while a deck is read.
+pub(super) type Log = RefCell<Findings>;
+
+/// A table of the deck, of which keys are asked for; those never asked for are unknown.
+pub(super) struct Table<'a> {
+    table: &'a DeTable<'a>,
+    /// Where it stands.
+    pub(super) span: Range<usize>,
+    /// What it is called in messages.
+    name: String,
+    known: RefCell<Vec<&'static str>>,
+    log: &'a Log,
+}
+
+impl<'a> Table<'a> {
+    pub(super) fn new(
+        table: &'a DeTable<'a>,
+        span: Range<usize>,
+        name: impl Into<String>,
+        log: &'a Log,
+    ) -> Self {
+        Self {
+            table,
+            span,
+            name: name.into(),
+            known: RefCell::default(),
+            log,
+        }
+    }
+
+    /// The log of the table.
+    pub(super) fn log(&self) -> &'a Log {
+        self.log
+    }
+
+    /// The value of a key, if it is there.
+    pub(super) fn get(&self, key: &'static str) -> Option<Value<'a>> {
+        self.known.borrow_mut().push(key);
+        self.table.get(key)
+    }
+
+    /// The value of a key that must be there.
+    pub(super) fn need(&self, key: &'static str, expected: &str) -> Option<Value<'a>> {
+        let value = self.get(key);
+        if value.is_none() {
+            self.log.borrow_mut().error(
+                &self.span,
+                format!(
+                    "{} has no key \"{key}\", expected {key} = {expected}",
+                    self.name
+                ),
+                format!("\"{key}\" is missing here"),
+            );
+        }
+        value
+    }
+
+    /// Keys and values, in the order of the file, for tables whose keys are names of the user.
+    pub(super) fn entries(&self) -> Vec<(At<String>, Value<'a>)> {
+        let mut list: Vec<_> = self
+            .table
+            .iter()
+            .map(|(k, v)| (At::new(k.get_ref().to_string(), k.span()), v))
+            .collect();
+        list.sort_by_key(|(key, _)| key.span.start);
+        list
+    }
+
+    /// Reports the keys that were never asked for.
+    pub(super) fn finish(self) {
+        let known = self.known.borrow();
+        for (key, _) in self.entries() {
+            if !known.contains(&key.value.as_str()) {
+                let near = did_you_mean(&key.value, known.iter().copied());
+                self.log.borrow_mut().error_with(
+                    &key.span,
+                    format!("unknown key \"{}\" in {}{near}", key.value, self.name),
+                    "not a key here",
+                    format!("{} has the keys {}", self.name, known.join(", ")),
+                );
+            }
+        }
+    }
+
+    pub(super) fn text(&self, key: &'static str) -> Option<At<String>> {
+        text(self.need(key, "\"…\"")?, key, self.log)
+    }
+
+    /// A name: letters, digits, `-`, `_` and `.`.
+    pub(super) fn name(&self, key: &'static str) -> Option<At<String>> {
+        let name = self.text(key)?;
+        let plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
+        if name.value.is_empty() || !name.value.chars().all(plain) {
+            self.log.borrow_mut().error(
+                &name.span,
+                format!(
+                    "{key} is {:?}, expected letters, digits, '-', '_' and '.'",
+                    name.value
+                ),
+                "not a name",
+            );
+            return None;
+        }
+        Some(name)
+    }
+
+    pub(super) fn number(&self, key: &'static str) -> Option<At<f64>> {
+        number(self.need(key, "a number")?, key, self.log)
+    }
+
+    pub(super) fn number_if(&self, key: &'static str) -> Option<At<f64>> {
+        number(self.get(key)?, key, self.log)
+    }
+
+    pub(super) fn boolean_if(&self, key: &'static str) -> Option<At<bool>> {
+        let value = self.get(key)?;
+        match value.get_ref().as_bool() {
+            Some(b) => Some(At::new(b, value.span())),
+            None => wrong(value, key, "true or false", self.log),
+        }
+    }
+
+    pub(super) fn choice(
+        &self,
+        key: &'static str,
+        choices: &[&'static str],
+    ) -> Option<At<&'static str>> {
+        let value = self.need(key, &one_of(choices))?;
+        choice(value, key, choices, self.log)
+    }
+
+    pub(super) fn choice_if(
+        &self,
+        key: &'static str,
+        choices: &[&'static str],
+    ) -> Option<At<&'static str>> {
+        choice(self.get(key)?, key, choices, self.log)
+    }
+
+    /// The tables of an array under a key; none if it is not there.
+    pub(super) fn tables(&self, key: &'static str, shown: &str) -> Vec<Table<'a>> {
+        match self.get(key) {
+            Some(value) => tables(value, key, shown, self.log),
+            None => Vec::new(),
+        }
+    }
+}
+
+/// Notes that a value is of the wrong type.
+pub(super) fn wrong<T>(value: Value<'_>, what: &str, expected: &str, log: &Log) -> Option<T> {
+    let found = match value.get_ref() {
+        DeValue::String(s) => format!("the text {:?}", s.as_ref()),
+        DeValue::Integer(n) => format!("the integer {}", n.as_str()),
+        DeValue::Float(n) => format!("the number {}", n.as_str()),
+        DeValue::Boolean(b) => format!("{b}"),
+        DeValue::Datetime(_) => "a date".into(),
+        DeValue::Array(a) => format!("an array of {}", a.len()),
+        DeValue::Table(_) => "a table".into(),
+    };
+    log.borrow_mut().error(
+        &value.span(),
+        format!("{what} is {found}, expected {expected}"),
+        format!("expected {expected}"),
+    );
+    None
+}
+
+pub(super) fn text(value: Value<'_>, what: &str, log: &Log) -> Option<At<String>> {
+    match value.get_ref().as_str() {
+        Some(text) => Some(At::new(text.to_owned(), value.span())),
+        None => wrong(value, what, "a text in quotes", log),
+    }
+}
+
+/// A finite number; integers are numbers.
+pub(super) fn number(value: Value<'_>, what: &str, log: &Log) -> Option<At<f64>> {
+    let parsed = match value.get_ref() {
+        DeValue::Float(f) => f.as_str().replace('_', "").parse::<f64>().ok(),
+        DeValue::Integer(i) => i64::from_str_radix(&i.as_str().replace('_', ""), i.radix())
+            .ok()
+            .map(|n| n as f64),
+        _ => return wrong(value, what, "a number", log),
+    };
+    match parsed.filter(|n| n.is_finite()) {
+        Some(n) => Some(At::new(n, value.span())),
+        None => wrong(value, what, "a finite number", log),
+    }
+}
+
+/// An integer in a range.
+pub(super) fn integer(
+    value: Value<'_>,
+    what: &str,
+    range: std::ops::RangeInclusive<usize>,
+    log: &Log,
+) -> Option<At<usize>> {
+    let DeValue::Integer(i) = value.get_ref() else {
+        return wrong(value, what, "an integer", log);
+    };
+    let parsed = usize::from_str_radix(&i.as_str().replace('_', ""), i.radix()).ok();
+    match parsed.filter(|n| range.contains(n)) {
+        Some(n) => Some(At::new(n, value.span())),
+        None => {
+            let expected = format!("an integer from {} to {}", range.start(), range.end());
+            wrong(value, what, &expected, log)
+        }
+    }
+}
+
+pub(super) fn choice(
+    value: Value<'_>,
+    what: &str,
+    choices: &[&'static str],
+    log: &Log,
+) -> Option<At<&'static str>> {
+    let given = text(value, what, log)?;
+    if let Some(found) = choices.iter().find(|c| **c == given.value) {
+        return Some(At::new(found, given.span));
+    }
+    let near = did_you_mean(&given.value, choices.iter().copied());
+    log.borrow_mut().error(
+        &given.span,
+        format!(
+            "{what} is \"{}\", expected {}{near}",
+            given.value,
+            one_of(choices)
+        ),
+        "not one of these",
+    );
+    None
+}
+
+/// The items of an array.
+pub(super) fn items<'a>(
+    value: Value<'a>,
+    what: &str,
+    expected: &str,
+    log: &Log,
+) -> Option<Vec<Value<'a>>> {
+    match value.get_ref().as_array() {
+        Some(array) => Some(array.iter().collect()),
+        None => wrong(value, what, expected, log),
+    }
+}
+
+/// An array of numbers.
+pub(super) fn numbers(value: Value<'_>, what: &str, log: &Log) -> Option<At<Vec<f64>>> {
+    let list: Vec<Option<At<f64>>> = items(value, what, "an array of numbers", log)?
+        .into_iter()
+        .map(|v| number(v, what, log))
+        .collect();
+    let list: Option<Vec<f64>> = list.into_iter().map(|n| Some(n?.value)).collect();
+    Some(At::new(list?, value.span()))
+}
+
+/// An array of as many numbers as there are dimensions.
+pub(super) fn vector(
+    value: Value<'_>,
+    what: &str,
+    dimension: usize,
+    log: &Log,
+) -> Option<At<Vec<f64>>> {
+    let list = numbers(value, what, log)?;
+    match list.value.len() == dimension {
+        true => Some(list),
+        false => wrong(value, what, &format!("{dimension} numbers"), log),
+    }
+}
+
+/// A table, as an inline one or under a header.
+pub(super) fn table<'a>(
+    value: Value<'a>,
+    what: &str,
+    shown: impl Into<String>,
+    log: &'a Log,
+) -> Option<Table<'a>> {
+    let shown = shown.into();
+    match value.get_ref().as_table() {
+        Some(table) => Some(Table::new(table, value.span(), shown, log)),
+        None => wrong(value, what, "a table { … }", log),
+    }
+}
+
+/// The tables of an array.
+pub(super) fn tables<'a>(
+    value: Value<'a>,
+    what: &str,
+    shown: &str,
+    log: &'a Log,
+) -> Vec<Table<'a>> {
+    items(value, what, "an array of tables", log)
+        .unwrap_or_default()
+        .into_iter()
+        .filter_map(|v| table(v, what, shown, log))
+        .collect()
+}

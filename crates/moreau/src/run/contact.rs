@@ -1,0 +1,45 @@
+//! `contact.csv`: a row for each contact point and converged increment; no sums.
+
+use super::{number, status_name};
+use crate::deck::Units;
+use crate::driver::{Driver, StepReport};
+use crate::mesh::NodeKind;
+
+/// The header.
+pub(super) fn header(units: Units) -> String {
+    let (l, f, s) = (units.length(), units.force(), units.stress());
+    format!(
+        "step,increment,contact,node,x [{l}],y [{l}],z [{l}],kind,gap [{l}],slip_1 [{l}],\
+         slip_2 [{l}],t_n [{f}],t_1 [{f}],t_2 [{f}],p_n [{s}],p_1 [{s}],p_2 [{s}],status"
+    )
+}
+
+/// The rows of an increment. Slips are those of the increment; nodes are counted from 0.
+pub(super) fn rows<const D: usize>(
+    driver: &Driver<D>,
+    report: &StepReport,
+    stage: usize,
+) -> Vec<String> {
+    let row = |c: &crate::driver::ContactRecord<D>| {
+        let at = |k: usize, v: &[f64]| number(v.get(k).copied().unwrap_or(0.0));
+        let traction = c.t / c.area;
+        let kind = match c.kind {
+            NodeKind::Corner => "corner",
+            NodeKind::Midside => "midside",
+        };
+        let mut fields = vec![
+            stage.to_string(),
+            report.increment.to_string(),
+            driver.contact_name(c.contact).0.to_owned(),
+            c.node.to_string(),
+        ];
+        fields.extend((0..3).map(|k| at(k, &c.position)));
+        fields.push(kind.to_owned());
+        for v in [c.u.as_slice(), c.t.as_slice(), traction.as_slice()] {
+            fields.extend((0..3).map(|k| at(k, v)));
+        }
+        fields.push(status_name(c.status).to_owned());
+        fields.join(",")
+    };
+    driver.contacts().iter().map(row).collect()
+}

@@ -1,0 +1,312 @@
+//! How a run ended: status, certificate, expectations, and a summary to paste into a report; not
+//! its course.
+
+use super::history::History;
+use crate::contact::Certificate;
+use crate::deck::{Deck, Units};
+use crate::driver::{Driver, StepError, StepReport};
+use crate::laws::Status;
+use std::fmt;
+
+/// How a run ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RunStatus {
+    /// All increments converged.
+    Done,
+    /// The model does not admit a step.
+    Refused(String),
+    /// A step stopped; what converged before is kept.
+    NotConverged(String),
+}
+
+/// An expectation and what came of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    /// The column.
+    pub column: String,
+    /// What was expected.
+    pub expected: f64,
+    /// Largest difference accepted.
+    pub tolerance: f64,
+    /// What was found; NaN without a converged increment.
+    pub found: f64,
+}
+
+impl Verdict {
+    /// Whether the expectation is met. NaN meets nothing.
+    pub fn passed(&self) -> bool {
+        (self.found - self.expected).abs() <= self.tolerance
+    }
+}
+
+/// What is counted while running.
+pub(super) struct Tally {
+    factorisations: usize,
+    newton: usize,
+    cuts: usize,
+    certificate: Certificate,
+    relative_gap: f64,
+    /// Whether each contact was ever closed.
+    closed: Vec<bool>,
+    last: Option<StepReport>,
+}
+
+impl Tally {
+    pub(super) fn new<const D: usize>(driver: &Driver<D>) -> Self {
+        let contacts = driver.contacts().iter().map(|c| c.contact + 1).max();
+        Self {
+            factorisations: 0,
+            newton: 0,
+            cuts: 0,
+            certificate: Certificate::default(),
+            relative_gap: 0.0,
+            closed: vec![false; contacts.unwrap_or(0)],
+            last: None,
+        }
+    }
+
+    pub(super) fn add<const D: usize>(&mut self, driver: &Driver<D>, report: &StepReport) {
+        self.factorisations += report.factorisations;
+        self.newton += report.newton_iterations;
+        self.cuts += report.cuts;
+        let (all, one) = (&mut self.certificate, &report.certificate);
+        all.bipotential_gap = all.bipotential_gap.max(one.bipotential_gap);
+        all.penetration = all.penetration.max(one.penetration);
+        all.excess_force = all.excess_force.max(one.excess_force);
+        self.relative_gap = self.relative_gap.max(report.relative_gap());
+        for c in driver
+            .contacts()
+            .iter()
+            .filter(|c| c.status != Status::Open)
+        {
+            self.closed[c.contact] = true;
+        }
+        self.last = Some(report.clone());
+    }
+}
+
+/// How a run ended, with numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// Title of the deck.
+    pub title: String,
+    /// Its units.
+    pub units: Units,
+    /// How it ended.
+    pub status: RunStatus,
+    /// Wall time, results written included.
+    pub seconds: f64,
+    /// Converged increments.
+    pub increments: usize,
+    /// Newton iterations of the converged increments.
+    pub newton_iterations: usize,
+    /// Sparse factorisations of the converged increments.
+    pub factorisations: usize,
+    /// Times that increments were halved before they converged.
+    pub cuts: usize,
+    /// Degrees of freedom, prescribed ones included.
+    pub dofs: usize,
+    /// Threads that work on cells.
+    pub threads: usize,
+    /// The worst of all increments.
+    pub certificate: Certificate,
+    /// The largest gap in parts of the external work.
+    pub relative_gap: f64,
+    /// The last converged increment.
+    pub last: Option<StepReport>,
+    /// Final forces and displacements by column of `history.csv`.
+    pub values: Vec<(String, f64)>,
+    /// What came of the expectations.
+    pub verdicts: Vec<Verdict>,
+    /// Doubts about the run.
+    pub warnings: Vec<String>,
+}
+
+pub(super) fn conclude<const D: usize>(
+    driver: &Driver<D>,
+    deck: &Deck,
+    history: History,
+    tally: Tally,
+    failure: Option<StepError>,
+    seconds: f64,
+) -> Outcome {
+    let last = |name: &str| {
+        let column = history.column(name)?;
+        column.last().copied()
+    };
+    let verdict = |e: &crate::deck::Expectation| Verdict {
+        column: e.column.value.clone(),
+        expected: e.value,
+        tolerance: e.tolerance(),
+        found: last(&e.column.value).unwrap_or(f64::NAN),
+    };
+    let never = |(k, closed): (usize, &bool)| {
+        let (surface, tool) = driver.contact_name(k);
+        (!closed && tally.last.is_some())
+            .then(|| format!("the contact of \"{surface}\" with \"{tool}\" never closed"))
+    };
+    let values = history
+        .names()
+        .filter(|n| n.starts_with("force.") || n.starts_with("u."))
+        .filter_map(|n| Some((n.to_owned(), last(n)?)))
+        .collect();
+    Outcome {
+        title: deck.title.clone(),
+        units: deck.units,
+        status: match failure {
+            None => RunStatus::Done,
+            Some(StepError::Model(error)) => RunStatus::Refused(error.to_string()),
+            Some(error) => RunStatus::NotConverged(error.to_string()),
+        },
+        seconds,
+        increments: driver.increments(),
+        newton_iterations: tally.newton,
+        factorisations: tally.factorisations,
+        cuts: tally.cuts,
+        dofs: D * driver.mesh().nodes().len(),
+        threads: rayon::current_num_threads(),
+        certificate: tally.certificate,
+        relative_gap: tally.relative_gap,
+        values,
+        verdicts: deck.expectations.iter().map(verdict).collect(),
+        warnings: tally.closed.iter().enumerate().filter_map(never).collect(),
+        last: tally.last,
+    }
+}
+
+impl Outcome {
+    /// Whether all expectations are met.
+    pub fn as_expected(&self) -> bool {
+        self.verdicts.iter().all(Verdict::passed)
+    }
+
+    /// The error, if there was one.
+    pub fn error(&self) -> Option<&str> {
+        match &self.status {
+            RunStatus::Done => None,
+            RunStatus::Refused(error) | RunStatus::NotConverged(error) => Some(error),
+        }
+    }
+
+    /// The content of `run.json`.
+    pub(super) fn json(&self) -> String {
+        let status = match &self.status {
+            RunStatus::Done => "done",
+            RunStatus::Refused(_) => "refused",
+            RunStatus::NotConverged(_) => "not converged",
+        };
+        let verdict = |v: &Verdict| {
+            serde_json::json!({
+                "column": v.column, "expected": v.expected, "tolerance": v.tolerance,
+                "found": v.found, "passed": v.passed(),
+            })
+        };
+        let value = serde_json::json!({
+            "title": self.title,
+            "units": self.units.name(),
+            "status": status,
+            "error": self.error(),
+            "seconds": self.seconds,
+            "increments": self.increments,
+            "newton_iterations": self.newton_iterations,
+            "factorisations": self.factorisations,
+            "peak_memory_mb": peak_memory(),
+            "dofs": self.dofs,
+            "threads": self.threads,
+            "certificate": {
+                "bipotential_gap": self.certificate.bipotential_gap,
+                "relative_gap": self.relative_gap,
+                "penetration": self.certificate.penetration,
+                "excess_force": self.certificate.excess_force,
+            },
+            "expectations": self.verdicts.iter().map(verdict).collect::<Vec<_>>(),
+            "warnings": self.warnings,
+        });
+        format!("{value:#}\n")
+    }
+}
+
+/// Largest memory that the process has held \[MB\], where the system tells.
+fn peak_memory() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
+    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes / 1024.0)
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let units = self.units;
+        if !self.title.is_empty() {
+            writeln!(f, "{}", self.title)?;
+        }
+        let status = match &self.status {
+            RunStatus::Done => "done".to_owned(),
+            RunStatus::Refused(error) => format!("refused: {error}"),
+            RunStatus::NotConverged(error) => format!("not converged: {error}"),
+        };
+        writeln!(f, "  status        {status}")?;
+        writeln!(
+            f,
+            "  effort        {} increments, {} Newton iterations, {} factorisations, {} cuts; \
+             {:.2} s on {} threads, {} degrees of freedom",
+            self.increments,
+            self.newton_iterations,
+            self.factorisations,
+            self.cuts,
+            self.seconds,
+            self.threads,
+            self.dofs
+        )?;
+        if let Some(last) = &self.last {
+            let e = &last.energies;
+            let energy = units.energy();
+            writeln!(
+                f,
+                "  contact       {} open, {} stick, {} slip",
+                last.open, last.stick, last.slip
+            )?;
+            writeln!(
+                f,
+                "  energy        external {:.6e} {energy} = stored {:.6e} + plastic {:.6e} + \
+                 friction {:.6e} + springs {:.3e} + imbalance {:.3e}",
+                e.external_work,
+                e.stored,
+                e.plastic_dissipation,
+                e.friction_dissipation,
+                e.penalty,
+                e.imbalance()
+            )?;
+            writeln!(
+                f,
+                "  certificate   bipotential gap {:.2e} {energy} ({:.1e} of the work), penetration \
+                 {:.1e} {}, force outside the cone {:.1e} {}",
+                self.certificate.bipotential_gap,
+                self.relative_gap,
+                self.certificate.penetration,
+                units.length(),
+                self.certificate.excess_force,
+                units.force()
+            )?;
+        }
+        for (name, value) in &self.values {
+            let unit = match name.starts_with("force.") {
+                true => units.force(),
+                false => units.length(),
+            };
+            writeln!(f, "  {name:<24} {value:>16.8e} {unit}")?;
+        }
+        for v in &self.verdicts {
+            let mark = if v.passed() { "met" } else { "FAILED" };
+            writeln!(
+                f,
+                "  expect {} = {:.8e} ± {:.2e}: found {:.8e}, {mark}",
+                v.column, v.expected, v.tolerance, v.found
+            )?;
+        }
+        for warning in &self.warnings {
+            writeln!(f, "  warning: {warning}")?;
+        }
+        Ok(())
+    }
+}
