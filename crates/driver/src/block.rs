@@ -1,12 +1,10 @@
-//! Blocks of cells of one element, one hypothesis and one law: forces and stiffness of their
-//! cells; not their assembly.
+//! Blocks of cells of one element and one law: forces and stiffness of their cells, and the state
+//! of their material; not their assembly.
 
+use crate::cells::{Cells, MAX_POINTS};
 use moreau_laws::{BulkLaw, IncrementalPotential};
 use moreau_mandel::{Sym2, Sym4};
-use moreau_mesh::{Element, Hypothesis, Integration, Mesh};
-use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
-use std::marker::PhantomData;
 
 /// Which stiffness an evaluation computes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,171 +95,91 @@ const PANEL: usize = 2048;
 /// Cells that are worth a thread.
 const GRAIN: usize = 64;
 
-/// A quadrature point of a cell.
-#[derive(Debug, Clone)]
-struct Point<const D: usize, const N: usize> {
-    gradient: [[f64; D]; N],
-    position: [f64; D],
-    weight: f64,
-}
-
-/// The block of element E under hypothesis H with law L.
-#[derive(Debug, Clone)]
-pub struct SolidBlock<E, H, L: BulkLaw, const D: usize, const N: usize> {
-    cells: Vec<usize>,
-    nodes: Vec<[usize; N]>,
-    /// Shape functions at the points of the reference cell.
-    shapes: Vec<[f64; N]>,
-    points: Vec<Point<D, N>>,
+/// The block of some cells with law L.
+pub struct SolidBlock<L: BulkLaw, const D: usize> {
+    members: Vec<usize>,
+    cells: Box<dyn Cells<D>>,
     law: L,
     old: Vec<L::State>,
     new: Vec<L::State>,
     force: Vec<f64>,
     stiffness: Vec<f64>,
-    kind: PhantomData<(E, H)>,
 }
 
-impl<E, H, L, const D: usize, const N: usize> SolidBlock<E, H, L, D, N>
-where
-    E: Element<D, N>,
-    H: Hypothesis<D>,
-    L: BulkLaw,
-{
-    /// The block of `cells`, all of element E, of a mesh.
-    pub fn new(
-        mesh: &Mesh<D>,
-        cells: Vec<usize>,
-        hypothesis: &H,
-        law: L,
-        integration: Integration,
-    ) -> Self {
-        let rule = E::rule(integration);
-        let shapes: Vec<[f64; N]> = rule.points.iter().map(|p| E::shape(p.xi)).collect();
-        let nodes: Vec<[usize; N]> = cells
-            .iter()
-            .map(|&c| {
-                let nodes = mesh.cell_nodes(c);
-                std::array::from_fn(|a| nodes[a])
-            })
-            .collect();
-        let mut points = Vec::with_capacity(cells.len() * shapes.len());
-        for cell in &nodes {
-            let positions = cell.map(|a| mesh.nodes()[a]);
-            for p in &rule.points {
-                let at = E::map(&positions, p.xi);
-                let weight = p.weight * at.det * hypothesis.measure(&at.x);
-                points.push(Point {
-                    gradient: at.gradient,
-                    position: at.x,
-                    weight,
-                });
-            }
-        }
-        let states = vec![L::State::default(); points.len()];
+impl<L: BulkLaw, const D: usize> SolidBlock<L, D> {
+    /// The block of `cells`, which are the cells `members` of the mesh, in the virgin state.
+    pub fn new(members: Vec<usize>, cells: Box<dyn Cells<D>>, law: L) -> Self {
+        let states = vec![L::State::default(); cells.count() * cells.points_per_cell()];
         Self {
+            members,
             cells,
-            nodes,
-            shapes,
-            points,
             law,
             old: states.clone(),
             new: states,
             force: Vec::new(),
             stiffness: Vec::new(),
-            kind: PhantomData,
         }
     }
 }
 
-/// What a cell is evaluated from.
-struct CellView<'a, S, const D: usize, const N: usize> {
-    shapes: &'a [[f64; N]],
-    points: &'a [Point<D, N>],
-    old: &'a [S],
-    nodes: &'a [usize; N],
+/// What the cells of a panel are evaluated from.
+struct Panel<'a, L: BulkLaw, const D: usize> {
+    cells: &'a dyn Cells<D>,
+    law: &'a L,
+    old: &'a [L::State],
+    blend: Option<(f64, Sym4)>,
+    d_u: &'a [f64],
 }
 
-impl<S: Copy, const D: usize, const N: usize> CellView<'_, S, D, N> {
-    /// Operators B_a of \[77\] at a point of the rule, and the strain increment there.
-    #[inline]
-    fn strain<H: Hypothesis<D>>(&self, g: usize, d_u: &[f64]) -> ([SMatrix<f64, 6, D>; N], Sym2) {
-        let (shape, point) = (&self.shapes[g], &self.points[g]);
-        let operator = std::array::from_fn(|a| {
-            H::strain_operator(shape[a], &point.gradient[a], &point.position)
-        });
-        let mut d_eps = Sym2::zeros();
-        for a in 0..N {
-            let first = D * self.nodes[a];
-            d_eps += operator[a] * SVector::<f64, D>::from_column_slice(&d_u[first..first + D]);
-        }
-        (operator, d_eps)
-    }
-
-    /// Forces, the upper triangle of the stiffness unless its slice is empty, and new states.
-    /// Returns whether plastic strain grows.
-    #[inline]
-    fn evaluate<H: Hypothesis<D>, L: BulkLaw<State = S>>(
+impl<L: BulkLaw, const D: usize> Panel<'_, L, D> {
+    /// Forces, the upper triangles of the stiffness unless `entries` is zero, and new states of the
+    /// cells from `first` on. Returns whether plastic strain grows.
+    fn evaluate(
         &self,
-        law: &L,
-        blend: Option<&(f64, Sym4)>,
-        d_u: &[f64],
-        (force, stiffness, new): (&mut [f64], &mut [f64], &mut [S]),
+        first: usize,
+        entries: usize,
+        (forces, matrices, new): (&mut [f64], &mut [f64], &mut [L::State]),
     ) -> bool {
-        let size = N * D;
+        let count = self.cells.points_per_cell();
+        let size = D * self.cells.nodes(first).len();
+        let mut d_eps = [Sym2::zeros(); MAX_POINTS];
+        let mut stress = [Sym2::zeros(); MAX_POINTS];
+        let mut tangent = [Sym4::zeros(); MAX_POINTS];
         let mut flows = false;
-        force.fill(0.0);
-        stiffness.fill(0.0);
-        for g in 0..self.points.len() {
-            let weight = self.points[g].weight;
-            let (operator, d_eps) = self.strain::<H>(g, d_u);
-            let response = law.respond(&self.old[g], &d_eps);
-            new[g] = response.state;
-            flows |= law.equivalent_plastic_strain(&new[g])
-                > law.equivalent_plastic_strain(&self.old[g]);
-            let stress = response.stress * weight;
-            for a in 0..N {
-                let f = operator[a].tr_mul(&stress);
-                for i in 0..D {
-                    force[D * a + i] += f[i];
-                }
+        forces.fill(0.0);
+        matrices.fill(0.0);
+        for (k, force) in forces.chunks_mut(size).enumerate() {
+            let cell = first + k;
+            self.cells.strain(cell, self.d_u, &mut d_eps[..count]);
+            for g in 0..count {
+                let old = &self.old[cell * count + g];
+                let response = self.law.respond(old, &d_eps[g]);
+                flows |= self.law.equivalent_plastic_strain(&response.state)
+                    > self.law.equivalent_plastic_strain(old);
+                new[k * count + g] = response.state;
+                stress[g] = response.stress;
+                tangent[g] = match &self.blend {
+                    None => response.tangent,
+                    Some((part, elastic)) => elastic * *part + response.tangent * (1.0 - part),
+                };
             }
-            if stiffness.is_empty() {
-                continue;
-            }
-            let tangent = match blend {
-                None => response.tangent * weight,
-                Some((part, elastic)) => {
-                    elastic * (part * weight) + response.tangent * ((1.0 - part) * weight)
-                }
-            };
-            for b in 0..N {
-                let column = tangent * operator[b];
-                for a in 0..=b {
-                    let k_ab = operator[a].tr_mul(&column);
-                    for i in 0..D {
-                        for j in 0..D {
-                            stiffness[(D * a + i) * size + D * b + j] += k_ab[(i, j)];
-                        }
-                    }
-                }
+            self.cells.add_force(cell, &stress[..count], force);
+            if entries > 0 {
+                let matrix = &mut matrices[k * entries..(k + 1) * entries];
+                self.cells.add_stiffness(cell, &tangent[..count], matrix);
             }
         }
         flows
     }
 }
 
-impl<E, H, L, const D: usize, const N: usize> Block<D> for SolidBlock<E, H, L, D, N>
-where
-    E: Element<D, N>,
-    H: Hypothesis<D>,
-    L: IncrementalPotential,
-{
+impl<L: IncrementalPotential, const D: usize> Block<D> for SolidBlock<L, D> {
     fn cells(&self) -> &[usize] {
-        &self.cells
+        &self.members
     }
 
     fn nodes(&self, k: usize) -> &[usize] {
-        &self.nodes[k]
+        self.cells.nodes(k)
     }
 
     fn evaluate(
@@ -270,59 +188,47 @@ where
         stiffness: Stiffness,
         sink: &mut dyn FnMut(CellResult<'_>),
     ) -> bool {
-        let size = N * D;
-        let per_cell = self.shapes.len();
-        let panel = PANEL.min(self.cells.len());
-        let entries = if stiffness == Stiffness::None {
-            0
-        } else {
-            size * size
+        let all = self.cells.count();
+        if all == 0 {
+            return false;
+        }
+        let size = D * self.cells.nodes(0).len();
+        let per_cell = self.cells.points_per_cell();
+        let entries = match stiffness {
+            Stiffness::None => 0,
+            Stiffness::Consistent | Stiffness::Blended(_) => size * size,
         };
-        self.force.resize(panel * size, 0.0);
         // One entry a cell at least, so that the parallel chunks below stay aligned.
-        self.stiffness.resize(panel * entries.max(1), 0.0);
-        let blend = match stiffness {
-            Stiffness::Blended(part) => Some((part, self.law.elastic_tangent())),
-            Stiffness::None | Stiffness::Consistent => None,
+        let room = entries.max(1);
+        self.force.resize(PANEL.min(all) * size, 0.0);
+        self.stiffness.resize(PANEL.min(all) * room, 0.0);
+        let panel = Panel {
+            cells: self.cells.as_ref(),
+            law: &self.law,
+            old: &self.old,
+            blend: match stiffness {
+                Stiffness::Blended(part) => Some((part, self.law.elastic_tangent())),
+                Stiffness::None | Stiffness::Consistent => None,
+            },
+            d_u,
         };
-        let law = &self.law;
         let mut flows = false;
-        for start in (0..self.cells.len()).step_by(PANEL) {
-            let count = PANEL.min(self.cells.len() - start);
-            let range = start * per_cell..(start + count) * per_cell;
-            let (points, old) = (&self.points[range.clone()], &self.old[range.clone()]);
-            let nodes = &self.nodes[start..start + count];
-            let at = |k: usize| CellView {
-                shapes: &self.shapes,
-                points: &points[k * per_cell..(k + 1) * per_cell],
-                old: &old[k * per_cell..(k + 1) * per_cell],
-                nodes: &nodes[k],
-            };
+        for start in (0..all).step_by(PANEL) {
+            let count = PANEL.min(all - start);
             let forces = &mut self.force[..count * size];
-            let matrices = &mut self.stiffness[..count * entries.max(1)];
-            let new = &mut self.new[range];
+            let matrices = &mut self.stiffness[..count * room];
+            let new = &mut self.new[start * per_cell..(start + count) * per_cell];
             // The order of the cells, and with it every sum, is the same for any number of threads.
             flows |= if count < 2 * GRAIN {
-                forces
-                    .chunks_mut(size)
-                    .zip(matrices.chunks_mut(entries.max(1)))
-                    .zip(new.chunks_mut(per_cell))
-                    .enumerate()
-                    .map(|(k, ((force, matrix), new))| {
-                        let matrix = &mut matrix[..entries];
-                        at(k).evaluate::<H, L>(law, blend.as_ref(), d_u, (force, matrix, new))
-                    })
-                    .fold(false, |a, b| a | b)
+                panel.evaluate(start, entries, (forces, matrices, new))
             } else {
                 forces
-                    .par_chunks_mut(size)
-                    .zip(matrices.par_chunks_mut(entries.max(1)))
-                    .zip(new.par_chunks_mut(per_cell))
+                    .par_chunks_mut(GRAIN * size)
+                    .zip(matrices.par_chunks_mut(GRAIN * room))
+                    .zip(new.par_chunks_mut(GRAIN * per_cell))
                     .enumerate()
-                    .with_min_len(GRAIN)
-                    .map(|(k, ((force, matrix), new))| {
-                        let matrix = &mut matrix[..entries];
-                        at(k).evaluate::<H, L>(law, blend.as_ref(), d_u, (force, matrix, new))
+                    .map(|(k, ((forces, matrices), new))| {
+                        panel.evaluate(start + k * GRAIN, entries, (forces, matrices, new))
                     })
                     .reduce(|| false, |a, b| a | b)
             };
@@ -338,22 +244,17 @@ where
     }
 
     fn potential(&self, d_u: &[f64]) -> f64 {
-        let per_cell = self.shapes.len();
+        let count = self.cells.points_per_cell();
+        let mut d_eps = [Sym2::zeros(); MAX_POINTS];
         let mut sum = 0.0;
-        for (k, nodes) in self.nodes.iter().enumerate() {
-            let range = k * per_cell..(k + 1) * per_cell;
-            let (points, old) = (&self.points[range.clone()], &self.old[range]);
-            let view = CellView {
-                shapes: &self.shapes,
-                points,
-                old,
-                nodes,
-            };
-            for g in 0..per_cell {
-                let (_, d_eps) = view.strain::<H>(g, d_u);
+        for k in 0..self.cells.count() {
+            self.cells.strain(k, d_u, &mut d_eps[..count]);
+            for (g, d_eps) in d_eps[..count].iter().enumerate() {
+                let point = k * count + g;
+                let old = &self.old[point];
                 // ΔV leaves out the linear part σ₀·Δε, [48]: it is what equilibrium held before.
-                let linear = self.law.stress(&old[g]).dot(&d_eps);
-                sum += points[g].weight * (self.law.potential(&old[g], &d_eps) + linear);
+                let linear = self.law.stress(old).dot(d_eps);
+                sum += self.cells.weight(point) * (self.law.potential(old, d_eps) + linear);
             }
         }
         sum
@@ -361,12 +262,13 @@ where
 
     fn energy(&self) -> BlockEnergy {
         let mut sum = BlockEnergy::default();
-        for ((point, old), new) in self.points.iter().zip(&self.old).zip(&self.new) {
-            sum.stored += point.weight * self.law.stored_energy(new);
-            sum.dissipated += point.weight * self.law.dissipation(old, new);
-            sum.volume += point.weight;
+        for (point, (old, new)) in self.old.iter().zip(&self.new).enumerate() {
+            let weight = self.cells.weight(point);
+            sum.stored += weight * self.law.stored_energy(new);
+            sum.dissipated += weight * self.law.dissipation(old, new);
+            sum.volume += weight;
             if self.law.equivalent_plastic_strain(new) > self.law.equivalent_plastic_strain(old) {
-                sum.plastic_volume += point.weight;
+                sum.plastic_volume += weight;
             }
         }
         sum
@@ -377,19 +279,14 @@ where
     }
 
     fn points(&self) -> Vec<PointState<D>> {
-        let per_cell = self.shapes.len();
-        let state = |(k, (point, state)): (usize, (&Point<D, N>, &L::State))| PointState {
-            cell: self.cells[k / per_cell],
-            position: point.position,
-            weight: point.weight,
+        let count = self.cells.points_per_cell();
+        let state = |(point, state): (usize, &L::State)| PointState {
+            cell: self.members[point / count],
+            position: self.cells.position(point),
+            weight: self.cells.weight(point),
             stress: self.law.stress(state),
             plastic_strain: self.law.equivalent_plastic_strain(state),
         };
-        self.points
-            .iter()
-            .zip(&self.old)
-            .enumerate()
-            .map(state)
-            .collect()
+        self.old.iter().enumerate().map(state).collect()
     }
 }

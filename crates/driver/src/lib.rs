@@ -28,6 +28,7 @@
 //! ```
 
 mod block;
+mod cells;
 mod cholesky;
 mod driver;
 mod error;
@@ -42,6 +43,7 @@ mod report;
 mod system;
 
 pub use block::{Block, BlockEnergy, CellResult, PointState, SolidBlock, Stiffness};
+pub use cells::Cells;
 pub use driver::{Driver, Nesting, Settings};
 pub use error::{Imbalance, ModelError, StepError};
 pub use load::{Axis, Loading, Step};

@@ -2,102 +2,98 @@
 
 use crate::ModelError;
 use crate::block::{Block, SolidBlock};
+use crate::cells::{Cells, ElementCells};
 use crate::interface::{ContactPoint, Tool};
 use moreau_contact::Obstacle;
 use moreau_laws::{Coulomb, IncrementalPotential};
 use moreau_mesh::{
-    Axisymmetric, CellKind, Facet, Hex8, Hypothesis, Integration, Mesh, PlaneStrain, Quad4, Quad8,
-    Quad9, Share, Solid, Tet4, Tri3, Tri6,
+    Axisymmetric, CellKind, Element, Facet, Hex8, Hypothesis, Integration, Mesh, PlaneStrain,
+    Quad4, Quad8, Quad9, Share, Solid, Tet4, Tri3, Tri6,
 };
 use std::collections::BTreeMap;
 
 /// A hypothesis together with the elements that it can be used with.
 pub trait Analysis<const D: usize>: Hypothesis<D> {
-    /// A block of cells of one kind; `None` if the hypothesis has no such cells.
-    fn block<L: IncrementalPotential>(
+    /// Cells of one kind; `None` if the hypothesis has no such cells.
+    fn cells(
         &self,
         mesh: &Mesh<D>,
         kind: CellKind,
-        cells: Vec<usize>,
-        law: L,
+        cells: &[usize],
         integration: Integration,
-    ) -> Option<Box<dyn Block<D>>>;
+    ) -> Option<Box<dyn Cells<D>>>;
 }
 
-fn plane<H: Hypothesis<2>, L: IncrementalPotential>(
+fn cells<E, H, const D: usize, const N: usize>(
     hypothesis: &H,
+    mesh: &Mesh<D>,
+    cells: &[usize],
+    integration: Integration,
+) -> Box<dyn Cells<D>>
+where
+    E: Element<D, N>,
+    H: Hypothesis<D>,
+{
+    Box::new(ElementCells::<E, H, D, N>::new(
+        mesh,
+        cells,
+        hypothesis,
+        integration,
+    ))
+}
+
+/// The elements of the plane.
+fn plane<H: Hypothesis<2>>(
+    h: &H,
     mesh: &Mesh<2>,
     kind: CellKind,
-    cells: Vec<usize>,
-    law: L,
+    of: &[usize],
     rule: Integration,
-) -> Option<Box<dyn Block<2>>> {
+) -> Option<Box<dyn Cells<2>>> {
     Some(match kind {
-        CellKind::Tri3 => Box::new(SolidBlock::<Tri3, H, L, 2, 3>::new(
-            mesh, cells, hypothesis, law, rule,
-        )),
-        CellKind::Tri6 => Box::new(SolidBlock::<Tri6, H, L, 2, 6>::new(
-            mesh, cells, hypothesis, law, rule,
-        )),
-        CellKind::Quad4 => Box::new(SolidBlock::<Quad4, H, L, 2, 4>::new(
-            mesh, cells, hypothesis, law, rule,
-        )),
-        CellKind::Quad8 => Box::new(SolidBlock::<Quad8, H, L, 2, 8>::new(
-            mesh, cells, hypothesis, law, rule,
-        )),
-        CellKind::Quad9 => Box::new(SolidBlock::<Quad9, H, L, 2, 9>::new(
-            mesh, cells, hypothesis, law, rule,
-        )),
+        CellKind::Tri3 => cells::<Tri3, H, 2, 3>(h, mesh, of, rule),
+        CellKind::Tri6 => cells::<Tri6, H, 2, 6>(h, mesh, of, rule),
+        CellKind::Quad4 => cells::<Quad4, H, 2, 4>(h, mesh, of, rule),
+        CellKind::Quad8 => cells::<Quad8, H, 2, 8>(h, mesh, of, rule),
+        CellKind::Quad9 => cells::<Quad9, H, 2, 9>(h, mesh, of, rule),
         CellKind::Tet4 | CellKind::Hex8 => return None,
     })
 }
 
-impl Analysis<2> for PlaneStrain {
-    fn block<L: IncrementalPotential>(
-        &self,
-        mesh: &Mesh<2>,
-        kind: CellKind,
-        cells: Vec<usize>,
-        law: L,
-        rule: Integration,
-    ) -> Option<Box<dyn Block<2>>> {
-        plane(self, mesh, kind, cells, law, rule)
-    }
+/// The elements of space.
+fn space<H: Hypothesis<3>>(
+    h: &H,
+    mesh: &Mesh<3>,
+    kind: CellKind,
+    of: &[usize],
+    rule: Integration,
+) -> Option<Box<dyn Cells<3>>> {
+    Some(match kind {
+        CellKind::Tet4 => cells::<Tet4, H, 3, 4>(h, mesh, of, rule),
+        CellKind::Hex8 => cells::<Hex8, H, 3, 8>(h, mesh, of, rule),
+        _ => return None,
+    })
 }
 
-impl Analysis<2> for Axisymmetric {
-    fn block<L: IncrementalPotential>(
-        &self,
-        mesh: &Mesh<2>,
-        kind: CellKind,
-        cells: Vec<usize>,
-        law: L,
-        rule: Integration,
-    ) -> Option<Box<dyn Block<2>>> {
-        plane(self, mesh, kind, cells, law, rule)
-    }
+macro_rules! analysis {
+    ($hypothesis:ty, $dimension:literal, $elements:ident) => {
+        impl Analysis<$dimension> for $hypothesis {
+            fn cells(
+                &self,
+                mesh: &Mesh<$dimension>,
+                kind: CellKind,
+                cells: &[usize],
+                integration: Integration,
+            ) -> Option<Box<dyn Cells<$dimension>>> {
+                $elements(self, mesh, kind, cells, integration)
+            }
+        }
+    };
 }
 
-impl Analysis<3> for Solid {
-    fn block<L: IncrementalPotential>(
-        &self,
-        mesh: &Mesh<3>,
-        kind: CellKind,
-        cells: Vec<usize>,
-        law: L,
-        rule: Integration,
-    ) -> Option<Box<dyn Block<3>>> {
-        Some(match kind {
-            CellKind::Tet4 => Box::new(SolidBlock::<Tet4, Self, L, 3, 4>::new(
-                mesh, cells, self, law, rule,
-            )),
-            CellKind::Hex8 => Box::new(SolidBlock::<Hex8, Self, L, 3, 8>::new(
-                mesh, cells, self, law, rule,
-            )),
-            _ => return None,
-        })
-    }
-}
+analysis!(PlaneStrain, 2, plane);
+analysis!(Axisymmetric, 2, plane);
+analysis!(Solid, 3, space);
 
 /// What the driver still asks of the hypothesis once the blocks are built.
 pub(crate) trait Measure<const D: usize>: Send + Sync {
@@ -173,11 +169,12 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             by_kind.entry(self.mesh.kind(cell)).or_default().push(cell);
         }
         for (kind, cells) in by_kind {
+            let own = self.hypothesis.cells(&self.mesh, kind, &cells, integration);
             // A mesh of dimension D has no cells of another dimension.
-            let block = self
-                .hypothesis
-                .block(&self.mesh, kind, cells, law.clone(), integration);
-            self.blocks.extend(block);
+            if let Some(own) = own {
+                let block = SolidBlock::new(cells, own, law.clone());
+                self.blocks.push(Box::new(block));
+            }
         }
         Ok(self)
     }

@@ -1,0 +1,4 @@
+//! Contracts of the driver's public items.
+
+mod block;
+mod steps;
