@@ -26,16 +26,19 @@ pub type Sym4 = SMatrix<f64, 6, 6>;
 const INDEX: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
 
 /// The unit tensor δ.
+#[inline]
 pub fn identity() -> Sym2 {
     Sym2::from([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 }
 
 /// tr a = a : δ.
+#[inline]
 pub fn trace(a: &Sym2) -> f64 {
     a[0] + a[1] + a[2]
 }
 
 /// Deviator a − ⅓ tr(a) δ.
+#[inline]
 pub fn deviator(a: &Sym2) -> Sym2 {
     let mean = trace(a) / 3.0;
     let mut s = *a;
@@ -56,11 +59,13 @@ pub fn equivalent_strain(e: &Sym2) -> f64 {
 }
 
 /// The projector on spherical tensors, ⅓ δ ⊗ δ.
+#[inline]
 pub fn spherical_projector() -> Sym4 {
     identity() * identity().transpose() / 3.0
 }
 
 /// The projector on deviators, 1 − ⅓ δ ⊗ δ.
+#[inline]
 pub fn deviatoric_projector() -> Sym4 {
     Sym4::identity() - spherical_projector()
 }

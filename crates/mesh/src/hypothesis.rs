@@ -56,6 +56,7 @@ impl Default for PlaneStrain {
 }
 
 impl Hypothesis<2> for PlaneStrain {
+    #[inline]
     fn strain_operator(_: f64, grad: &[f64; 2], _: &[f64; 2]) -> SMatrix<f64, 6, 2> {
         in_plane(grad)
     }
@@ -78,6 +79,7 @@ impl Hypothesis<2> for PlaneStrain {
 pub struct Axisymmetric;
 
 impl Hypothesis<2> for Axisymmetric {
+    #[inline]
     fn strain_operator(n: f64, grad: &[f64; 2], &[r, _]: &[f64; 2]) -> SMatrix<f64, 6, 2> {
         let mut b = in_plane(grad);
         b[(2, 0)] = n / r;
@@ -99,6 +101,7 @@ impl Hypothesis<2> for Axisymmetric {
 pub struct Solid;
 
 impl Hypothesis<3> for Solid {
+    #[inline]
     fn strain_operator(_: f64, &[x, y, z]: &[f64; 3], _: &[f64; 3]) -> SMatrix<f64, 6, 3> {
         let [p, q, r] = [x, y, z].map(|g| FRAC_1_SQRT_2 * g);
         SMatrix::from_row_slice(&[
@@ -129,6 +132,7 @@ impl Hypothesis<3> for Solid {
 }
 
 /// The rows 11, 22 and √2·12 that plane strain and axial symmetry share.
+#[inline]
 fn in_plane(&[x, y]: &[f64; 2]) -> SMatrix<f64, 6, 2> {
     let mut b = SMatrix::zeros();
     b[(0, 0)] = x;
