@@ -7,6 +7,7 @@ use crate::load::{Condition, Loading, Step, axis_letter};
 use crate::model::{Analysis, ContactName, Measure, Model};
 use crate::report::{ContactRecord, Energies, StepReport};
 use crate::system::System;
+use crate::timings::Timings;
 use moreau_contact::{ContactSolution, ContactSolver, SemismoothNewton};
 use moreau_laws::{Local, Status};
 use moreau_mesh::Mesh;
@@ -151,6 +152,13 @@ impl<const D: usize> Driver<D> {
     /// Unknowns of the current step; 0 before the first.
     pub fn unknowns(&self) -> usize {
         self.system.as_ref().map_or(0, System::size)
+    }
+
+    /// Where the time went so far.
+    pub fn timings(&self) -> Timings {
+        self.system
+            .as_ref()
+            .map_or_else(Timings::default, |s| s.timings)
     }
 
     /// Contact points, in the order of the contacts and of the nodes in each.
@@ -416,6 +424,7 @@ impl<const D: usize> Driver<D> {
         self.check_rigid_motions(&fixed)?;
         let interface: Vec<usize> = self.points.iter().map(|p| p.node).collect();
         let mut system = System::new(&self.mesh, &self.blocks, fixed, &interface)?;
+        system.timings += self.timings();
         let zero = vec![0.0; dofs];
         system.assemble(&mut self.blocks, &zero, &zero, Stiffness::Blended(1.0));
         system.scale(self.settings.nesting == Nesting::Inside);

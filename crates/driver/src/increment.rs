@@ -12,6 +12,7 @@ use crate::system::{Assembly, System};
 use moreau_contact::{Certificate, ContactError, ContactSolution};
 use moreau_laws::{Local, Status};
 use nalgebra::SVector;
+use std::time::Instant;
 
 /// What an increment has counted.
 #[derive(Debug, Default)]
@@ -129,6 +130,7 @@ impl<const D: usize> Driver<D> {
             let iteration = counts.newton;
             let contact = |source: ContactError| StepError::Contact { iteration, source };
             let previous = self.previous_forces(&kinematics);
+            let clock = Instant::now();
             let condensation =
                 Condensation::new(system, &condensed, &self.points, &kinematics, previous)
                     .map_err(contact)?;
@@ -137,6 +139,7 @@ impl<const D: usize> Driver<D> {
                 .contact
                 .solve(&condensation.problem, solution.as_ref())
                 .map_err(contact)?;
+            system.timings.contact += clock.elapsed();
             counts.contact += solved.iterations;
             let complete = missing.iter().all(|&m| m == 0.0);
             let mut step = std::mem::replace(&mut missing, vec![0.0; now.d_u.len()]);

@@ -41,6 +41,7 @@ mod nested;
 mod ordering;
 mod report;
 mod system;
+mod timings;
 
 pub use block::{Block, BlockEnergy, CellResult, PointState, SolidBlock, Stiffness};
 pub use cells::Cells;
@@ -49,3 +50,4 @@ pub use error::{Imbalance, ModelError, StepError};
 pub use load::{Axis, Loading, Step};
 pub use model::{Analysis, Model};
 pub use report::{ContactRecord, Energies, StepReport};
+pub use timings::Timings;

@@ -5,8 +5,10 @@ use crate::ModelError;
 use crate::block::{Block, Stiffness};
 use crate::cholesky::{Cholesky, NotPositiveDefinite, Pattern};
 use crate::ordering::nested_dissection;
+use crate::timings::{Timings, timed};
 use moreau_mesh::Mesh;
 use nalgebra::{DMatrix, DVector};
+use std::time::Instant;
 
 /// Marks a degree of freedom whose displacement is prescribed.
 const FIXED: u32 = u32::MAX;
@@ -34,6 +36,7 @@ pub(crate) struct System {
     elastic_factor: bool,
     /// Factorisations done since the system was set up.
     pub(crate) factorisations: usize,
+    pub(crate) timings: Timings,
 }
 
 /// Where the forces and stiffness of the cells of a block go.
@@ -78,6 +81,7 @@ impl System {
         fixed: impl Fn(usize) -> bool,
         interface_nodes: &[usize],
     ) -> Result<Self, ModelError> {
+        let clock = Instant::now();
         let nodes = mesh.nodes().len();
         let adjacency = adjacency(mesh);
         let neighbours = |a: usize| &adjacency.entries[adjacency.start[a]..adjacency.start[a + 1]];
@@ -134,6 +138,10 @@ impl System {
             cholesky,
             elastic_factor: false,
             factorisations: 0,
+            timings: Timings {
+                ordering: clock.elapsed(),
+                ..Timings::default()
+            },
         })
     }
 
@@ -175,6 +183,7 @@ impl System {
         missing: &[f64],
         stiffness: Stiffness,
     ) -> Assembly {
+        let clock = Instant::now();
         let mut internal = vec![0.0; d_u.len()];
         let mut coupling = vec![0.0; d_u.len()];
         let mut flows = false;
@@ -214,6 +223,7 @@ impl System {
                 }
             });
         }
+        self.timings.assembly += clock.elapsed();
         Assembly {
             internal,
             coupling,
@@ -256,9 +266,10 @@ impl System {
         }
         self.elastic_factor = false;
         self.factorisations += 1;
-        self.cholesky
-            .factorise(&self.values)
-            .map_err(|NotPositiveDefinite { row }| self.dofs[row])?;
+        timed(&mut self.timings.factorisation, || {
+            self.cholesky.factorise(&self.values)
+        })
+        .map_err(|NotPositiveDefinite { row }| self.dofs[row])?;
         self.elastic_factor = elastic;
         Ok(())
     }
@@ -266,7 +277,10 @@ impl System {
     /// Condenses the factorised system under a load given at every degree of freedom \[N\].
     pub(crate) fn condense(&mut self, load: &[f64]) -> Condensed {
         let mut forward: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
-        self.cholesky.forward(&mut forward);
+        timed(&mut self.timings.solution, || {
+            self.cholesky.forward(&mut forward)
+        });
+        let clock = Instant::now();
         let first = self.size() - self.interface;
         let factor = self.cholesky.trailing(self.interface);
         let mut stiffness = &factor * factor.transpose();
@@ -274,6 +288,7 @@ impl System {
             stiffness[(i, i)] -= self.shift;
         }
         let load = &factor * DVector::from_column_slice(&forward[first..]);
+        self.timings.contact += clock.elapsed();
         Condensed {
             factor,
             stiffness,
@@ -286,8 +301,10 @@ impl System {
     /// prescribed displacements in `d_u` are left as they are.
     pub(crate) fn solve(&mut self, load: &[f64], d_u: &mut [f64]) {
         let mut solution: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
-        self.cholesky.forward(&mut solution);
-        self.cholesky.backward(&mut solution);
+        timed(&mut self.timings.solution, || {
+            self.cholesky.forward(&mut solution);
+            self.cholesky.backward(&mut solution);
+        });
         for (&dof, u) in self.dofs.iter().zip(solution) {
             d_u[dof] = u;
         }
@@ -301,7 +318,9 @@ impl System {
         // (K + σE) u = f + t + σx has L⁻¹ of its right-hand side equal to L_ccᵀ x down here.
         let tail = condensed.factor.tr_mul(x);
         solution[first..].copy_from_slice(tail.as_slice());
-        self.cholesky.backward(&mut solution);
+        timed(&mut self.timings.solution, || {
+            self.cholesky.backward(&mut solution)
+        });
         for (&dof, u) in self.dofs.iter().zip(solution) {
             d_u[dof] = u;
         }

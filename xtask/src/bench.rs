@@ -1,0 +1,274 @@
+//! `cargo xtask bench`: the punched block on meshes from 20×8 to 640×256 cells, by every contact
+//! method: where the time goes and what it takes in memory.
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use moreau::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
+use moreau::driver::Settings;
+use moreau::mesh::Integration;
+use serde::Serialize;
+use verification::paper;
+
+/// Arguments of `bench`.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Cells along and across the block, as 160x64; may be given again [default: 20x8 to 160x64]
+    #[arg(long = "size", value_name = "NxM", value_parser = size)]
+    sizes: Vec<[usize; 2]>,
+    /// Contact methods; may be given again [default: exact and penalty, and all on 20x8]
+    #[arg(long = "method", value_name = "METHOD")]
+    methods: Vec<Method>,
+    /// Runs of each; the fastest counts
+    #[arg(long, default_value_t = 1)]
+    runs: usize,
+    /// File for the figures as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// How the contact problem is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+enum Method {
+    /// Semismooth Newton, the law itself
+    Exact,
+    /// Regularised law, 1e6 N/mm
+    Penalty,
+    /// Augmented Lagrangian
+    Uzawa,
+    /// Block Gauss–Seidel
+    GaussSeidel,
+}
+
+const ALL: [Method; 4] = [
+    Method::Exact,
+    Method::Penalty,
+    Method::Uzawa,
+    Method::GaussSeidel,
+];
+
+/// What one run took; times in seconds.
+#[derive(Debug, Clone, Serialize)]
+struct Figures {
+    cells: [usize; 2],
+    method: Method,
+    unknowns: usize,
+    contacts: usize,
+    increments: usize,
+    newton_iterations: usize,
+    contact_iterations: usize,
+    factorisations: usize,
+    seconds: f64,
+    assembly: f64,
+    ordering: f64,
+    factorisation: f64,
+    contact: f64,
+    solution: f64,
+    rest: f64,
+    /// Time of one numeric factorisation, the unit in which machines can be compared.
+    one_factorisation: f64,
+    /// Time of one Newton iteration over that of one factorisation.
+    iteration_over_factorisation: f64,
+    /// Largest resident memory of the process \[MB\], where the system tells it.
+    peak_memory: Option<f64>,
+    /// Bipotential gap of the run over its external work.
+    relative_gap: f64,
+    punch_load: f64,
+}
+
+/// Total travel of the punch \[mm\], and in how many increments.
+const TRAVEL: f64 = 0.2;
+const INCREMENTS: usize = 10;
+
+fn size(text: &str) -> Result<[usize; 2], String> {
+    let wrong = || format!("\"{text}\" is no size: expected cells as 160x64");
+    let (n, m) = text.split_once(['x', '×']).ok_or_else(wrong)?;
+    let number = |t: &str| t.trim().parse().ok().filter(|n| *n > 0);
+    match (number(n), number(m)) {
+        (Some(n), Some(m)) => Ok([n, m]),
+        _ => Err(wrong()),
+    }
+}
+
+/// Runs the task.
+pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
+    let sizes = match args.sizes.as_slice() {
+        [] => vec![[20, 8], [40, 16], [80, 32], [160, 64]],
+        given => given.to_vec(),
+    };
+    println!("{}", header());
+    let mut all: Vec<Figures> = Vec::new();
+    for size in sizes {
+        let methods = match args.methods.as_slice() {
+            // The first-order methods take a hundred thousand sweeps where the block collapses.
+            [] if size[0] <= 20 => &ALL[..],
+            [] => &ALL[..2],
+            given => given,
+        };
+        for &method in methods {
+            let mut best: Option<Figures> = None;
+            for _ in 0..args.runs.max(1) {
+                let new = measure(size, method)?;
+                if best.as_ref().is_none_or(|b| new.seconds < b.seconds) {
+                    best = Some(new);
+                }
+            }
+            if let Some(figures) = best {
+                println!("{}", row(&figures));
+                all.push(figures);
+            }
+        }
+    }
+    if let Some(file) = &args.json {
+        std::fs::write(file, serde_json::to_string_pretty(&all)?)?;
+    }
+    Ok(true)
+}
+
+fn solver(method: Method) -> Result<Box<dyn ContactSolver<2>>, Box<dyn Error>> {
+    Ok(match method {
+        Method::Exact => Box::new(SemismoothNewton::default()),
+        Method::Penalty => Box::new(Penalty::new(1e6, 1e6)?),
+        Method::Uzawa => Box::new(Uzawa::default()),
+        Method::GaussSeidel => Box::new(GaussSeidel::default()),
+    })
+}
+
+fn measure(cells: [usize; 2], method: Method) -> Result<Figures, Box<dyn Error>> {
+    forget_peak();
+    let settings = Settings {
+        contact: solver(method)?,
+        ..Settings::default()
+    };
+    let clock = Instant::now();
+    let mut driver = paper::block(cells, 0.1, Integration::Reduced, settings)?;
+    let reports = driver.run(&paper::block_step(TRAVEL), INCREMENTS, |_, _| {})?;
+    let seconds = clock.elapsed().as_secs_f64();
+    let sum = |f: fn(&moreau::driver::StepReport) -> usize| reports.iter().map(f).sum::<usize>();
+    let timings = driver.timings();
+    let (newton, factorisations) = (sum(|r| r.newton_iterations), sum(|r| r.factorisations));
+    let one = timings.factorisation.as_secs_f64() / factorisations.max(1) as f64;
+    let gap: f64 = reports.iter().map(|r| r.certificate.bipotential_gap).sum();
+    let once = timings.ordering.as_secs_f64();
+    Ok(Figures {
+        cells,
+        method,
+        unknowns: driver.unknowns(),
+        contacts: driver.contacts().len(),
+        increments: reports.len(),
+        newton_iterations: newton,
+        contact_iterations: sum(|r| r.contact_iterations),
+        factorisations,
+        seconds,
+        assembly: timings.assembly.as_secs_f64(),
+        ordering: once,
+        factorisation: timings.factorisation.as_secs_f64(),
+        contact: timings.contact.as_secs_f64(),
+        solution: timings.solution.as_secs_f64(),
+        rest: seconds - timings.sum().as_secs_f64(),
+        one_factorisation: one,
+        iteration_over_factorisation: (seconds - once) / newton.max(1) as f64 / one,
+        peak_memory: peak(),
+        relative_gap: gap / driver.energies().external_work,
+        punch_load: paper::block_punch_load(&driver)?,
+    })
+}
+
+fn header() -> String {
+    format!(
+        "{:>8} {:>12} {:>9} {:>8} {:>7} {:>8} {:>6} {:>9} │ {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} │ \
+         {:>9} {:>7} {:>8} {:>9}",
+        "cells",
+        "method",
+        "unknowns",
+        "contacts",
+        "Newton",
+        "contact",
+        "fact.",
+        "time s",
+        "assembly",
+        "ordering",
+        "fact.",
+        "contact",
+        "solution",
+        "rest",
+        "1 fact. s",
+        "it/fact",
+        "peak MB",
+        "gap/work"
+    )
+}
+
+fn row(f: &Figures) -> String {
+    let method = serde_json::to_value(f.method).ok();
+    let method = method.as_ref().and_then(|m| m.as_str()).unwrap_or("");
+    let part = |seconds: f64| format!("{:.1} %", 100.0 * seconds / f.seconds);
+    format!(
+        "{:>8} {:>12} {:>9} {:>8} {:>7} {:>8} {:>6} {:>9.3} │ {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} │ \
+         {:>9.5} {:>7.2} {:>8} {:>9.1e}",
+        format!("{}x{}", f.cells[0], f.cells[1]),
+        method,
+        f.unknowns,
+        f.contacts,
+        f.newton_iterations,
+        f.contact_iterations,
+        f.factorisations,
+        f.seconds,
+        part(f.assembly),
+        part(f.ordering),
+        part(f.factorisation),
+        part(f.contact),
+        part(f.solution),
+        part(f.rest),
+        f.one_factorisation,
+        f.iteration_over_factorisation,
+        f.peak_memory.map_or("–".into(), |m| format!("{m:.0}")),
+        f.relative_gap
+    )
+}
+
+/// Largest resident memory so far \[MB\], from the process table of Linux.
+fn peak() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    let kilobytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kilobytes / 1024.0)
+}
+
+/// Starts the largest resident memory anew, where the system allows it.
+fn forget_peak() {
+    // Without it the figure is that of the largest run so far, which is still an upper bound.
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_and_wrong_ones_refused() {
+        assert_eq!(size("160x64"), Ok([160, 64]));
+        for wrong in ["160", "0x4", "ax2", ""] {
+            assert!(size(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn parts_of_a_run_add_up_and_methods_agree() -> Result<(), Box<dyn Error>> {
+        let exact = measure([10, 2], Method::Exact)?;
+        let parts = exact.assembly
+            + exact.ordering
+            + exact.factorisation
+            + exact.contact
+            + exact.solution
+            + exact.rest;
+        assert!((parts - exact.seconds).abs() < 1e-9 * exact.seconds);
+        assert!(exact.factorisations > 0 && exact.rest >= 0.0);
+        assert!(exact.relative_gap.abs() < 1e-10);
+        let uzawa = measure([10, 2], Method::Uzawa)?;
+        assert!((exact.punch_load / uzawa.punch_load - 1.0).abs() < 1e-7);
+        Ok(())
+    }
+}
