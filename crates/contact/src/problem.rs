@@ -1,7 +1,7 @@
 //! The condensed contact problem, its residual and its certificate; not how it is solved.
 
 use crate::ContactError;
-use moreau_laws::{Bipotential, Coulomb, Local, Status};
+use moreau_laws::{Friction, Local, Status};
 use nalgebra::{DMatrix, DVector};
 
 /// The contact problem of one linearised increment, in the contacts' local frames:
@@ -19,7 +19,7 @@ pub struct ContactProblem<const D: usize> {
     stiffness: DMatrix<f64>,
     load: DVector<f64>,
     origin: Vec<Local<D>>,
-    friction: Vec<Coulomb>,
+    friction: Vec<Friction>,
     previous: Vec<Local<D>>,
 }
 
@@ -35,18 +35,19 @@ pub struct Delassus<const D: usize> {
 /// How far a pair (u, t) is from the contact law: the bipotential gap and what it cannot see.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Certificate {
-    /// Σ b_c(−u, t) + t·u ≥ 0 over the contacts, \[38\] and \[39\]: zero exactly at the law \[N·mm\].
+    /// Σ b(−u, t) + t·u ≥ 0 over the contacts, of Coulomb's law \[38\] and \[39\]: zero exactly at
+    /// the law \[N·mm\].
     pub bipotential_gap: f64,
     /// Largest penetration ⟨−u_n⟩ \[mm\], where b_c = +∞; the gap above is taken at max(u_n, 0).
     pub penetration: f64,
-    /// Largest distance of a force to the Coulomb cone \[N\], where b_c = +∞; the gap above is
+    /// Largest distance of a force to the admissible ones \[N\], the Coulomb cone, where b_c = +∞; the gap above is
     /// taken at its projection.
     pub excess_force: f64,
 }
 
 impl Certificate {
-    /// The certificate of displacements u and forces t under Coulomb's law.
-    pub fn new<const D: usize>(friction: &[Coulomb], u: &[Local<D>], t: &[Local<D>]) -> Self {
+    /// The certificate of displacements u and forces t under the laws of friction.
+    pub fn new<const D: usize>(friction: &[Friction], u: &[Local<D>], t: &[Local<D>]) -> Self {
         let mut certificate = Self::default();
         for ((law, u), t) in friction.iter().zip(u).zip(t) {
             let admissible = law.project(t);
@@ -69,7 +70,7 @@ impl<const D: usize> ContactProblem<D> {
         stiffness: DMatrix<f64>,
         load: DVector<f64>,
         origin: Vec<Local<D>>,
-        friction: Vec<Coulomb>,
+        friction: Vec<impl Into<Friction>>,
         previous: Vec<Local<D>>,
     ) -> Result<Self, ContactError> {
         let contacts = friction.len();
@@ -103,7 +104,7 @@ impl<const D: usize> ContactProblem<D> {
             stiffness,
             load,
             origin,
-            friction,
+            friction: friction.into_iter().map(Into::into).collect(),
             previous,
         })
     }
@@ -115,7 +116,7 @@ impl<const D: usize> ContactProblem<D> {
     pub fn from_delassus(
         operator: DMatrix<f64>,
         free: &[Local<D>],
-        friction: Vec<Coulomb>,
+        friction: Vec<impl Into<Friction>>,
     ) -> Result<Self, ContactError> {
         let size = D * friction.len();
         if operator.shape() != (size, size) {
@@ -147,7 +148,7 @@ impl<const D: usize> ContactProblem<D> {
     }
 
     /// The friction law of every contact.
-    pub fn friction(&self) -> &[Coulomb] {
+    pub fn friction(&self) -> &[Friction] {
         &self.friction
     }
 
@@ -273,9 +274,10 @@ fn inverse(a: DMatrix<f64>, solver: &'static str) -> Result<DMatrix<f64>, Contac
 #[cfg(test)]
 mod tests {
     use super::*;
+    use moreau_laws::Coulomb;
 
-    fn coulomb(mu: f64) -> Coulomb {
-        Coulomb::new(mu).expect("valid")
+    fn coulomb(mu: f64) -> Friction {
+        Coulomb::new(mu).expect("valid").into()
     }
 
     #[test]

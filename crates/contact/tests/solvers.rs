@@ -4,7 +4,10 @@ use moreau_contact::{
     ContactError, ContactProblem, ContactSolution, ContactSolver, GaussSeidel, Penalty,
     SemismoothNewton, Uzawa,
 };
-use moreau_laws::{Coulomb, Local, RegularisedCoulomb, Status};
+use moreau_laws::{
+    AnisotropicCoulomb, Coulomb, Friction, LimitedCoulomb, Local, RegularisedCoulomb, Status,
+    Tresca,
+};
 use nalgebra::{DMatrix, DVector, Matrix3};
 use proptest::prelude::*;
 
@@ -17,8 +20,22 @@ fn exact<const D: usize>() -> Vec<Box<dyn ContactSolver<D>>> {
 }
 
 fn problem<const D: usize>(w: DMatrix<f64>, q: &[Local<D>], mu: f64) -> ContactProblem<D> {
-    let law = Coulomb::new(mu).expect("valid friction");
+    under(w, q, Coulomb::new(mu).expect("valid friction").into())
+}
+
+fn under<const D: usize>(w: DMatrix<f64>, q: &[Local<D>], law: Friction) -> ContactProblem<D> {
     ContactProblem::from_delassus(w, q, vec![law; q.len()]).expect("valid problem")
+}
+
+/// The laws but Coulomb's, with friction and limit of the size of the problems' forces.
+fn other_laws(mu: f64, limit: f64) -> [Friction; 3] {
+    [
+        Tresca::new(limit).expect("valid limit").into(),
+        LimitedCoulomb::new(mu, limit).expect("valid data").into(),
+        AnisotropicCoulomb::new(mu + 0.01, 0.5 * mu + 0.01)
+            .expect("valid friction")
+            .into(),
+    ]
 }
 
 fn assert_solves<const D: usize>(problem: &ContactProblem<D>, solution: &ContactSolution<D>) {
@@ -122,17 +139,17 @@ fn definite(n: usize, entries: &[f64]) -> DMatrix<f64> {
     &a * a.transpose() + DMatrix::identity(n, n) * 0.05
 }
 
-fn agree<const D: usize>(w: DMatrix<f64>, q: &[f64], mu: f64) -> Result<(), TestCaseError> {
+fn agree<const D: usize>(w: DMatrix<f64>, q: &[f64], law: Friction) -> Result<(), TestCaseError> {
     let contacts = w.nrows() / D;
     let free: Vec<_> = (0..contacts)
         .map(|i| Local::<D>::from_fn(|k, _| q[(D * i + k) % q.len()]))
         .collect();
-    let problem = problem(w, &free, mu);
+    let problem = under(w, &free, law);
     let mut solutions = Vec::new();
     for solver in exact() {
         let solution = solver
             .solve(&problem, None)
-            .map_err(|e| TestCaseError::fail(format!("{solver:?}: {e}")))?;
+            .map_err(|e| TestCaseError::fail(format!("{solver:?}, {law:?}: {e}")))?;
         assert_solves(&problem, &solution);
         let certificate = solution.certificate(&problem);
         prop_assert!(
@@ -144,8 +161,15 @@ fn agree<const D: usize>(w: DMatrix<f64>, q: &[f64], mu: f64) -> Result<(), Test
     let scale = problem.force_scale(&solutions[0].force);
     for s in &solutions[1..] {
         for (a, b) in solutions[0].force.iter().zip(&s.force) {
-            prop_assert!((a - b).norm() <= 1e-7 * scale, "{} against {}", a, b);
+            prop_assert!((a - b).norm() <= 1e-8 * scale, "{} against {}", a, b);
         }
+    }
+    let stiff = Penalty::new(1e11, 1e11).expect("valid");
+    let regularised = stiff
+        .solve(&problem, None)
+        .map_err(|e| TestCaseError::fail(format!("{law:?}: {e}")))?;
+    for (a, b) in solutions[0].force.iter().zip(&regularised.force) {
+        prop_assert!((a - b).norm() <= 1e-8 * scale, "{} against {}", a, b);
     }
     Ok(())
 }
@@ -161,7 +185,7 @@ proptest! {
         q in prop::collection::vec(-1.0..0.4f64, 14),
         mu in 0.0..0.35f64,
     ) {
-        agree::<2>(definite(2 * contacts, &entries), &q, mu)?;
+        agree::<2>(definite(2 * contacts, &entries), &q, Coulomb::new(mu).expect("valid").into())?;
     }
 
     #[test]
@@ -171,7 +195,22 @@ proptest! {
         q in prop::collection::vec(-1.0..0.4f64, 17),
         mu in 0.0..0.35f64,
     ) {
-        agree::<3>(definite(3 * contacts, &entries), &q, mu)?;
+        agree::<3>(definite(3 * contacts, &entries), &q, Coulomb::new(mu).expect("valid").into())?;
+    }
+
+    /// The same under the other laws.
+    #[test]
+    fn exact_solvers_agree_under_every_law(
+        contacts in 1usize..5,
+        entries in prop::collection::vec(-1.0..1.0f64, 229),
+        q in prop::collection::vec(-1.0..0.4f64, 17),
+        mu in 0.0..0.35f64,
+        limit in 0.0..0.3f64,
+    ) {
+        for law in other_laws(mu, limit) {
+            agree::<2>(definite(2 * contacts, &entries), &q, law)?;
+            agree::<3>(definite(3 * contacts, &entries), &q, law)?;
+        }
     }
 
     /// At any friction the Newton method ends at a solution.

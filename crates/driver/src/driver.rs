@@ -479,7 +479,7 @@ impl<const D: usize> Driver<D> {
                     + self.displacement(point.node)
                     - self.state.loading.tools[point.tool];
                 let q = moreau_contact::frame(&self.tools[point.tool].obstacle.normal(&x));
-                let columns = if point.law.friction() > 0.0 { D } else { 1 };
+                let columns = if point.law.resists_slip() { D } else { 1 };
                 for k in 0..columns {
                     resist(point.node, &q.column(k).into_owned());
                 }

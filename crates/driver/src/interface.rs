@@ -2,7 +2,7 @@
 
 use crate::system::{Condensed, System};
 use moreau_contact::{ContactError, ContactProblem, Obstacle, frame};
-use moreau_laws::{Coulomb, Local};
+use moreau_laws::{Friction, Local};
 use moreau_mesh::NodeKind;
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
@@ -19,7 +19,8 @@ pub(crate) struct ContactPoint<const D: usize> {
     pub(crate) tool: usize,
     /// Index of the contact (surface and tool) that it belongs to.
     pub(crate) contact: usize,
-    pub(crate) law: Coulomb,
+    /// Between forces: limits of the shear are those of its share of the surface.
+    pub(crate) law: Friction,
     /// Share of the surface \[mm²\], to turn a force into a traction.
     pub(crate) area: f64,
     pub(crate) kind: NodeKind,

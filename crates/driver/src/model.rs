@@ -5,7 +5,7 @@ use crate::block::{Block, SolidBlock};
 use crate::cells::{Cells, ElementCells};
 use crate::interface::{ContactPoint, Tool};
 use moreau_contact::Obstacle;
-use moreau_laws::{Coulomb, IncrementalPotential};
+use moreau_laws::{Friction, IncrementalPotential};
 use moreau_mesh::{
     Axisymmetric, CellKind, Element, Facet, Hex8, Hypothesis, Integration, Mesh, PlaneStrain,
     Quad4, Quad8, Quad9, Share, Solid, Tet4, Tri3, Tri6,
@@ -198,11 +198,18 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         Ok(self)
     }
 
-    /// Lets the nodes of a group of facets touch a tool, with friction.
+    /// Lets the nodes of a group of facets touch a tool, with friction; limits of the shear are
+    /// tractions \[MPa\].
     ///
     /// # Errors
     /// An unknown group or tool; [`ModelError::SharedContactNode`].
-    pub fn contact(mut self, surface: &str, tool: &str, law: Coulomb) -> Result<Self, ModelError> {
+    pub fn contact(
+        mut self,
+        surface: &str,
+        tool: &str,
+        law: impl Into<Friction>,
+    ) -> Result<Self, ModelError> {
+        let law: Friction = law.into();
         let facets = self.mesh.facet_group(surface)?;
         let index = self.tool_index(tool)?;
         let shares = self.mesh.facet_shares(facets, &self.hypothesis);
@@ -219,7 +226,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 node: share.node,
                 tool: index,
                 contact: self.contacts.len(),
-                law,
+                law: law.scaled(share.area),
                 area: share.area,
                 kind: share.kind,
             });

@@ -112,7 +112,7 @@ impl<const D: usize> Driver<D> {
                 }
             }
             let corrected = (0..t.len())
-                .map(|i| law(i).project(&(t[i] - shifted[i] * alpha[i])))
+                .map(|i| law(i).correct(&u[i], &t[i], alpha[i]))
                 .collect();
             before = Some((std::mem::replace(&mut t, corrected), shifted));
         }

@@ -35,6 +35,11 @@ impl Coulomb {
         }
     }
 
+    /// From a coefficient that is known to be valid.
+    pub(crate) fn of(friction: f64) -> Self {
+        Self { friction }
+    }
+
     /// The coefficient of friction μ.
     #[inline]
     pub fn friction(&self) -> f64 {

@@ -40,6 +40,8 @@
 //! | unilateral contact | [`Signorini`] | superpotential |
 //! | contact with Tresca friction | [`Tresca`] | superpotential |
 //! | contact with Coulomb friction | [`Coulomb`], [`AnisotropicCoulomb`] | bipotential |
+//! | contact with friction limited by a shear | [`LimitedCoulomb`] | neither |
+//! | any of these, as a structure sees it | [`Friction`] | as an equation |
 //! | its penalty regularisation | [`RegularisedCoulomb`] | response |
 //! | soils | [`DruckerPrager`], [`CamClay`] | bipotential |
 //! | non-linear kinematic hardening | [`ArmstrongFrederick`] | bipotential |
@@ -58,7 +60,9 @@ mod drucker_prager;
 mod duality;
 mod elastic;
 mod error;
+mod friction;
 mod lemaitre;
+mod limited;
 mod local;
 mod regularised;
 mod signorini;
@@ -75,7 +79,9 @@ pub use drucker_prager::DruckerPrager;
 pub use duality::{Bipotential, Superpotential};
 pub use elastic::Elastic;
 pub use error::LawError;
+pub use friction::Friction;
 pub use lemaitre::{Damaging, Lemaitre};
+pub use limited::LimitedCoulomb;
 pub use local::{Local, Status};
 pub use regularised::{RegularisedCoulomb, RegularisedResponse};
 pub use signorini::Signorini;

@@ -17,7 +17,8 @@ pub struct Tresca {
 }
 
 impl Tresca {
-    /// From the limit g ≥ 0 of the tangential force \[N\].
+    /// From the limit g ≥ 0 of the shear: a force \[N\], or a traction \[MPa\] for
+    /// [`Friction::scaled`](crate::Friction::scaled).
     ///
     /// # Errors
     /// `Negative` unless g ≥ 0 is finite.
@@ -26,6 +27,38 @@ impl Tresca {
             limit: non_negative("friction limit", limit)?,
         })
     }
+
+    /// The limit g \[N\].
+    pub fn limit(&self) -> f64 {
+        self.limit
+    }
+
+    /// The orthogonal projection on the admissible forces.
+    #[inline]
+    pub fn project<const D: usize>(&self, q: &Local<D>) -> Local<D> {
+        clipped(q, self.limit)
+    }
+
+    /// The same law for forces multiplied by a factor.
+    pub(crate) fn scaled(self, factor: f64) -> Self {
+        Self {
+            limit: self.limit * factor,
+        }
+    }
+}
+
+/// (⟨q_n⟩₊, q_t clipped to the disc of that radius).
+#[inline]
+pub(crate) fn clipped<const D: usize>(q: &Local<D>, radius: f64) -> Local<D> {
+    let norm = tangential_norm(q);
+    let mut clipped = if norm <= radius {
+        *q
+    } else {
+        q * (radius / norm)
+    };
+    // Not `f64::max`, which would turn NaN into contact lost.
+    clipped[0] = if q[0] <= 0.0 { 0.0 } else { q[0] };
+    clipped
 }
 
 impl<const D: usize> Superpotential<Local<D>> for Tresca {

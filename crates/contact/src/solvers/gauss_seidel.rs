@@ -3,7 +3,7 @@
 use super::{ContactSolution, ContactSolver, Tolerance, fixed_point};
 use crate::problem::{split, stack};
 use crate::{ContactError, ContactProblem, Delassus};
-use moreau_laws::{Coulomb, Local};
+use moreau_laws::{Friction, Local};
 use nalgebra::{DVector, SMatrix};
 
 /// One contact at a time, on u = W t + q: the forces of all others are frozen, the local law is
@@ -72,18 +72,13 @@ fn sweep<const D: usize>(
     t
 }
 
-/// Exact force of a single contact u = W t + q: opens if it may, else sticks if the cone allows,
-/// else slips. Slip −u_t = λ t_t leaves one monotone scalar equation in λ ≥ 0.
-fn local<const D: usize>(w: &SMatrix<f64, D, D>, q: &Local<D>, law: &Coulomb) -> Local<D> {
-    if q[0] >= 0.0 {
-        return Local::zeros();
-    }
-    let mu = law.friction();
-    if mu == 0.0 {
-        let mut t = Local::zeros();
-        t[0] = -q[0] / w[(0, 0)];
-        return t;
-    }
+/// Exact force of a single contact u = W t + q: opens if it may, else sticks if the bound of the
+/// shear allows, else slips. Slip −u_t = λ t_t leaves one monotone scalar equation in λ ≥ 0.
+fn local<const D: usize>(w: &SMatrix<f64, D, D>, q: &Local<D>, law: &Friction) -> Local<D> {
+    // Between stretched vectors the law is isotropic.
+    let (m, law): (Local<D>, _) = (law.stretch(), law.isotropic());
+    let w = SMatrix::<f64, D, D>::from_fn(|k, l| m[k] * w[(k, l)] * m[l]);
+    let q = q.component_mul(&m);
     // Eliminate t_n from u_n = 0; what is left of W on the tangent is its Schur complement.
     let mut schur = SMatrix::<f64, D, D>::identity();
     let mut rhs = Local::<D>::zeros();
@@ -93,43 +88,60 @@ fn local<const D: usize>(w: &SMatrix<f64, D, D>, q: &Local<D>, law: &Coulomb) ->
         }
         rhs[k] = -q[k] + w[(k, 0)] * q[0] / w[(0, 0)];
     }
+    let pressed = |t: &mut Local<D>| {
+        t[0] = -(q[0] + (1..D).map(|k| w[(0, k)] * t[k]).sum::<f64>()) / w[(0, 0)];
+    };
+    let mut t = Local::zeros();
+    if law.bound(0.0) > 0.0 {
+        // Slip is resisted without pressure: open, unless friction closes the gap.
+        let mut free = w;
+        let mut pull = -q;
+        free.fill_row(0, 0.0);
+        free.fill_column(0, 0.0);
+        free[(0, 0)] = 1.0;
+        pull[0] = 0.0;
+        t = bounded((&free, &pull), (&w, &q), &law, |t| t[0] = 0.0);
+        if q[0] + (1..D).map(|k| w[(0, k)] * t[k]).sum::<f64>() < 0.0 {
+            t = bounded((&schur, &rhs), (&w, &q), &law, pressed);
+        }
+    } else if q[0] < 0.0 && law.resists_slip() {
+        t = bounded((&schur, &rhs), (&w, &q), &law, pressed);
+    } else if q[0] < 0.0 {
+        t[0] = -q[0] / w[(0, 0)];
+    }
+    t.component_mul(&m)
+}
+
+/// The force of shear (A + λ)⁻¹ b with the least λ ≥ 0 for which the law admits it, and of the
+/// pressure that follows from the shear.
+fn bounded<const D: usize>(
+    (a, b): (&SMatrix<f64, D, D>, &Local<D>),
+    (w, q): (&SMatrix<f64, D, D>, &Local<D>),
+    law: &Friction,
+    pressed: impl Fn(&mut Local<D>),
+) -> Local<D> {
     let force = |lambda: f64| -> Option<Local<D>> {
-        let mut a = schur;
+        let mut a = *a;
         for k in 1..D {
             a[(k, k)] += lambda;
         }
-        let mut t = a.try_inverse()? * rhs;
-        t[0] = -(q[0] + (1..D).map(|k| w[(0, k)] * t[k]).sum::<f64>()) / w[(0, 0)];
+        let mut t = a.try_inverse()? * b;
+        pressed(&mut t);
         Some(t)
     };
-    if D == 2 {
-        let Some(stick) = force(0.0) else {
-            return Local::zeros();
-        };
-        if stick[1].abs() <= mu * stick[0] {
-            return stick;
-        }
-        // On the edge t_t = σ μ t_n of the cone the equation u_n = 0 is linear.
-        let side = rhs[1].signum();
-        let stiffness = w[(0, 0)] + side * mu * w[(0, 1)];
-        let mut slip = Local::zeros();
-        // Without a positive stiffness the contact wedges: no slipping force exists.
-        if stiffness > 0.0 {
-            slip[0] = -q[0] / stiffness;
-            slip[1] = side * mu * slip[0];
-        }
-        return slip;
-    }
-    let excess = |t: &Local<D>| (1..D).map(|k| t[k] * t[k]).sum::<f64>().sqrt() - mu * t[0];
+    let excess = |t: &Local<D>| (1..D).map(|k| t[k] * t[k]).sum::<f64>().sqrt() - law.bound(t[0]);
     let Some(stick) = force(0.0) else {
         return Local::zeros();
     };
     if excess(&stick) <= 0.0 {
         return stick;
     }
-    // excess > 0 at λ = 0 and → μ q_n / W_nn ≤ 0 at λ = ∞: bracket the root, then bisect on a
-    // logarithmic scale with secant steps where they stay inside.
-    let mean = (1..D).map(|k| schur[(k, k)]).sum::<f64>() / (D.max(2) - 1) as f64;
+    if D == 2 {
+        return edge(b[1].signum(), w, q, law, pressed);
+    }
+    // excess > 0 at λ = 0 and ≤ 0 at λ = ∞: bracket the root, then bisect with secant steps where
+    // they stay inside.
+    let mean = (1..D).map(|k| a[(k, k)]).sum::<f64>() / (D.max(2) - 1) as f64;
     let (mut low, mut high) = (0.0, mean);
     let mut t = stick;
     for _ in 0..200 {
@@ -157,7 +169,7 @@ fn local<const D: usize>(w: &SMatrix<f64, D, D>, q: &Local<D>, law: &Coulomb) ->
         let Some(at) = force(lambda) else { break };
         t = at;
         let f = excess(&t);
-        if f.abs() <= 4.0 * f64::EPSILON * mu * t[0].abs() {
+        if f.abs() <= 4.0 * f64::EPSILON * law.bound(t[0]).abs() {
             break;
         }
         if f > 0.0 {
@@ -166,6 +178,30 @@ fn local<const D: usize>(w: &SMatrix<f64, D, D>, q: &Local<D>, law: &Coulomb) ->
             (high, f_high) = (lambda, f)
         }
     }
-    // The root is found to rounding; the cone is met exactly.
+    // The root is found to rounding; the bound is met exactly.
     law.project(&t)
+}
+
+/// The force on the edge t_t = σ g(t_n) of a plane law, where u_n = 0 is linear.
+fn edge<const D: usize>(
+    side: f64,
+    w: &SMatrix<f64, D, D>,
+    q: &Local<D>,
+    law: &Friction,
+    pressed: impl Fn(&mut Local<D>),
+) -> Local<D> {
+    let (mu, limit) = (law.friction(), law.bound(f64::INFINITY));
+    let mut slip = Local::zeros();
+    let stiffness = w[(0, 0)] + side * mu * w[(0, 1)];
+    // Without a positive stiffness the contact wedges: no slipping force exists on the cone.
+    let cone = mu > 0.0 && stiffness > 0.0;
+    if cone {
+        slip[0] = -q[0] / stiffness;
+        slip[1] = side * mu * slip[0];
+    }
+    if limit.is_finite() && (!cone || slip[1].abs() > limit) {
+        slip[1] = side * limit;
+        pressed(&mut slip);
+    }
+    slip
 }

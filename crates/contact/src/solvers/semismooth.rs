@@ -231,9 +231,9 @@ impl<const D: usize> Newton<'_, D> {
         for (i, law) in p.friction().iter().enumerate() {
             let alpha = self.alpha(i);
             let v = &now.irreversible[i];
-            let projector = law.project_jacobian(&(now.t[i] - law.shifted(v) * alpha));
-            let shift = projector * law.shifted_jacobian(v) * alpha;
-            // dG = [(1 − P) + α P A C] S du + α P A du
+            // dT = P dt − A du, with P the projector and A = α P ∂ũ/∂u under Coulomb's law:
+            // dG = [(1 − P) + A C] S du + A du
+            let (projector, shift) = law.correct_jacobian(v, &now.t[i], alpha);
             let elastic = SMatrix::<f64, D, D>::identity() - projector
                 + shift * SMatrix::from_diagonal(&self.compliance[i]);
             let rows = elastic * s.fixed_rows::<D>(D * i);

@@ -55,7 +55,7 @@ impl Uzawa {
             let t = split::<D>(t);
             let corrected = |i: usize| {
                 let law = &problem.friction()[i];
-                law.project(&(t[i] - law.shifted(&u[i]) * alpha[i]))
+                law.correct(&u[i], &t[i], alpha[i])
             };
             (0..t.len()).map(corrected).collect()
         };

@@ -8,6 +8,7 @@ mod contract;
 mod coulomb;
 mod data;
 mod drucker_prager;
+mod friction;
 mod lemaitre;
 mod material_point;
 mod natural_map;

@@ -1,0 +1,275 @@
+//! The laws of an interface as one closed type, and each as an equation; what they say is in the
+//! laws themselves.
+
+use crate::anisotropic::AnisotropicCoulomb;
+use crate::coulomb::Coulomb;
+use crate::duality::Bipotential;
+use crate::limited::LimitedCoulomb;
+use crate::local::{Local, Status, direction, tangential_norm};
+use crate::tresca::{Tresca, clipped};
+use nalgebra::SMatrix;
+
+/// Unilateral contact with friction.
+///
+/// All are solved in one form, t = T(u, t; α) for any α > 0 \[N/mm\]: the prediction from the
+/// displacement and its correction, [`Self::correct`]. Coulomb's law projects t − αũ on its cone,
+/// \[90′\]. Where the bound g(t_n) of the shear is no cone, ũ would jump with its slope; there the
+/// correction of q = t − αu is that of Alart and Curnier,
+///
+/// t_n = ⟨q_n⟩₊, t_t = proj(q_t, ‖·‖ ≤ g(t_n)),
+///
+/// continuous, and with the same fixed points whatever g.
+///
+/// Source: P. Alart and A. Curnier, *Computer Methods in Applied Mechanics and Engineering* 92
+/// (1991) 353-375.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Friction {
+    /// ‖t_t‖ ≤ μ t_n.
+    Coulomb(Coulomb),
+    /// ‖t_t‖ ≤ g.
+    Tresca(Tresca),
+    /// ‖t_t‖ ≤ min(μ t_n, g₀).
+    Limited(LimitedCoulomb),
+    /// √((t_x/μ_x)² + (t_y/μ_y)²) ≤ t_n.
+    Anisotropic(AnisotropicCoulomb),
+}
+
+impl From<Coulomb> for Friction {
+    fn from(law: Coulomb) -> Self {
+        Self::Coulomb(law)
+    }
+}
+
+impl From<Tresca> for Friction {
+    fn from(law: Tresca) -> Self {
+        Self::Tresca(law)
+    }
+}
+
+impl From<LimitedCoulomb> for Friction {
+    fn from(law: LimitedCoulomb) -> Self {
+        Self::Limited(law)
+    }
+}
+
+impl From<AnisotropicCoulomb> for Friction {
+    fn from(law: AnisotropicCoulomb) -> Self {
+        Self::Anisotropic(law)
+    }
+}
+
+impl Friction {
+    /// The law between forces \[N\] of a law between tractions \[MPa\], on an area ≥ 0 \[mm²\]: a
+    /// limit of the shear is multiplied by it, a coefficient is not.
+    pub fn scaled(self, area: f64) -> Self {
+        match self {
+            Self::Coulomb(_) | Self::Anisotropic(_) => self,
+            Self::Tresca(law) => Self::Tresca(law.scaled(area)),
+            Self::Limited(law) => Self::Limited(law.scaled(area)),
+        }
+    }
+
+    /// Whether the law can resist slip at all.
+    pub fn resists_slip(&self) -> bool {
+        self.bound(1.0) > 0.0
+    }
+
+    /// b(−u, t) \[N·mm\], x = −u: the bipotential of the law, or for [`LimitedCoulomb`], which has
+    /// none, the function that takes its place. b(x, t) ≥ x·t, with equality exactly at the law.
+    pub fn b<const D: usize>(&self, x: &Local<D>, t: &Local<D>) -> f64 {
+        match self {
+            Self::Coulomb(law) => law.b(x, t),
+            Self::Tresca(law) => law.b(x, t),
+            Self::Limited(law) => law.b(x, t),
+            Self::Anisotropic(law) => law.b(x, t),
+        }
+    }
+
+    /// The projection of a force on the admissible ones: orthogonal; of an anisotropic law so
+    /// between stretched forces.
+    #[inline]
+    pub fn project<const D: usize>(&self, q: &Local<D>) -> Local<D> {
+        match self {
+            Self::Coulomb(law) => law.project(q),
+            Self::Tresca(law) => law.project(q),
+            Self::Limited(law) => law.project(q),
+            Self::Anisotropic(law) => {
+                let m = law.stretch();
+                let stretched = q.component_div(&m);
+                law.isotropic().project(&stretched).component_mul(&m)
+            }
+        }
+    }
+
+    /// The correction T(u, t; α) \[N\], always an admissible force; its fixed points t are the
+    /// forces of the law at u, whatever α > 0.
+    #[inline]
+    pub fn correct<const D: usize>(&self, u: &Local<D>, t: &Local<D>, alpha: f64) -> Local<D> {
+        match self {
+            Self::Coulomb(law) => law.project(&(t - alpha * law.shifted(u))),
+            Self::Tresca(_) | Self::Limited(_) => {
+                let q = t - alpha * u;
+                clipped(&q, self.bound(pressure(&q)))
+            }
+            Self::Anisotropic(law) => {
+                let m = law.stretch();
+                let (u, t) = (u.component_mul(&m), t.component_div(&m));
+                Self::Coulomb(law.isotropic())
+                    .correct(&u, &t, alpha)
+                    .component_mul(&m)
+            }
+        }
+    }
+
+    /// ∂T/∂t and −∂T/∂u of [`Self::correct`]; at its kinks elements of the generalised Jacobian.
+    #[inline]
+    pub fn correct_jacobian<const D: usize>(
+        &self,
+        u: &Local<D>,
+        t: &Local<D>,
+        alpha: f64,
+    ) -> (SMatrix<f64, D, D>, SMatrix<f64, D, D>) {
+        match self {
+            Self::Coulomb(law) => {
+                let projector = law.project_jacobian(&(t - law.shifted(u) * alpha));
+                (projector, projector * law.shifted_jacobian(u) * alpha)
+            }
+            Self::Tresca(_) | Self::Limited(_) => {
+                let derivative = self.clipped_jacobian(&(t - alpha * u));
+                (derivative, derivative * alpha)
+            }
+            Self::Anisotropic(law) => {
+                let m: Local<D> = law.stretch();
+                let (u, t) = (u.component_mul(&m), t.component_div(&m));
+                let isotropic = Self::Coulomb(law.isotropic());
+                let (force, displacement) = isotropic.correct_jacobian(&u, &t, alpha);
+                (
+                    SMatrix::from_fn(|i, j| m[i] * force[(i, j)] / m[j]),
+                    SMatrix::from_fn(|i, j| m[i] * displacement[(i, j)] * m[j]),
+                )
+            }
+        }
+    }
+
+    /// The natural map t − T(u, t; α) \[N\]; zero exactly when (−u, t) obeys the law.
+    #[inline]
+    pub fn natural_map<const D: usize>(&self, u: &Local<D>, t: &Local<D>, alpha: f64) -> Local<D> {
+        t - self.correct(u, t, alpha)
+    }
+
+    /// The displacement that [`Self::correct`] moves the force against: ũ of \[90′\] where the
+    /// bound is a cone, else u.
+    #[inline]
+    pub fn shifted<const D: usize>(&self, u: &Local<D>) -> Local<D> {
+        match self {
+            Self::Coulomb(law) => law.shifted(u),
+            Self::Tresca(_) | Self::Limited(_) => *u,
+            Self::Anisotropic(law) => {
+                let m = law.stretch();
+                let stretched = law.isotropic().shifted(&u.component_mul(&m));
+                stretched.component_mul(&m)
+            }
+        }
+    }
+
+    /// The status that the prediction falls in, \[35\]: open without pressure, stick below the
+    /// bound, else slip. Without friction a closed contact slips.
+    #[inline]
+    pub fn status<const D: usize>(&self, u: &Local<D>, t: &Local<D>, alpha: f64) -> Status {
+        match self {
+            Self::Coulomb(law) => law.status(u, t, alpha),
+            Self::Tresca(_) | Self::Limited(_) => {
+                let q = t - alpha * u;
+                let bound = self.bound(pressure(&q));
+                if q[0] <= 0.0 {
+                    Status::Open
+                } else if bound > 0.0 && tangential_norm(&q) <= bound {
+                    Status::Stick
+                } else {
+                    Status::Slip
+                }
+            }
+            Self::Anisotropic(law) => {
+                let m = law.stretch();
+                let (u, t) = (u.component_mul(&m), t.component_div(&m));
+                law.isotropic().status(&u, &t, alpha)
+            }
+        }
+    }
+
+    /// g(t_n), the largest shear at a pressure \[N\]; of [`Self::isotropic`].
+    #[inline]
+    pub fn bound(&self, t_n: f64) -> f64 {
+        match self.isotropic() {
+            Self::Tresca(law) => law.limit(),
+            Self::Limited(law) => law.bound(t_n),
+            law => law.friction() * t_n,
+        }
+    }
+
+    /// The coefficient of friction, the slope of [`Self::bound`] at t_n = 0.
+    #[inline]
+    pub fn friction(&self) -> f64 {
+        match self {
+            Self::Coulomb(law) => law.friction(),
+            Self::Tresca(_) => 0.0,
+            Self::Limited(law) => law.friction(),
+            Self::Anisotropic(law) => law.isotropic().friction(),
+        }
+    }
+
+    /// The law between û = m ∘ u and t̂ = t/m, with the factors m ≤ 1 of [`Self::stretch`], which
+    /// is isotropic; every other law is its own.
+    #[inline]
+    pub fn isotropic(&self) -> Self {
+        match self {
+            Self::Anisotropic(law) => Self::Coulomb(law.isotropic()),
+            _ => *self,
+        }
+    }
+
+    /// The factors m of [`Self::isotropic`].
+    #[inline]
+    pub fn stretch<const D: usize>(&self) -> Local<D> {
+        match self {
+            Self::Anisotropic(law) => law.stretch(),
+            _ => Local::repeat(1.0),
+        }
+    }
+
+    /// The derivative of q ↦ (⟨q_n⟩₊, q_t clipped to g(⟨q_n⟩₊)).
+    fn clipped_jacobian<const D: usize>(&self, q: &Local<D>) -> SMatrix<f64, D, D> {
+        let closed = q[0] > 0.0;
+        let bound = self.bound(pressure(q));
+        let norm = tangential_norm(q);
+        let mut jacobian = SMatrix::zeros();
+        jacobian[(0, 0)] = f64::from(closed);
+        let (along, across) = if norm <= bound {
+            (1.0, 1.0)
+        } else {
+            (0.0, bound / norm)
+        };
+        let tau = direction(q);
+        // The slope of the bound, 0 where it is a constant.
+        let slope = match self {
+            Self::Limited(law) if bound < law.limit() => law.friction(),
+            _ => 0.0,
+        };
+        for i in 1..D {
+            for j in 1..D {
+                jacobian[(i, j)] = (along - across) * tau[i] * tau[j];
+            }
+            jacobian[(i, i)] += across;
+            if closed && norm > bound {
+                jacobian[(i, 0)] = slope * tau[i];
+            }
+        }
+        jacobian
+    }
+}
+
+/// ⟨q_n⟩₊; NaN stays.
+#[inline]
+fn pressure<const D: usize>(q: &Local<D>) -> f64 {
+    if q[0] <= 0.0 { 0.0 } else { q[0] }
+}
