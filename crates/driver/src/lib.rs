@@ -29,6 +29,7 @@
 
 mod block;
 mod cholesky;
+mod condensation;
 mod driver;
 mod error;
 mod increment;

@@ -11,6 +11,9 @@ use std::collections::BTreeMap;
 /// Parts of an edge shorter than this, in reference coordinates, are rounding.
 const SLIVER: f64 = 1e-9;
 
+/// Weights below this are none.
+const ROUNDING: f64 = 1e-13;
+
 /// How far from the overlap a node may be, in reference coordinates, to have a multiplier.
 const NEAR: f64 = 0.25;
 
@@ -54,11 +57,11 @@ impl<const D: usize> Sides<'_, D> {
         let largest = sums.values().map(|s| s.area).fold(0.0, f64::max);
         sums.retain(|_, s| s.area > SLIVER * largest);
         let coupling = |(node, sums): (usize, Sums)| {
-            let relative = |weights: BTreeMap<usize, f64>| {
-                weights
-                    .into_iter()
-                    .map(|(b, w)| (b, w / sums.area))
-                    .collect()
+            // Matching meshes leave weights that are rounding. Both sums of weights are the area.
+            let relative = |mut weights: BTreeMap<usize, f64>| -> Vec<(usize, f64)> {
+                weights.retain(|_, w| w.abs() > ROUNDING * sums.area);
+                let sum: f64 = weights.values().sum();
+                weights.into_iter().map(|(b, w)| (b, w / sum)).collect()
             };
             Coupling {
                 node,
