@@ -45,6 +45,16 @@ pub enum ContactError {
     /// The Newton matrix of the contact problem is singular: no contact holds the body.
     #[error("the contact problem is singular: no closed contact holds the body")]
     Singular,
+    /// Displacement conditions leave the relative displacement of a contact nothing to decide with,
+    /// beside those of other contacts.
+    #[error(
+        "displacement conditions leave contact point {contact} no freedom of its own: \
+         make the other surface of its pair the first one"
+    )]
+    Overconstrained {
+        /// The contact.
+        contact: usize,
+    },
     /// The iteration ended above its tolerance.
     #[error(
         "{solver} left a residual of {residual:.3e} N after {iterations} iterations, \

@@ -2,9 +2,9 @@
 
 use crate::block::{Block, PointState, Stiffness};
 use crate::error::{ModelError, StepError};
-use crate::interface::{ContactPoint, Tool};
+use crate::interface::{ContactPoint, Footing, Tool, tool_index};
 use crate::load::{Condition, Loading, Step, axis_letter};
-use crate::model::{Analysis, ContactName, Measure, Model};
+use crate::model::{Analysis, Contact, Measure, Model};
 use crate::report::{ContactRecord, Energies, StepReport};
 use crate::system::System;
 use crate::timings::Timings;
@@ -70,6 +70,8 @@ pub(crate) struct State<const D: usize> {
     pub(crate) loading: Loading<D>,
     pub(crate) energies: Energies,
     pub(crate) contacts: Vec<ContactRecord<D>>,
+    /// Contact force at every degree of freedom \[N\].
+    pub(crate) contact: Vec<f64>,
     /// Last solution of the contact problem, to start the next from.
     pub(crate) solution: Option<ContactSolution<D>>,
 }
@@ -80,11 +82,13 @@ pub struct Driver<const D: usize> {
     pub(crate) blocks: Vec<Box<dyn Block<D>>>,
     pub(crate) tools: Vec<Tool<D>>,
     pub(crate) points: Vec<ContactPoint<D>>,
+    /// Where the contact points stand in the increment at hand.
+    pub(crate) footings: Vec<Footing<D>>,
     pub(crate) settings: Settings<D>,
     pub(crate) state: State<D>,
     pub(crate) system: Option<System>,
     measure: Box<dyn Measure<D>>,
-    contacts: Vec<ContactName>,
+    contacts: Vec<Contact>,
 }
 
 impl<const D: usize> Driver<D> {
@@ -119,19 +123,58 @@ impl<const D: usize> Driver<D> {
             loading: Loading::none(dofs, model.tools.len()),
             energies: Energies::default(),
             contacts: model.points.iter().map(rest).collect(),
+            contact: vec![0.0; dofs],
             solution: None,
         };
-        Ok(Self {
+        let mut driver = Self {
             measure: Box::new(model.hypothesis),
             mesh: model.mesh,
             blocks: model.blocks,
             tools: model.tools,
             contacts: model.contacts,
             points: model.points,
+            footings: Vec::new(),
             settings,
             state,
             system: None,
-        })
+        };
+        driver.pair()?;
+        Ok(driver)
+    }
+
+    /// Finds what the contact points stand on, at the committed positions.
+    fn pair(&mut self) -> Result<(), ModelError> {
+        let on_tool = |p: &ContactPoint<D>| match p.tool {
+            Some(_) => Footing::on_tool(p.node, p.area),
+            None => Footing::default(),
+        };
+        let mut footings: Vec<Footing<D>> = self.points.iter().map(on_tool).collect();
+        if self.contacts.iter().any(|c| c.pairing.is_some()) {
+            let nodes = self.mesh.nodes();
+            let position = |a: usize| (SVector::from(nodes[a]) + self.displacement(a)).into();
+            let positions: Vec<[f64; D]> = (0..nodes.len()).map(position).collect();
+            for (k, contact) in self.contacts.iter().enumerate() {
+                let Some(pairing) = contact.pairing else {
+                    continue;
+                };
+                let surfaces = (
+                    self.mesh.facet_group(&contact.surface)?,
+                    self.mesh.facet_group(&contact.opposite)?,
+                );
+                let couplings = self
+                    .measure
+                    .couplings(&self.mesh, &positions, surfaces, pairing);
+                let index = |p: &ContactPoint<D>| p.contact == k;
+                let own = (0..self.points.len()).filter(|&i| index(&self.points[i]));
+                let at: BTreeMap<usize, usize> = own.map(|i| (self.points[i].node, i)).collect();
+                for coupling in couplings {
+                    let point = at[&coupling.node];
+                    footings[point] = Footing::on_surface(coupling, &positions);
+                }
+            }
+        }
+        self.footings = footings;
+        Ok(())
     }
 
     /// The mesh.
@@ -166,12 +209,12 @@ impl<const D: usize> Driver<D> {
         &self.state.contacts
     }
 
-    /// Names of surface and tool of a contact.
+    /// Names of the surface of a contact and of the tool or surface opposite.
     pub fn contact_name(&self, contact: usize) -> (&str, &str) {
-        (
-            &self.contacts[contact].surface,
-            &self.contacts[contact].tool,
-        )
+        let Contact {
+            surface, opposite, ..
+        } = &self.contacts[contact];
+        (surface, opposite)
     }
 
     /// Energies since the virgin state.
@@ -200,12 +243,10 @@ impl<const D: usize> Driver<D> {
     /// Force that the prescribed displacements of a node exert on it \[N\].
     pub fn nodal_reaction(&self, node: usize) -> SVector<f64, D> {
         let state = &self.state;
-        let contact = state.contacts.iter().find(|c| c.node == node);
-        let contact = contact.map_or_else(SVector::zeros, |c| c.force);
         SVector::from_fn(|i, _| {
             let dof = D * node + i;
             match state.loading.displacement.contains_key(&dof) {
-                true => state.internal[dof] - state.loading.force[dof] - contact[i],
+                true => state.internal[dof] - state.loading.force[dof] - state.contact[dof],
                 false => 0.0,
             }
         })
@@ -216,20 +257,23 @@ impl<const D: usize> Driver<D> {
     /// # Errors
     /// [`ModelError::UnknownTool`].
     pub fn tool_force(&self, name: &str) -> Result<SVector<f64, D>, ModelError> {
-        let tool = self.tool_index(name)?;
+        let tool = Some(tool_index(&self.tools, name)?);
         let touches = |(p, _): &(&ContactPoint<D>, &ContactRecord<D>)| p.tool == tool;
         let pairs = self.points.iter().zip(&self.state.contacts);
         Ok(pairs.filter(touches).map(|(_, c)| c.force).sum())
     }
 
-    fn tool_index(&self, name: &str) -> Result<usize, ModelError> {
-        let names = || self.tools.iter().map(|t| t.name.as_str());
-        names()
-            .position(|n| n == name)
-            .ok_or_else(|| ModelError::UnknownTool {
-                name: name.into(),
-                nearest: moreau_mesh::nearest(name, names()).map(Into::into),
-            })
+    /// Sum of the contact forces on the nodes of a group \[N\]: on either surface of a pair, the
+    /// force that the other exerts on it.
+    ///
+    /// # Errors
+    /// An unknown group.
+    pub fn contact_force(&self, group: &str) -> Result<SVector<f64, D>, ModelError> {
+        let mut sum = SVector::zeros();
+        for node in self.mesh.node_group(group)? {
+            sum += SVector::<f64, D>::from_column_slice(&self.state.contact[D * node..][..D]);
+        }
+        Ok(sum)
     }
 
     /// The loading at the end of a step.
@@ -299,7 +343,7 @@ impl<const D: usize> Driver<D> {
         }
         for condition in &step.conditions {
             if let Condition::Tool { name, displacement } = condition {
-                loading.tools[self.tool_index(name)?] = SVector::from(*displacement);
+                loading.tools[tool_index(&self.tools, name)?] = SVector::from(*displacement);
             }
         }
         loading.displacement = moved;
@@ -397,6 +441,7 @@ impl<const D: usize> Driver<D> {
     /// See [`StepError`].
     pub fn advance(&mut self, end: &Loading<D>) -> Result<StepReport, StepError> {
         end.check()?;
+        self.pair()?;
         let mut system = self.prepare(end)?;
         let start = self.start_of(end);
         let outcome = match self.settings.nesting {
@@ -422,7 +467,10 @@ impl<const D: usize> Driver<D> {
             return Ok(system);
         }
         self.check_rigid_motions(&fixed)?;
-        let interface: Vec<usize> = self.points.iter().map(|p| p.node).collect();
+        let mut interface: Vec<usize> = self.points.iter().map(|p| p.node).collect();
+        for contact in self.contacts.iter().filter(|c| c.pairing.is_some()) {
+            interface.extend(self.mesh.node_group(&contact.opposite)?);
+        }
         let mut system = System::new(&self.mesh, &self.blocks, fixed, &interface)?;
         system.timings += self.timings();
         let zero = vec![0.0; dofs];
@@ -431,8 +479,8 @@ impl<const D: usize> Driver<D> {
         Ok(system)
     }
 
-    /// Every rigid motion of every body must be resisted by a prescribed displacement, by a
-    /// contact normal, or by friction.
+    /// Every rigid motion of the bodies must be resisted by a prescribed displacement, by a contact
+    /// normal, or by friction.
     fn check_rigid_motions(&self, fixed: &impl Fn(usize) -> bool) -> Result<(), ModelError> {
         let size = self.mesh.size();
         let mut body_of = vec![usize::MAX; self.mesh.nodes().len()];
@@ -444,59 +492,114 @@ impl<const D: usize> Driver<D> {
                 }
             }
         }
-        for (b, cells) in bodies.iter().enumerate() {
-            let first = cells[0];
-            let center = self.mesh.nodes()[self.mesh.cell_nodes(first)[0]];
-            // Modes about a point of the body, in its size: numbers of order one.
-            let modes = |node: usize| -> Vec<SVector<f64, D>> {
-                let x = self.mesh.nodes()[node];
-                let relative = std::array::from_fn(|i| (x[i] - center[i]) / size);
-                self.measure
-                    .rigid_modes(&relative)
-                    .into_iter()
-                    .map(SVector::from)
-                    .collect()
-            };
-            let count = modes(self.mesh.cell_nodes(first)[0]).len();
-            let mut gram = DMatrix::<f64>::zeros(count, count);
-            let mut resist = |node: usize, direction: &SVector<f64, D>| {
-                let rows: Vec<f64> = modes(node).iter().map(|m| m.dot(direction)).collect();
-                for i in 0..count {
-                    for j in 0..count {
-                        gram[(i, j)] += rows[i] * rows[j];
-                    }
-                }
-            };
-            for node in (0..body_of.len()).filter(|&a| body_of[a] == b) {
-                for i in (0..D).filter(|i| fixed(D * node + i)) {
-                    let mut axis = SVector::<f64, D>::zeros();
-                    axis[i] = 1.0;
-                    resist(node, &axis);
+        // Modes about a point of the body, in the size of the mesh: numbers of order one.
+        let center = |b: usize| self.mesh.nodes()[self.mesh.cell_nodes(bodies[b][0])[0]];
+        let modes = |node: usize| -> Vec<SVector<f64, D>> {
+            let (x, center) = (self.mesh.nodes()[node], center(body_of[node]));
+            let relative = std::array::from_fn(|i| (x[i] - center[i]) / size);
+            let modes = self.measure.rigid_modes(&relative);
+            modes.into_iter().map(SVector::from).collect()
+        };
+        let count = modes(0).len();
+        let mut gram = DMatrix::<f64>::zeros(count * bodies.len(), count * bodies.len());
+        // Motions that move a combination of nodes along a direction are resisted there.
+        let mut resist = |weights: &[(usize, f64)], direction: &SVector<f64, D>| {
+            let row: Vec<(usize, f64)> = weights
+                .iter()
+                .flat_map(|&(node, w)| {
+                    let first = count * body_of[node];
+                    let along = modes(node).into_iter().map(move |m| w * m.dot(direction));
+                    (first..).zip(along.collect::<Vec<_>>())
+                })
+                .collect();
+            for &(i, a) in &row {
+                for &(j, b) in &row {
+                    gram[(i, j)] += a * b;
                 }
             }
-            for point in self.points.iter().filter(|p| body_of[p.node] == b) {
-                let x = SVector::from(self.mesh.nodes()[point.node])
-                    + self.displacement(point.node)
-                    - self.state.loading.tools[point.tool];
-                let q = moreau_contact::frame(&self.tools[point.tool].obstacle.normal(&x));
-                let columns = if point.law.resists_slip() { D } else { 1 };
-                for k in 0..columns {
-                    resist(point.node, &q.column(k).into_owned());
-                }
+        };
+        for node in 0..body_of.len() {
+            for i in (0..D).filter(|i| fixed(D * node + i)) {
+                let mut axis = SVector::<f64, D>::zeros();
+                axis[i] = 1.0;
+                resist(&[(node, 1.0)], &axis);
             }
-            let eigen = gram.symmetric_eigen();
+        }
+        for (point, footing) in self.points.iter().zip(&self.footings) {
+            let normal = match point.tool {
+                Some(tool) => {
+                    let x = SVector::from(self.mesh.nodes()[point.node])
+                        + self.displacement(point.node)
+                        - self.state.loading.tools[tool];
+                    self.tools[tool].obstacle.normal(&x)
+                }
+                None => match footing.plane(&SVector::zeros()) {
+                    Some((normal, _)) => normal,
+                    None => continue,
+                },
+            };
+            let weights: Vec<(usize, f64)> = footing.weights().collect();
+            let q = moreau_contact::frame(&normal);
+            let columns = if point.law.resists_slip() { D } else { 1 };
+            for k in 0..columns {
+                resist(&weights, &q.column(k).into_owned());
+            }
+        }
+        // Bodies that do not touch others are judged each by itself, in their order.
+        for group in linked(&gram, count) {
+            let indices: Vec<usize> = group
+                .iter()
+                .flat_map(|&b| count * b..count * (b + 1))
+                .collect();
+            let part = gram.select_rows(&indices).select_columns(&indices);
+            let eigen = part.symmetric_eigen();
             let weakest = eigen.eigenvalues.imin();
             if eigen.eigenvalues[weakest] <= 1e-10 * eigen.eigenvalues.amax().max(1.0) {
                 let mode = eigen.eigenvectors.column(weakest);
-                let motion = describe::<D>(mode.as_slice());
+                // The body that moves most.
+                let part = |k: usize| mode.rows(count * k, count);
+                let most = |a: &usize, b: &usize| part(*a).norm().total_cmp(&part(*b).norm());
+                let k = (0..group.len()).rev().max_by(most).unwrap_or(0);
+                let motion = describe::<D>(part(k).into_owned().as_slice());
                 return Err(ModelError::FreeRigidMotion {
-                    cell: first,
+                    cell: bodies[group[k]][0],
                     motion,
                 });
             }
         }
         Ok(())
     }
+}
+
+/// Groups of bodies, each with `count` modes, that a matrix of their motions couples.
+fn linked(gram: &DMatrix<f64>, count: usize) -> Vec<Vec<usize>> {
+    let bodies = gram.nrows() / count.max(1);
+    let coupled = |a: usize, b: usize| {
+        gram.view((count * a, count * b), (count, count))
+            .iter()
+            .any(|&v| v != 0.0)
+    };
+    let mut seen = vec![false; bodies];
+    let mut groups = Vec::new();
+    for first in 0..bodies {
+        if seen[first] {
+            continue;
+        }
+        seen[first] = true;
+        let mut group = vec![first];
+        let mut next = 0;
+        while next < group.len() {
+            let body = group[next];
+            for b in (0..bodies).filter(|&b| coupled(body, b)) {
+                if !std::mem::replace(&mut seen[b], true) {
+                    group.push(b);
+                }
+            }
+            next += 1;
+        }
+        groups.push(group);
+    }
+    groups
 }
 
 /// A rigid motion in words, from its components on translations first, rotations after.

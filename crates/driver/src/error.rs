@@ -43,6 +43,19 @@ pub enum ModelError {
         /// The name.
         name: String,
     },
+    /// A contact with something that is neither a tool nor a group of facets.
+    #[error(
+        "{surface:?} cannot touch {name:?}: no tool and no group of facets has that name{}",
+        nearest_hint(.nearest)
+    )]
+    UnknownOpposite {
+        /// The surface.
+        surface: String,
+        /// The name asked for.
+        name: String,
+        /// The nearest tool or group of facets.
+        nearest: Option<String>,
+    },
     /// A node that touches two obstacles.
     #[error(
         "node {node} at {position:?} is in contact with {first:?} and with {second:?}: \
@@ -53,10 +66,36 @@ pub enum ModelError {
         node: usize,
         /// Its position \[mm\].
         position: Vec<f64>,
-        /// Tool of the first contact.
+        /// What it touches in the first contact.
         first: String,
-        /// Tool of the second.
+        /// In the second.
         second: String,
+    },
+    /// Two surfaces in space.
+    #[error(
+        "contact of {surface:?} with {opposite:?}: two deformable bodies can touch in the plane, \
+         not in space yet; use a tool"
+    )]
+    SurfacesInSpace {
+        /// First surface.
+        surface: String,
+        /// The surface opposite.
+        opposite: String,
+    },
+    /// Two surfaces that share a node.
+    #[error(
+        "{surface:?} and {opposite:?} share node {node} at {position:?}: \
+         bodies in contact must have nodes of their own"
+    )]
+    SharedSurfaceNode {
+        /// First surface.
+        surface: String,
+        /// The surface opposite.
+        opposite: String,
+        /// The node.
+        node: usize,
+        /// Its position \[mm\].
+        position: Vec<f64>,
     },
     /// A body that could move without resistance.
     #[error(

@@ -2,9 +2,10 @@
 //! the sequence of increments.
 
 use crate::block::Stiffness;
+use crate::condensation::Condensation;
 use crate::driver::{Driver, State};
 use crate::error::{Imbalance, StepError};
-use crate::interface::{Condensation, Kinematics};
+use crate::interface::{ContactPoint, Footing, Kinematics};
 use crate::line_search::Line;
 use crate::load::{Loading, axis_letter};
 use crate::report::{ContactRecord, StepReport};
@@ -48,6 +49,17 @@ pub(crate) struct Iterate {
     pub(crate) full: bool,
 }
 
+/// Where an increment begins.
+pub(crate) struct Start {
+    /// The free degrees of freedom.
+    pub(crate) free: Vec<usize>,
+    /// Prescribed displacements that the first iterate does not have.
+    pub(crate) missing: Vec<f64>,
+    pub(crate) now: Iterate,
+    /// Factorisations done before.
+    pub(crate) factorisations: usize,
+}
+
 /// What an increment may be off by, over the residual of its contact solution: that weighs
 /// displacements with a somewhat smaller α.
 const CONTACT_SLACK: f64 = 10.0;
@@ -65,23 +77,21 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
         observe: &mut dyn FnMut(&Self, &Iterate),
     ) -> Result<StepReport, StepError> {
-        let free: Vec<usize> = system.free_dofs();
+        let Start {
+            free,
+            mut missing,
+            mut now,
+            factorisations,
+        } = self.begin(system, start, end);
         let mut counts = Counts {
             solves: 1,
             ..Counts::default()
         };
-        let factorisations = system.factorisations;
-        let d_u = self.predictor(start, end);
-        let mut missing = self.missing(start, end, &d_u);
-        let mut now = Iterate {
-            assembly: system.assemble(&mut self.blocks, &d_u, &missing, Stiffness::Consistent),
-            d_u,
-            contact: self.committed_contact_forces(),
-            full: false,
-        };
         let mut solution = self.state.solution.clone();
         loop {
-            let kinematics = self.kinematics(system, start, end, &now.d_u);
+            // The step to come makes up for what is missing.
+            let reached: Vec<f64> = now.d_u.iter().zip(&missing).map(|(u, m)| u + m).collect();
+            let kinematics = self.kinematics(system, start, end, &reached);
             if now.full
                 && let Some(s) = &solution
             {
@@ -131,9 +141,9 @@ impl<const D: usize> Driver<D> {
             let contact = |source: ContactError| StepError::Contact { iteration, source };
             let previous = self.previous_forces(&kinematics);
             let clock = Instant::now();
-            let condensation =
-                Condensation::new(system, &condensed, &self.points, &kinematics, previous)
-                    .map_err(contact)?;
+            let points = (self.points.as_slice(), self.footings.as_slice());
+            let condensation = Condensation::new(system, &condensed, points, &kinematics, previous)
+                .map_err(contact)?;
             let solved = self
                 .settings
                 .contact
@@ -159,6 +169,28 @@ impl<const D: usize> Driver<D> {
             now = self.search(system, &line, now);
             counts.shortened += usize::from(!now.full);
             observe(self, &now);
+        }
+    }
+
+    /// The predictor as the first iterate, under the committed contact forces.
+    pub(crate) fn begin(
+        &mut self,
+        system: &mut System,
+        start: &Loading<D>,
+        end: &Loading<D>,
+    ) -> Start {
+        let d_u = self.predictor(start, end);
+        let missing = self.missing(start, end, &d_u);
+        Start {
+            free: system.free_dofs(),
+            now: Iterate {
+                assembly: system.assemble(&mut self.blocks, &d_u, &missing, Stiffness::Consistent),
+                d_u,
+                contact: self.state.contact.clone(),
+                full: false,
+            },
+            missing,
+            factorisations: system.factorisations,
         }
     }
 
@@ -229,21 +261,24 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
         d_u: &[f64],
     ) -> Vec<Kinematics<D>> {
-        self.points
-            .iter()
-            .map(|p| {
-                let dofs = D * p.node..D * p.node + D;
-                let position = SVector::from(self.mesh.nodes()[p.node]) + self.displacement(p.node);
-                let free = std::array::from_fn(|i| system.is_free(D * p.node + i));
-                Kinematics::new(
-                    self.tools[p.tool].obstacle.as_ref(),
-                    &position,
-                    &SVector::from_column_slice(&d_u[dofs]),
-                    (&start.tools[p.tool], &end.tools[p.tool]),
-                    free,
-                )
-            })
-            .collect()
+        let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
+        let at = |(p, footing): (&ContactPoint<D>, &Footing<D>)| {
+            let free = footing.free(p.node, |dof| system.is_free(dof));
+            let slip = footing.relative(moved);
+            let Some(tool) = p.tool else {
+                return match footing.plane(&slip) {
+                    Some((n, gap)) => Kinematics::new(&n, gap, &slip, free),
+                    // Opposite to nothing: as far away as anything can be.
+                    None => Kinematics::open(self.mesh.size()),
+                };
+            };
+            let obstacle = &self.tools[tool].obstacle;
+            let x = SVector::from(self.mesh.nodes()[p.node]) + self.displacement(p.node);
+            let x = x + slip - end.tools[tool];
+            let slip = slip - (end.tools[tool] - start.tools[tool]);
+            Kinematics::new(&obstacle.normal(&x), obstacle.distance(&x), &slip, free)
+        };
+        self.points.iter().zip(&self.footings).map(at).collect()
     }
 
     /// Contact forces t₀ at the start of the step, in the frames of now.
@@ -255,20 +290,12 @@ impl<const D: usize> Driver<D> {
     /// Contact forces at every degree of freedom \[N\].
     pub(crate) fn contact_forces(&self, kinematics: &[Kinematics<D>], t: &[Local<D>]) -> Vec<f64> {
         let mut forces = vec![0.0; self.state.displacement.len()];
-        for ((p, k), t) in self.points.iter().zip(kinematics).zip(t) {
+        for ((footing, k), t) in self.footings.iter().zip(kinematics).zip(t) {
             let f = k.force(t);
-            for i in 0..D {
-                forces[D * p.node + i] += f[i];
-            }
-        }
-        forces
-    }
-
-    fn committed_contact_forces(&self) -> Vec<f64> {
-        let mut forces = vec![0.0; self.state.displacement.len()];
-        for c in &self.state.contacts {
-            for i in 0..D {
-                forces[D * c.node + i] += c.force[i];
+            for (a, w) in footing.weights() {
+                for i in 0..D {
+                    forces[D * a + i] += w * f[i];
+                }
             }
         }
         forces
@@ -410,20 +437,22 @@ impl<const D: usize> Driver<D> {
                 u,
                 t,
                 force: k.force(&t),
-                area: p.area,
+                area: self.footings[i].area,
                 status,
                 held,
                 spring: elastic,
             });
         }
-        let certificate = Certificate::new(
-            &laws,
-            &irreversible,
-            &contacts.iter().map(|c| c.t).collect::<Vec<_>>(),
-        );
-        let state = &self.state;
-        let mut energies = state.energies;
-        energies.external_work += self.external_work(start, end, &d_u, &internal, &contacts);
+        let forces: Vec<Local<D>> = contacts.iter().map(|c| c.t).collect();
+        let certificate = Certificate::new(&laws, &irreversible, &forces);
+        let contact = self.contact_forces(&kinematics, &forces);
+        let mut energies = self.state.energies;
+        energies.external_work += self.external_work(start, end, &d_u, &internal, &contact);
+        for ((p, c), old) in self.points.iter().zip(&contacts).zip(&self.state.contacts) {
+            let motion = |k: usize| end.tools[k] - start.tools[k];
+            let motion = p.tool.map_or_else(SVector::zeros, motion);
+            energies.external_work += 0.5 * (old.force + c.force).dot(&motion);
+        }
         energies.friction_dissipation += friction;
         energies.penalty += penalty;
         energies.stored = 0.0;
@@ -452,6 +481,7 @@ impl<const D: usize> Driver<D> {
             loading: end.clone(),
             energies,
             contacts,
+            contact,
             solution: Some(solution),
         };
         StepReport {
@@ -474,14 +504,14 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// Work over the increment of applied forces, reactions and tools, by the trapezoidal rule.
+    /// Work over the increment of applied forces and reactions, by the trapezoidal rule.
     fn external_work(
         &self,
         start: &Loading<D>,
         end: &Loading<D>,
         d_u: &[f64],
         internal: &[f64],
-        contacts: &[ContactRecord<D>],
+        contact: &[f64],
     ) -> f64 {
         let state = &self.state;
         let mut work = 0.0;
@@ -489,19 +519,9 @@ impl<const D: usize> Driver<D> {
             work += 0.5 * (start.force[dof] + end.force[dof]) * du;
         }
         for &dof in end.displacement.keys() {
-            let on_node = |contacts: &[ContactRecord<D>]| {
-                contacts
-                    .iter()
-                    .find(|c| c.node == dof / D)
-                    .map_or(0.0, |c| c.force[dof % D])
-            };
-            let before = state.internal[dof] - start.force[dof] - on_node(&state.contacts);
-            let after = internal[dof] - end.force[dof] - on_node(contacts);
+            let before = state.internal[dof] - start.force[dof] - state.contact[dof];
+            let after = internal[dof] - end.force[dof] - contact[dof];
             work += 0.5 * (before + after) * d_u[dof];
-        }
-        for ((p, c), old) in self.points.iter().zip(contacts).zip(&state.contacts) {
-            let motion = end.tools[p.tool] - start.tools[p.tool];
-            work += 0.5 * (old.force + c.force).dot(&motion);
         }
         work
     }

@@ -1,10 +1,10 @@
 //! The contact points of a model: their frames, gaps and slips; not the law that holds there.
 
-use crate::system::{Condensed, System};
-use moreau_contact::{ContactError, ContactProblem, Obstacle, frame};
+use crate::ModelError;
+use moreau_contact::{Obstacle, frame};
 use moreau_laws::{Friction, Local};
-use moreau_mesh::NodeKind;
-use nalgebra::{DMatrix, DVector, SMatrix, SVector};
+use moreau_mesh::{Coupling, NodeKind, nearest};
+use nalgebra::{SMatrix, SVector};
 
 /// A rigid tool.
 pub(crate) struct Tool<const D: usize> {
@@ -12,12 +12,27 @@ pub(crate) struct Tool<const D: usize> {
     pub(crate) obstacle: Box<dyn Obstacle<D>>,
 }
 
-/// A node that may touch a tool.
+/// Index of a tool by its name.
+pub(crate) fn tool_index<const D: usize>(
+    tools: &[Tool<D>],
+    name: &str,
+) -> Result<usize, ModelError> {
+    let names = || tools.iter().map(|t| t.name.as_str());
+    names()
+        .position(|n| n == name)
+        .ok_or_else(|| ModelError::UnknownTool {
+            name: name.into(),
+            nearest: nearest(name, names()).map(Into::into),
+        })
+}
+
+/// A node that may touch what is opposite.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ContactPoint<const D: usize> {
     pub(crate) node: usize,
-    pub(crate) tool: usize,
-    /// Index of the contact (surface and tool) that it belongs to.
+    /// The tool opposite; `None` for the surface of a deformable body.
+    pub(crate) tool: Option<usize>,
+    /// Index of the contact (surface and what is opposite) that it belongs to.
     pub(crate) contact: usize,
     /// Between forces: limits of the shear are those of its share of the surface.
     pub(crate) law: Friction,
@@ -26,17 +41,78 @@ pub(crate) struct ContactPoint<const D: usize> {
     pub(crate) kind: NodeKind,
 }
 
+/// Whose displacements make the relative displacement of a contact point during an increment:
+/// Σ own·v − Σ opposite·v. Forces go back with the same weights.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Footing<const D: usize> {
+    /// The node, and those that share its multiplier at the edge of an overlap.
+    pub(crate) own: Vec<(usize, f64)>,
+    /// Nodes of the surface opposite; none for a tool.
+    pub(crate) opposite: Vec<(usize, f64)>,
+    /// Share of the surface in contact \[mm²\].
+    pub(crate) area: f64,
+    /// Normal and gap at the start of the increment, where they are those of a surface.
+    plane: Option<(SVector<f64, D>, f64)>,
+}
+
+impl<const D: usize> Footing<D> {
+    /// On a tool, which moves on its own.
+    pub(crate) fn on_tool(node: usize, area: f64) -> Self {
+        Self {
+            own: vec![(node, 1.0)],
+            area,
+            ..Self::default()
+        }
+    }
+
+    /// On a surface, with nodes at the given positions.
+    pub(crate) fn on_surface(coupling: Coupling<D>, positions: &[[f64; D]]) -> Self {
+        let mut footing = Self {
+            own: coupling.own,
+            opposite: coupling.opposite,
+            area: coupling.area,
+            plane: None,
+        };
+        let normal = SVector::from(coupling.normal);
+        let apart = footing.relative(|a| SVector::from(positions[a]));
+        footing.plane = Some((normal, normal.dot(&apart)));
+        footing
+    }
+
+    /// Σ own·v − Σ opposite·v.
+    pub(crate) fn relative(&self, v: impl Fn(usize) -> SVector<f64, D>) -> SVector<f64, D> {
+        self.weights().map(|(a, w)| v(a) * w).sum()
+    }
+
+    /// Nodes with their weights, negative on the opposite side.
+    pub(crate) fn weights(&self) -> impl Iterator<Item = (usize, f64)> {
+        let opposite = self.opposite.iter().map(|&(b, w)| (b, -w));
+        self.own.iter().copied().chain(opposite)
+    }
+
+    /// Normal and gap after a relative displacement; `None` on a tool and opposite to nothing.
+    pub(crate) fn plane(&self, slip: &SVector<f64, D>) -> Option<(SVector<f64, D>, f64)> {
+        let (normal, gap) = self.plane?;
+        Some((normal, gap + normal.dot(slip)))
+    }
+
+    /// Directions in which the relative displacement is free: those of the own node, and those in
+    /// which no node opposite is held.
+    pub(crate) fn free(&self, node: usize, is_free: impl Fn(usize) -> bool) -> [bool; D] {
+        let opposite = |i: usize| self.opposite.iter().all(|&(b, _)| is_free(D * b + i));
+        std::array::from_fn(|i| is_free(D * node + i) || (!self.opposite.is_empty() && opposite(i)))
+    }
+}
+
 /// A contact point at an instant: frame, gap and slip.
 ///
-/// Where a Dirichlet condition holds components of the node's displacement, the law lives on the
+/// Where Dirichlet conditions hold components of the relative displacement, the law lives on the
 /// free subspace F alone: n is replaced by its projection on F, the tangents are those in F, and
 /// the components left over are switched off (zero slip, zero force).
 #[derive(Debug, Clone)]
 pub(crate) struct Kinematics<const D: usize> {
-    /// Rows: u = B v, from the node's displacement v to gap and slip; zero where switched off.
+    /// Rows: u = B v, from relative displacements to gap and slip; zero where switched off.
     pub(crate) to_local: SMatrix<f64, D, D>,
-    /// v = M u, the inverse on the free subspace.
-    to_node: SMatrix<f64, D, D>,
     /// Unit normal and tangents, for forces in space.
     axes: SMatrix<f64, D, D>,
     /// Gap at the end of the step and slip of the step \[mm\].
@@ -49,20 +125,14 @@ pub(crate) struct Kinematics<const D: usize> {
 const PRESCRIBED: f64 = 1e-9;
 
 impl<const D: usize> Kinematics<D> {
-    /// From the node's position at the start of the step, its displacement increment, and the
-    /// tool's position at both ends of the step.
+    /// From normal and gap at the end of the step, and the relative displacement of the step.
     pub(crate) fn new(
-        obstacle: &dyn Obstacle<D>,
-        start: &SVector<f64, D>,
-        d_u: &SVector<f64, D>,
-        tool: (&SVector<f64, D>, &SVector<f64, D>),
+        n: &SVector<f64, D>,
+        gap: f64,
+        slip: &SVector<f64, D>,
         free: [bool; D],
     ) -> Self {
-        let relative = start + d_u - tool.1;
-        let n = obstacle.normal(&relative);
-        let gap = obstacle.distance(&relative);
-        let slip = d_u - (tool.1 - tool.0);
-        let mut projected = n;
+        let mut projected = *n;
         for i in 0..D {
             if !free[i] {
                 projected[i] = 0.0;
@@ -70,37 +140,40 @@ impl<const D: usize> Kinematics<D> {
         }
         let length = projected.norm();
         let dimension = free.iter().filter(|f| **f).count();
-        let mut out = Self {
-            to_local: SMatrix::zeros(),
-            to_node: SMatrix::zeros(),
-            axes: SMatrix::zeros(),
-            u: Local::zeros(),
-            active: [false; D],
-        };
-        out.u[0] = gap;
         if dimension == 0 || length < PRESCRIBED {
             // Nothing left to decide: an open gap whatever the prescribed motion does.
-            out.u[0] = gap.abs() + f64::MIN_POSITIVE;
-            return out;
+            return Self::open(gap.abs() + f64::MIN_POSITIVE);
         }
+        let mut out = Self::open(gap);
         let q = if dimension == D {
-            frame(&n)
+            frame(n)
         } else {
             frame_in(&(projected / length), free)
         };
-        out.axes.set_column(0, &n);
+        out.axes.set_column(0, n);
         for k in 0..dimension {
             let e = q.column(k);
             let scale = if k == 0 { length } else { 1.0 };
             out.active[k] = true;
             out.to_local.set_row(k, &(e.transpose() * scale));
-            out.to_node.set_column(k, &(e / scale));
             if k > 0 {
                 out.axes.set_column(k, &e);
-                out.u[k] = e.dot(&slip);
+                out.u[k] = e.dot(slip);
             }
         }
         out
+    }
+
+    /// A point that takes no part in the law, at an open gap.
+    pub(crate) fn open(gap: f64) -> Self {
+        let mut u = Local::zeros();
+        u[0] = gap;
+        Self {
+            to_local: SMatrix::zeros(),
+            axes: SMatrix::zeros(),
+            u,
+            active: [false; D],
+        }
     }
 
     /// Force on the body in space, for a force t in the frame \[N\].
@@ -136,165 +209,51 @@ fn frame_in<const D: usize>(e: &SVector<f64, D>, free: [bool; D]) -> SMatrix<f64
     q
 }
 
-/// The contact problem of a linearised increment, and the way back to the interface unknowns.
-pub(crate) struct Condensation<const D: usize> {
-    pub(crate) problem: ContactProblem<D>,
-    places: Vec<Place<D>>,
-    now: Vec<Local<D>>,
-    unknowns: usize,
-}
-
-/// Where a contact point is among the interface unknowns.
-struct Place<const D: usize> {
-    /// Interface unknown of every free component of the node; the first `count` are used.
-    rows: [usize; D],
-    count: usize,
-    /// Rows of M for these components: x = M (u − u_now).
-    to_node: SMatrix<f64, D, D>,
-}
-
-impl<const D: usize> Place<D> {
-    fn new(system: &System, node: usize, kinematics: &Kinematics<D>) -> Self {
-        let mut place = Self {
-            rows: [0; D],
-            count: 0,
-            to_node: SMatrix::zeros(),
-        };
-        for i in 0..D {
-            if let Some(row) = system.interface_index(D * node + i) {
-                place.rows[place.count] = row;
-                let from = kinematics.to_node.row(i);
-                place.to_node.set_row(place.count, &from);
-                place.count += 1;
-            }
-        }
-        place
-    }
-}
-
-impl<const D: usize> Condensation<D> {
-    /// Turns the condensed system into the local frames of the contacts: S ← Mᵀ S M, f ← Mᵀ f.
-    pub(crate) fn new(
-        system: &System,
-        condensed: &Condensed,
-        points: &[ContactPoint<D>],
-        kinematics: &[Kinematics<D>],
-        previous: Vec<Local<D>>,
-    ) -> Result<Self, ContactError> {
-        let size = D * points.len();
-        let places: Vec<Place<D>> = points
-            .iter()
-            .zip(kinematics)
-            .map(|(point, k)| Place::new(system, point.node, k))
-            .collect();
-        let mut stiffness = DMatrix::zeros(size, size);
-        let mut load = DVector::zeros(size);
-        for (d, right) in places.iter().enumerate() {
-            for (c, left) in places.iter().enumerate().skip(d) {
-                let mut block = SMatrix::<f64, D, D>::zeros();
-                for a in 0..left.count {
-                    for b in 0..right.count {
-                        block[(a, b)] = condensed.stiffness[(left.rows[a], right.rows[b])];
-                    }
-                }
-                let local = left.to_node.tr_mul(&(block * right.to_node));
-                stiffness
-                    .fixed_view_mut::<D, D>(D * c, D * d)
-                    .copy_from(&local);
-                stiffness
-                    .fixed_view_mut::<D, D>(D * d, D * c)
-                    .copy_from(&local.transpose());
-            }
-            let own = Local::<D>::from_fn(|a, _| match a < right.count {
-                true => condensed.load[right.rows[a]],
-                false => 0.0,
-            });
-            load.fixed_rows_mut::<D>(D * d)
-                .copy_from(&right.to_node.tr_mul(&own));
-        }
-        // Components switched off: alone on their diagonal, of the size of their neighbours.
-        let typical = stiffness.diagonal().amax().max(f64::MIN_POSITIVE);
-        for (c, k) in kinematics.iter().enumerate() {
-            for j in 0..D {
-                if !k.active[j] {
-                    stiffness[(D * c + j, D * c + j)] = typical;
-                }
-            }
-        }
-        let now: Vec<Local<D>> = kinematics.iter().map(|k| k.u).collect();
-        let laws = points.iter().map(|p| p.law).collect();
-        let problem = ContactProblem::new(stiffness, load, now.clone(), laws, previous)?;
-        let unknowns = condensed.load.len();
-        Ok(Self {
-            problem,
-            places,
-            now,
-            unknowns,
-        })
-    }
-
-    /// Interface displacements x for gaps and slips u.
-    pub(crate) fn interface(&self, u: &[Local<D>]) -> DVector<f64> {
-        let mut x = DVector::zeros(self.unknowns);
-        for ((place, u), now) in self.places.iter().zip(u).zip(&self.now) {
-            let motion = place.to_node * (u - now);
-            for a in 0..place.count {
-                x[place.rows[a]] = motion[a];
-            }
-        }
-        x
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use moreau_contact::Plane;
 
     #[test]
     fn a_held_tangent_is_switched_off() {
-        let floor = Plane::new([0.0, 0.0], [0.0, 1.0]).expect("valid");
-        let zero = SVector::<f64, 2>::zeros();
-        let start = SVector::<f64, 2>::new(0.0, 0.25);
-        let d_u = SVector::<f64, 2>::new(0.0, -0.1);
-        let k = Kinematics::new(&floor, &start, &d_u, (&zero, &zero), [false, true]);
+        let n = SVector::<f64, 2>::new(0.0, 1.0);
+        let k = Kinematics::new(&n, 0.15, &SVector::<f64, 2>::new(0.0, -0.1), [false, true]);
         assert_eq!(k.active, [true, false]);
-        assert!((k.u - Local::<2>::new(0.15, 0.0)).norm() < 1e-15);
-        let product = k.to_local * k.to_node;
-        assert_eq!(product, nalgebra::Matrix2::new(1.0, 0.0, 0.0, 0.0));
+        assert_eq!(k.u, Local::<2>::new(0.15, 0.0));
+        assert_eq!(k.to_local, nalgebra::Matrix2::new(0.0, 1.0, 0.0, 0.0));
     }
 
     #[test]
     fn an_inclined_normal_acts_along_the_free_direction() {
         let (s, c) = 0.5f64.sin_cos();
-        let slope = Plane::new([0.0, 0.0], [-s, c]).expect("valid");
-        let zero = SVector::<f64, 2>::zeros();
+        let n = SVector::<f64, 2>::new(-s, c);
         let d_u = SVector::<f64, 2>::new(0.0, 0.3);
-        let k = Kinematics::new(&slope, &zero, &d_u, (&zero, &zero), [false, true]);
+        let k = Kinematics::new(&n, 0.3 * c, &d_u, [false, true]);
         // Moving up by 0.3 opens the gap by 0.3 cos; the force n t_n does the same work.
-        assert!((k.u[0] - 0.3 * c).abs() < 1e-15);
         assert!((k.to_local * d_u - k.u).norm() < 1e-15);
         let t = Local::<2>::new(2.0, 0.0);
         assert!((k.force(&t).dot(&d_u) - t.dot(&k.u)).abs() < 1e-15);
     }
 
     #[test]
-    fn slip_is_measured_against_a_moving_tool() {
-        let floor = Plane::new([0.0, 0.0, 0.0], [0.0, 1.0, 0.0]).expect("valid");
-        let zero = SVector::<f64, 3>::zeros();
-        let tool = SVector::<f64, 3>::new(0.5, 0.1, 0.0);
-        let d_u = SVector::<f64, 3>::new(0.5, 0.1, 0.0);
-        let k = Kinematics::new(&floor, &zero, &d_u, (&zero, &tool), [true; 3]);
-        assert!(k.u.norm() < 1e-15, "carried along: {}", k.u);
+    fn one_held_axis_in_space_leaves_two_components() {
+        let n = SVector::<f64, 3>::new(0.0, 1.0, 0.0);
+        let slip = SVector::<f64, 3>::new(0.0, 0.0, 0.2);
+        let k = Kinematics::new(&n, 0.0, &slip, [false, true, true]);
+        assert_eq!(k.active, [true, true, false]);
+        assert!((k.u[1].abs() - 0.2).abs() < 1e-15 && k.u[2] == 0.0);
     }
 
     #[test]
-    fn one_held_axis_in_space_leaves_two_components() {
-        let floor = Plane::new([0.0, 0.0, 0.0], [0.0, 1.0, 0.0]).expect("valid");
-        let zero = SVector::<f64, 3>::zeros();
-        let d_u = SVector::<f64, 3>::new(0.0, 0.0, 0.2);
-        let k = Kinematics::new(&floor, &zero, &d_u, (&zero, &zero), [false, true, true]);
-        assert_eq!(k.active, [true, true, false]);
-        assert!((k.u[1].abs() - 0.2).abs() < 1e-15 && k.u[2] == 0.0);
+    fn what_moves_together_does_not_slip() {
+        let footing = Footing::<2> {
+            own: vec![(0, 0.75), (1, 0.25)],
+            opposite: vec![(2, 1.5), (3, -0.5)],
+            ..Footing::default()
+        };
+        let same = footing.relative(|_| SVector::<f64, 2>::new(0.5, 0.1));
+        assert!(same.norm() < 1e-15, "carried along: {same}");
+        // A direction is free if the own node is, or all of those opposite are.
+        assert_eq!(footing.free(0, |dof| dof != 0), [true, true]);
+        assert_eq!(footing.free(0, |dof| dof != 0 && dof != 4), [false, true]);
     }
 }

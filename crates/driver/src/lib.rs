@@ -30,6 +30,7 @@
 mod block;
 mod cells;
 mod cholesky;
+mod condensation;
 mod driver;
 mod error;
 mod increment;

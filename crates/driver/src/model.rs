@@ -3,12 +3,12 @@
 use crate::ModelError;
 use crate::block::{Block, SolidBlock};
 use crate::cells::{Cells, ElementCells};
-use crate::interface::{ContactPoint, Tool};
+use crate::interface::{ContactPoint, Tool, tool_index};
 use moreau_contact::Obstacle;
 use moreau_laws::{Friction, IncrementalPotential};
 use moreau_mesh::{
-    Axisymmetric, CellKind, Element, Facet, Hex8, Hypothesis, Integration, Mesh, PlaneStrain,
-    Quad4, Quad8, Quad9, Share, Solid, Tet4, Tri3, Tri6,
+    Axisymmetric, CellKind, Coupling, Element, Facet, Hex8, Hypothesis, Integration, Mesh, Pairing,
+    PlaneStrain, Quad4, Quad8, Quad9, Share, Solid, Tet4, Tri3, Tri6, nearest,
 };
 use std::collections::BTreeMap;
 
@@ -100,6 +100,13 @@ pub(crate) trait Measure<const D: usize>: Send + Sync {
     fn facet_shares(&self, mesh: &Mesh<D>, facets: &[Facet]) -> Vec<Share<D>>;
     fn volume_shares(&self, mesh: &Mesh<D>, cells: &[usize]) -> Vec<(usize, f64)>;
     fn rigid_modes(&self, x: &[f64; D]) -> Vec<[f64; D]>;
+    fn couplings(
+        &self,
+        mesh: &Mesh<D>,
+        positions: &[[f64; D]],
+        surfaces: (&[Facet], &[Facet]),
+        pairing: Pairing,
+    ) -> Vec<Coupling<D>>;
 }
 
 impl<const D: usize, H: Hypothesis<D>> Measure<D> for H {
@@ -114,13 +121,26 @@ impl<const D: usize, H: Hypothesis<D>> Measure<D> for H {
     fn rigid_modes(&self, x: &[f64; D]) -> Vec<[f64; D]> {
         H::rigid_modes(x)
     }
+
+    fn couplings(
+        &self,
+        mesh: &Mesh<D>,
+        positions: &[[f64; D]],
+        surfaces: (&[Facet], &[Facet]),
+        pairing: Pairing,
+    ) -> Vec<Coupling<D>> {
+        mesh.couplings(positions, surfaces, pairing, self)
+    }
 }
 
-/// Surface and tool of a contact.
+/// A surface and what is opposite to it.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ContactName {
+pub(crate) struct Contact {
     pub(crate) surface: String,
-    pub(crate) tool: String,
+    /// Name of a tool or of a surface.
+    pub(crate) opposite: String,
+    /// How the surfaces of two bodies are paired; `None` on a tool.
+    pub(crate) pairing: Option<Pairing>,
 }
 
 /// Mesh, materials, tools and contacts of a problem.
@@ -129,7 +149,7 @@ pub struct Model<const D: usize, H> {
     pub(crate) hypothesis: H,
     pub(crate) blocks: Vec<Box<dyn Block<D>>>,
     pub(crate) tools: Vec<Tool<D>>,
-    pub(crate) contacts: Vec<ContactName>,
+    pub(crate) contacts: Vec<Contact>,
     pub(crate) points: Vec<ContactPoint<D>>,
     has_material: Vec<bool>,
 }
@@ -198,59 +218,117 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         Ok(self)
     }
 
-    /// Lets the nodes of a group of facets touch a tool, with friction; limits of the shear are
-    /// tractions \[MPa\].
+    /// Lets the nodes of a group of facets touch a tool, or the surface of another body that is
+    /// named by its group of facets, with friction; limits of the shear are tractions \[MPa\]. Surfaces are paired by the default of
+    /// [`Pairing`]; see [`Model::pair`].
     ///
     /// # Errors
-    /// An unknown group or tool; [`ModelError::SharedContactNode`].
+    /// An unknown group, [`ModelError::UnknownOpposite`]; [`ModelError::SharedContactNode`]; those
+    /// of [`Model::pair`].
     pub fn contact(
         mut self,
         surface: &str,
-        tool: &str,
+        opposite: &str,
         law: impl Into<Friction>,
     ) -> Result<Self, ModelError> {
-        let law: Friction = law.into();
+        let Ok(tool) = tool_index(&self.tools, opposite) else {
+            if self.mesh.facet_group(opposite).is_ok() {
+                return self.pair(surface, opposite, law, Pairing::default());
+            }
+            let tools = self.tools.iter().map(|t| t.name.as_str());
+            let groups = self.mesh.group_names();
+            let facets = groups.filter(|name| self.mesh.facet_group(name).is_ok());
+            return Err(ModelError::UnknownOpposite {
+                surface: surface.into(),
+                name: opposite.into(),
+                nearest: nearest(opposite, tools.chain(facets)).map(Into::into),
+            });
+        };
+        self.touch(surface, opposite, law.into(), Some(tool))?;
+        self.contacts.push(Contact {
+            surface: surface.into(),
+            opposite: opposite.into(),
+            pairing: None,
+        });
+        Ok(self)
+    }
+
+    /// Lets the surface of a body touch that of another, each a group of facets, with friction:
+    /// `surface` is the non-mortar side, whose nodes are the contact points. It should be the finer
+    /// one, or that of the softer body.
+    ///
+    /// Sliding is small within an increment: the surfaces are paired anew at the start of each.
+    ///
+    /// # Errors
+    /// An unknown group; [`ModelError::SharedContactNode`] for a node of `surface` that is one of
+    /// another contact; [`ModelError::SharedSurfaceNode`]; [`ModelError::SurfacesInSpace`].
+    pub fn pair(
+        mut self,
+        surface: &str,
+        opposite: &str,
+        law: impl Into<Friction>,
+        pairing: Pairing,
+    ) -> Result<Self, ModelError> {
+        let own = self.mesh.node_group(surface)?;
+        self.mesh.facet_group(opposite)?;
+        let other = self.mesh.node_group(opposite)?;
+        if D != 2 {
+            return Err(ModelError::SurfacesInSpace {
+                surface: surface.into(),
+                opposite: opposite.into(),
+            });
+        }
+        if let Some(&node) = own.iter().find(|a| other.binary_search(a).is_ok()) {
+            return Err(ModelError::SharedSurfaceNode {
+                surface: surface.into(),
+                opposite: opposite.into(),
+                node,
+                position: self.mesh.nodes()[node].to_vec(),
+            });
+        }
+        self.touch(surface, opposite, law.into(), None)?;
+        self.contacts.push(Contact {
+            surface: surface.into(),
+            opposite: opposite.into(),
+            pairing: Some(pairing),
+        });
+        Ok(self)
+    }
+
+    /// Adds the contact points of a surface.
+    fn touch(
+        &mut self,
+        surface: &str,
+        opposite: &str,
+        law: Friction,
+        tool: Option<usize>,
+    ) -> Result<(), ModelError> {
         let facets = self.mesh.facet_group(surface)?;
-        let index = self.tool_index(tool)?;
         let shares = self.mesh.facet_shares(facets, &self.hypothesis);
         for share in shares {
             if let Some(other) = self.points.iter().find(|p| p.node == share.node) {
                 return Err(ModelError::SharedContactNode {
                     node: share.node,
                     position: self.mesh.nodes()[share.node].to_vec(),
-                    first: self.tools[other.tool].name.clone(),
-                    second: tool.into(),
+                    first: self.contacts[other.contact].opposite.clone(),
+                    second: opposite.into(),
                 });
             }
             self.points.push(ContactPoint {
                 node: share.node,
-                tool: index,
+                tool,
                 contact: self.contacts.len(),
                 law: law.scaled(share.area),
                 area: share.area,
                 kind: share.kind,
             });
         }
-        self.contacts.push(ContactName {
-            surface: surface.into(),
-            tool: tool.into(),
-        });
-        Ok(self)
+        Ok(())
     }
 
     /// The mesh.
     pub fn mesh(&self) -> &Mesh<D> {
         &self.mesh
-    }
-
-    pub(crate) fn tool_index(&self, name: &str) -> Result<usize, ModelError> {
-        let names = || self.tools.iter().map(|t| t.name.as_str());
-        names()
-            .position(|n| n == name)
-            .ok_or_else(|| ModelError::UnknownTool {
-                name: name.into(),
-                nearest: moreau_mesh::nearest(name, names()).map(Into::into),
-            })
     }
 
     /// # Errors

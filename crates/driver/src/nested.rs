@@ -1,11 +1,10 @@
 //! The paper's own nesting: Uzawa's prediction and correction around the nonlinear solve; kept to
 //! be compared with, not to be used.
 
-use crate::block::Stiffness;
+use crate::condensation::Condensation;
 use crate::driver::Driver;
 use crate::error::StepError;
-use crate::increment::{Candidate, Counts, Iterate, force_scale, largest};
-use crate::interface::Condensation;
+use crate::increment::{Candidate, Counts, Iterate, Start, force_scale, largest};
 use crate::line_search::Line;
 use crate::load::Loading;
 use crate::report::StepReport;
@@ -27,17 +26,13 @@ impl<const D: usize> Driver<D> {
         tolerance: f64,
         iterations: usize,
     ) -> Result<StepReport, StepError> {
-        let free = system.free_dofs();
+        let Start {
+            free,
+            mut missing,
+            mut now,
+            factorisations,
+        } = self.begin(system, start, end);
         let mut counts = Counts::default();
-        let factorisations = system.factorisations;
-        let d_u = self.predictor(start, end);
-        let mut missing = self.missing(start, end, &d_u);
-        let mut now = Iterate {
-            assembly: system.assemble(&mut self.blocks, &d_u, &missing, Stiffness::Consistent),
-            d_u,
-            contact: Vec::new(),
-            full: true,
-        };
         let kinematics = self.kinematics(system, start, end, &now.d_u);
         let mut t = self.previous_forces(&kinematics);
         let contact = |source: ContactError| StepError::Contact {
@@ -46,9 +41,9 @@ impl<const D: usize> Driver<D> {
         };
         self.factorise(system, &mut now, &missing)?;
         let condensed = system.condense(&vec![0.0; now.d_u.len()]);
-        let condensation =
-            Condensation::new(system, &condensed, &self.points, &kinematics, t.clone())
-                .map_err(contact)?;
+        let points = (self.points.as_slice(), self.footings.as_slice());
+        let condensation = Condensation::new(system, &condensed, points, &kinematics, t.clone())
+            .map_err(contact)?;
         let mut alpha = uzawa_steps(&condensation.problem).map_err(contact)?;
         let common: Vec<f64> = (0..t.len())
             .map(|i| condensation.problem.alpha(i))

@@ -7,6 +7,7 @@
 //! | integrate over it, \[78\] | [`Element::rule`], [`Rule`], [`Integration`] |
 //! | strain it, `ε = B U` \[77\] | [`Hypothesis`]: [`PlaneStrain`], [`Axisymmetric`], [`Solid`] |
 //! | hold nodes, cells and named groups | [`Mesh`], always valid once constructed |
+//! | pair two surfaces | [`Mesh::couplings`] |
 //! | make one | [`block2`], [`block3`] on the lines of [`uniform`], [`geometric`], [`refine`] |
 //! | read one, from the bytes of a file | [`read_gmsh`], [`read_abaqus`] |
 //!
@@ -51,6 +52,7 @@ pub mod gmsh;
 pub mod hypothesis;
 pub mod mesh;
 mod nearest;
+pub mod pairing;
 pub mod quadrature;
 pub mod read;
 mod sample;
@@ -64,5 +66,6 @@ pub use gmsh::read_gmsh;
 pub use hypothesis::{Axisymmetric, Hypothesis, PlaneStrain, Solid};
 pub use mesh::{Facet, Mesh, NodeKind, Share};
 pub use nearest::nearest;
+pub use pairing::{Coupling, Pairing};
 pub use quadrature::{Integration, Point, Rule, gauss};
 pub use read::{Place, ReadError};

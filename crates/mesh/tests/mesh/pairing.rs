@@ -1,0 +1,160 @@
+//! Pairing of surfaces that do not match, straight and curved, wholly and partly covered.
+
+use moreau_mesh::{CellKind, Coupling, Mesh, Pairing, PlaneStrain, block2, uniform};
+use std::collections::BTreeMap;
+
+/// Two blocks, the upper on the lower, mapped by f.
+fn stack(
+    kinds: [CellKind; 2],
+    upper: (f64, f64, usize),
+    lower: (f64, f64, usize),
+    f: impl Fn([f64; 2]) -> [f64; 2],
+) -> Mesh<2> {
+    let block = |name, kind, (from, to, n): (f64, f64, usize), y: [f64; 2]| {
+        block2(name, kind, &uniform(from, to, n), &uniform(y[0], y[1], 1)).expect("valid")
+    };
+    block("upper", kinds[0], upper, [0.0, 1.0])
+        .joined(block("lower", kinds[1], lower, [-1.0, 0.0]))
+        .and_then(|m| m.map(f))
+        .expect("valid")
+}
+
+fn pair(mesh: &Mesh<2>, pairing: Pairing) -> Vec<Coupling<2>> {
+    let group = |name| mesh.facet_group(name).expect("named");
+    mesh.couplings(
+        mesh.nodes(),
+        (group("upper.bottom"), group("lower.top")),
+        pairing,
+        &PlaneStrain::default(),
+    )
+}
+
+fn sum(weights: &[(usize, f64)], f: impl Fn(usize) -> f64) -> f64 {
+    weights.iter().map(|&(a, w)| w * f(a)).sum()
+}
+
+const KINDS: [[CellKind; 2]; 4] = [
+    [CellKind::Quad4, CellKind::Quad4],
+    [CellKind::Quad8, CellKind::Quad8],
+    [CellKind::Quad8, CellKind::Tri3],
+    [CellKind::Tri6, CellKind::Quad9],
+];
+
+#[test]
+fn linear_fields_and_a_uniform_pressure_pass_between_meshes_that_do_not_match() {
+    let shift = 2f64.sqrt() / 10.0;
+    // Overlap of [0, 6] with the lower block.
+    for (lower, overlap) in [
+        ((0.0, 6.0, 5), [0.0, 6.0]),
+        ((-1.0 - shift, 7.0 + shift, 7), [0.0, 6.0]),
+        ((1.0 + shift, 7.0, 6), [1.0 + shift, 6.0]),
+        ((0.1, 5.95, 11), [0.1, 5.95]),
+        // Narrower than one edge.
+        ((2.1, 2.4, 2), [2.1, 2.4]),
+    ] {
+        for kinds in KINDS {
+            let mesh = stack(kinds, (0.0, 6.0, 4), lower, |x| x);
+            let couplings = pair(&mesh, Pairing::Mortar);
+            let x = |a: usize| mesh.nodes()[a][0];
+            let mut on_lower: BTreeMap<usize, f64> = BTreeMap::new();
+            let mut total = [0.0; 2];
+            for c in &couplings {
+                assert!(c.area > 0.0, "{kinds:?} {lower:?}");
+                assert!((c.normal[1] - 1.0).abs() < 1e-14);
+                assert!((sum(&c.own, |_| 1.0) - 1.0).abs() < 1e-12);
+                assert!((sum(&c.opposite, |_| 1.0) - 1.0).abs() < 1e-12);
+                let apart = sum(&c.own, x) - sum(&c.opposite, x);
+                assert!(apart.abs() < 1e-11, "{kinds:?} {lower:?}: {apart}");
+                total[0] += c.area;
+                total[1] += c.area * sum(&c.own, x);
+                for &(b, w) in &c.opposite {
+                    *on_lower.entry(b).or_insert(0.0) += w * c.area;
+                }
+            }
+            let [from, to] = overlap;
+            let exact = [to - from, 0.5 * (to * to - from * from)];
+            assert!((total[0] - exact[0]).abs() < 1e-12 * exact[0]);
+            assert!((total[1] - exact[1]).abs() < 1e-11 * exact[1]);
+            // Where the lower block is covered wholly it feels the consistent load of a pressure.
+            if from > 0.0 && to < 6.0 {
+                let facets = mesh.facet_group("lower.top").expect("named");
+                for share in mesh.facet_shares(facets, &PlaneStrain::default()) {
+                    let found = on_lower[&share.node];
+                    assert!((found - share.area).abs() < 1e-12, "{found} {}", share.area);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_node_on_an_edge_that_matches_meets_its_twin_alone() {
+    for kinds in [KINDS[0], KINDS[1]] {
+        let curved = |[x, y]: [f64; 2]| [x + 0.1 * y, y + 0.2 * (0.5 * x).sin()];
+        let mesh = stack(kinds, (0.0, 6.0, 4), (0.0, 6.0, 4), curved);
+        for pairing in [Pairing::Mortar, Pairing::NodeToSurface] {
+            let couplings = pair(&mesh, pairing);
+            assert_eq!(
+                couplings.len(),
+                mesh.node_group("upper.bottom").expect("named").len()
+            );
+            for c in couplings {
+                assert!(c.own.len() == 1 && c.own[0].0 == c.node);
+                assert!((c.own[0].1 - 1.0).abs() < 1e-14);
+                for (b, w) in c.opposite {
+                    let x = mesh.nodes();
+                    let same = (x[b][0] - x[c.node][0]).hypot(x[b][1] - x[c.node][1]) < 1e-12;
+                    assert!((w - f64::from(u8::from(same))).abs() < 1e-8, "{w}");
+                }
+            }
+        }
+    }
+}
+
+/// Two rings: the far side and the back of a surface are not met.
+#[test]
+fn a_ring_meets_the_near_side_of_the_ring_within() {
+    let ring = |name: &str, n: usize, radii: [f64; 2]| {
+        let half = |name: &str, from: f64| {
+            let angle = uniform(from, from + std::f64::consts::PI, n);
+            block2(
+                name,
+                CellKind::Quad8,
+                &uniform(radii[0], radii[1], 1),
+                &angle,
+            )
+            .and_then(|m| m.map(|[r, a]| [r * a.cos(), r * a.sin()]))
+            .expect("valid")
+        };
+        half(&format!("{name}1"), 0.0).joined(half(&format!("{name}2"), std::f64::consts::PI))
+    };
+    let outer = ring("outer", 11, [2.0, 3.0]).expect("valid");
+    let mesh = outer
+        .joined(ring("inner", 8, [1.0, 1.99]).expect("valid"))
+        .expect("valid");
+    let group = |names: [&str; 2]| {
+        let one = |n: &str| mesh.facet_group(n).expect("named").to_vec();
+        [one(names[0]), one(names[1])].concat()
+    };
+    let surfaces = (
+        group(["outer1.left", "outer2.left"]),
+        group(["inner1.right", "inner2.right"]),
+    );
+    for pairing in [Pairing::Mortar, Pairing::NodeToSurface] {
+        let couplings = mesh.couplings(
+            mesh.nodes(),
+            (&surfaces.0, &surfaces.1),
+            pairing,
+            &PlaneStrain::default(),
+        );
+        // The joints of the half rings have a node of each half.
+        assert_eq!(couplings.len(), 2 * 23);
+        for c in couplings {
+            let at =
+                |weights: &[(usize, f64)]| [0, 1].map(|i| sum(weights, |a| mesh.nodes()[a][i]));
+            let (own, other) = (at(&c.own), at(&c.opposite));
+            let gap = (own[0] - other[0]) * c.normal[0] + (own[1] - other[1]) * c.normal[1];
+            assert!((gap - 0.01).abs() < 3e-3, "{pairing:?}: {gap}");
+        }
+    }
+}
