@@ -1,7 +1,7 @@
 //! Blocks of cells of one element, one hypothesis and one law: forces and stiffness of their
 //! cells; not their assembly.
 
-use moreau_laws::{BulkLaw, IncrementalPotential};
+use moreau_laws::{BulkLaw, IncrementalPotential, Numbers};
 use moreau_mandel::{Sym2, Sym4};
 use moreau_mesh::{Element, Hypothesis, Integration, Mesh};
 use nalgebra::{SMatrix, SVector};
@@ -89,6 +89,13 @@ pub trait Block<const D: usize>: Send + Sync {
 
     /// The committed state at every quadrature point, cell by cell.
     fn points(&self) -> Vec<PointState<D>>;
+
+    /// The numbers of all committed states, cell by cell.
+    fn state(&self) -> Vec<f64>;
+
+    /// Replaces the committed states by what [`Block::state`] gave; returns how many numbers that
+    /// takes, and changes nothing if there are more or fewer.
+    fn restore(&mut self, numbers: &[f64]) -> usize;
 }
 
 /// Cells evaluated before their results are handed on: bounds the memory of the buffers.
@@ -391,5 +398,26 @@ where
             .enumerate()
             .map(state)
             .collect()
+    }
+
+    fn state(&self) -> Vec<f64> {
+        let mut numbers = Vec::new();
+        for state in &self.old {
+            let mut copy = *state;
+            copy.visit(&mut |x| numbers.push(*x));
+        }
+        numbers
+    }
+
+    fn restore(&mut self, numbers: &[f64]) -> usize {
+        let count = self.state().len();
+        if numbers.len() == count {
+            let mut next = numbers.iter();
+            for state in &mut self.old {
+                state.visit(&mut |x| *x = next.next().copied().unwrap_or(*x));
+            }
+            self.new.copy_from_slice(&self.old);
+        }
+        count
     }
 }

@@ -38,7 +38,9 @@ mod load;
 mod model;
 mod nested;
 mod ordering;
+mod ramp;
 mod report;
+mod saved;
 mod system;
 
 pub use block::{Block, BlockEnergy, CellResult, PointState, SolidBlock, Stiffness};
@@ -46,4 +48,6 @@ pub use driver::{Driver, Nesting, Settings};
 pub use error::{Imbalance, ModelError, StepError};
 pub use load::{Axis, Loading, Step};
 pub use model::{Analysis, Model};
-pub use report::{ContactRecord, Energies, StepReport};
+pub use ramp::Ramp;
+pub use report::{ContactRecord, Energies, Iteration, StepReport};
+pub use saved::Reader;
