@@ -2,7 +2,7 @@
 //! of their material; not their assembly.
 
 use crate::cells::{Cells, MAX_POINTS};
-use moreau_laws::{BulkLaw, IncrementalPotential};
+use moreau_laws::{BulkLaw, IncrementalPotential, Numbers};
 use moreau_mandel::{Sym2, Sym4};
 use rayon::prelude::*;
 
@@ -87,6 +87,13 @@ pub trait Block<const D: usize>: Send + Sync {
 
     /// The committed state at every quadrature point, cell by cell.
     fn points(&self) -> Vec<PointState<D>>;
+
+    /// The numbers of all committed states, cell by cell.
+    fn state(&self) -> Vec<f64>;
+
+    /// Replaces the committed states by what [`Block::state`] gave; returns how many numbers that
+    /// takes, and changes nothing if there are more or fewer.
+    fn restore(&mut self, numbers: &[f64]) -> usize;
 }
 
 /// Cells evaluated before their results are handed on: bounds the memory of the buffers.
@@ -288,5 +295,26 @@ impl<L: IncrementalPotential, const D: usize> Block<D> for SolidBlock<L, D> {
             plastic_strain: self.law.equivalent_plastic_strain(state),
         };
         self.old.iter().enumerate().map(state).collect()
+    }
+
+    fn state(&self) -> Vec<f64> {
+        let mut numbers = Vec::new();
+        for state in &self.old {
+            let mut copy = *state;
+            copy.visit(&mut |x| numbers.push(*x));
+        }
+        numbers
+    }
+
+    fn restore(&mut self, numbers: &[f64]) -> usize {
+        let count = self.state().len();
+        if numbers.len() == count {
+            let mut next = numbers.iter();
+            for state in &mut self.old {
+                state.visit(&mut |x| *x = next.next().copied().unwrap_or(*x));
+            }
+            self.new.copy_from_slice(&self.old);
+        }
+        count
     }
 }

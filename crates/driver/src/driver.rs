@@ -5,7 +5,7 @@ use crate::error::{ModelError, StepError};
 use crate::interface::{ContactPoint, Footing, Tool, tool_index};
 use crate::load::{Condition, Loading, Step, axis_letter};
 use crate::model::{Analysis, Contact, Measure, Model};
-use crate::report::{ContactRecord, Energies, StepReport};
+use crate::report::{ContactRecord, Energies, Iteration, StepReport};
 use crate::system::System;
 use crate::timings::Timings;
 use moreau_contact::{ContactSolution, ContactSolver, SemismoothNewton};
@@ -192,6 +192,11 @@ impl<const D: usize> Driver<D> {
         self.state.increment
     }
 
+    /// The loading that holds now.
+    pub fn applied(&self) -> &Loading<D> {
+        &self.state.loading
+    }
+
     /// Unknowns of the current step; 0 before the first.
     pub fn unknowns(&self) -> usize {
         self.system.as_ref().map_or(0, System::size)
@@ -353,7 +358,7 @@ impl<const D: usize> Driver<D> {
 
     /// The loading that holds now, with the prescribed displacements of `end`: those that are new
     /// start where the body is, and the reactions of those released become forces.
-    fn start_of(&self, end: &Loading<D>) -> Loading<D> {
+    pub(crate) fn start_of(&self, end: &Loading<D>) -> Loading<D> {
         let state = &self.state;
         let mut start = state.loading.clone();
         for dof in state.loading.displacement.keys() {
@@ -369,87 +374,30 @@ impl<const D: usize> Driver<D> {
         start
     }
 
-    /// Applies a step in equal increments, halving those that fail and doubling again after those
-    /// that converge. `observe` sees the driver after every converged increment.
-    ///
-    /// # Errors
-    /// [`StepError::Stopped`] when an increment has been halved as often as the settings allow;
-    /// the increments that converged are kept. [`StepError::Model`] for a step that makes no sense.
-    pub fn run(
-        &mut self,
-        step: &Step<D>,
-        increments: usize,
-        mut observe: impl FnMut(&Self, &StepReport),
-    ) -> Result<Vec<StepReport>, StepError> {
-        let end = self.loading(step)?;
-        let start = self.start_of(&end);
-        let base = 1.0 / increments.max(1) as f64;
-        let smallest = base * 0.5f64.powi(self.settings.cuts as i32);
-        let mut reports: Vec<StepReport> = Vec::new();
-        let (mut done, mut length) = (0.0f64, base);
-        let mut cuts = 0;
-        // Whole increments are counted, so that their ends are exact multiples of the base.
-        let mut whole = 0;
-        while whole < increments.max(1) {
-            let next = (whole + 1) as f64 * base;
-            let at_end = done + length >= next - 1e-9 * base;
-            let target = match at_end {
-                true if whole + 1 == increments.max(1) => 1.0,
-                true => next,
-                false => done + length,
-            };
-            match self.advance(&start.towards(&end, target)) {
-                Ok(mut report) => {
-                    report.fraction = target;
-                    report.cuts = cuts;
-                    observe(self, &report);
-                    reports.push(report);
-                    done = target;
-                    whole += usize::from(at_end);
-                    length = (2.0 * length).min(base);
-                    cuts = 0;
-                }
-                Err(error @ StepError::Model(_)) => return Err(error),
-                Err(cause) => {
-                    length *= 0.5;
-                    cuts += 1;
-                    if length < smallest {
-                        let last = reports.last().map_or(0.0, |r| r.plastic_fraction);
-                        let plastic_fraction = match &cause {
-                            StepError::NotConverged {
-                                plastic_fraction, ..
-                            } => plastic_fraction.max(last),
-                            _ => last,
-                        };
-                        return Err(StepError::Stopped {
-                            step: step.name.clone(),
-                            reached: done,
-                            smallest: 2.0 * length,
-                            plastic_fraction,
-                            cause: Box::new(cause),
-                        });
-                    }
-                }
-            }
-        }
-        Ok(reports)
-    }
-
     /// Applies one increment, up to the loading `end`: commits it, or fails and changes nothing.
     ///
     /// # Errors
     /// See [`StepError`].
     pub fn advance(&mut self, end: &Loading<D>) -> Result<StepReport, StepError> {
+        self.advance_watched(end, &mut |_| {})
+    }
+
+    /// [`Driver::advance`], told of every iterate.
+    pub(crate) fn advance_watched(
+        &mut self,
+        end: &Loading<D>,
+        watch: &mut dyn FnMut(&Iteration<'_>),
+    ) -> Result<StepReport, StepError> {
         end.check()?;
         self.pair()?;
         let mut system = self.prepare(end)?;
         let start = self.start_of(end);
         let outcome = match self.settings.nesting {
-            Nesting::Inside => self.increment(&mut system, &start, end, &mut |_, _| {}),
+            Nesting::Inside => self.increment(&mut system, &start, end, &mut |_, now| watch(now)),
             Nesting::Outside {
                 tolerance,
                 iterations,
-            } => self.nested_increment(&mut system, &start, end, tolerance, iterations),
+            } => self.nested_increment(&mut system, &start, end, (tolerance, iterations), watch),
         };
         self.system = Some(system);
         outcome
@@ -467,13 +415,19 @@ impl<const D: usize> Driver<D> {
             return Ok(system);
         }
         self.check_rigid_motions(&fixed)?;
+        self.elastic_system(loading)
+    }
+
+    /// A new linear system for a loading, with the elastic stiffness assembled.
+    pub(crate) fn elastic_system(&mut self, loading: &Loading<D>) -> Result<System, ModelError> {
+        let fixed = |dof: usize| loading.displacement.contains_key(&dof);
         let mut interface: Vec<usize> = self.points.iter().map(|p| p.node).collect();
         for contact in self.contacts.iter().filter(|c| c.pairing.is_some()) {
             interface.extend(self.mesh.node_group(&contact.opposite)?);
         }
         let mut system = System::new(&self.mesh, &self.blocks, fixed, &interface)?;
         system.timings += self.timings();
-        let zero = vec![0.0; dofs];
+        let zero = vec![0.0; self.state.displacement.len()];
         system.assemble(&mut self.blocks, &zero, &zero, Stiffness::Blended(1.0));
         system.scale(self.settings.nesting == Nesting::Inside);
         Ok(system)

@@ -134,6 +134,16 @@ pub enum ModelError {
         /// The admissible range in words.
         expected: &'static str,
     },
+    /// A saved state of another model.
+    #[error("the saved state has {found} {what}, the model {expected}: it is of another model")]
+    Saved {
+        /// What is counted.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
     /// The factor does not fit into memory or a 32-bit index.
     #[error("the factorisation of {unknowns} unknowns does not fit into memory")]
     TooLarge {

@@ -8,7 +8,7 @@ use crate::error::{Imbalance, StepError};
 use crate::interface::{ContactPoint, Footing, Kinematics};
 use crate::line_search::Line;
 use crate::load::{Loading, axis_letter};
-use crate::report::{ContactRecord, StepReport};
+use crate::report::{ContactRecord, Iteration, StepReport};
 use crate::system::{Assembly, System};
 use moreau_contact::{Certificate, ContactError, ContactSolution};
 use moreau_laws::{Local, Status};
@@ -21,6 +21,8 @@ pub(crate) struct Counts {
     pub(crate) newton: usize,
     pub(crate) solves: usize,
     pub(crate) contact: usize,
+    /// Iterations of the contact solver in the last solve.
+    pub(crate) last_contact: usize,
     pub(crate) shortened: usize,
     pub(crate) factorisations: usize,
     pub(crate) residuals: Vec<f64>,
@@ -60,6 +62,17 @@ pub(crate) struct Start {
     pub(crate) factorisations: usize,
 }
 
+impl Iterate {
+    /// Force that nothing balances, at every degree of freedom \[N\]; zero at those not free.
+    pub(crate) fn imbalance<const D: usize>(&self, end: &Loading<D>, free: &[usize]) -> Vec<f64> {
+        let mut residual = vec![0.0; self.d_u.len()];
+        for &d in free {
+            residual[d] = end.force[d] + self.contact[d] - self.assembly.internal[d];
+        }
+        residual
+    }
+}
+
 /// What an increment may be off by, over the residual of its contact solution: that weighs
 /// displacements with a somewhat smaller α.
 const CONTACT_SLACK: f64 = 10.0;
@@ -68,21 +81,21 @@ const CONTACT_SLACK: f64 = 10.0;
 const BLENDS: [f64; 4] = [1e-4, 1e-2, 0.2, 1.0];
 
 impl<const D: usize> Driver<D> {
-    /// Applies the increment from one loading to another and commits it; `observe` sees every
+    /// Applies the increment from one loading to another and commits it; `watch` sees every
     /// iterate.
     pub(crate) fn increment(
         &mut self,
         system: &mut System,
         start: &Loading<D>,
         end: &Loading<D>,
-        observe: &mut dyn FnMut(&Self, &Iterate),
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>),
     ) -> Result<StepReport, StepError> {
         let Start {
             free,
             mut missing,
             mut now,
             factorisations,
-        } = self.begin(system, start, end);
+        } = self.first_iterate(system, start, end);
         let mut counts = Counts {
             solves: 1,
             ..Counts::default()
@@ -98,15 +111,24 @@ impl<const D: usize> Driver<D> {
                 // The normals may have turned with the step.
                 now.contact = self.contact_forces(&kinematics, &s.force);
             }
-            let residual: Vec<f64> = free
-                .iter()
-                .map(|&d| end.force[d] + now.contact[d] - now.assembly.internal[d])
-                .collect();
+            let residual = now.imbalance(end, &free);
             let out_of_balance = largest(residual.iter().copied());
             let scale = force_scale(&now.assembly, end, &now.contact);
             if counts.newton > 0 {
                 counts.residuals.push(out_of_balance);
             }
+            let iteration = Iteration {
+                increment: self.state.increment + 1,
+                cuts: 0,
+                newton: counts.newton,
+                contact_iterations: counts.last_contact,
+                out_of_balance,
+                scale,
+                d_u: &now.d_u,
+                residual: &residual,
+                status: solution.as_ref().map_or(&[], |s| &s.status),
+            };
+            watch(self, &iteration);
             // Forces of an iterative contact solver are out of balance by what it left.
             let left = solution
                 .as_ref()
@@ -128,7 +150,7 @@ impl<const D: usize> Driver<D> {
                 return Ok(self.commit(start, end, candidate));
             }
             if counts.newton >= self.settings.iterations || !out_of_balance.is_finite() {
-                return Err(self.not_converged(&free, &residual, counts.newton, target));
+                return Err(self.not_converged(&residual, counts.newton, target));
             }
             counts.newton += 1;
 
@@ -151,6 +173,7 @@ impl<const D: usize> Driver<D> {
                 .map_err(contact)?;
             system.timings.contact += clock.elapsed();
             counts.contact += solved.iterations;
+            counts.last_contact = solved.iterations;
             let complete = missing.iter().all(|&m| m == 0.0);
             let mut step = std::mem::replace(&mut missing, vec![0.0; now.d_u.len()]);
             let x = condensation.interface(&solved.displacement);
@@ -168,12 +191,11 @@ impl<const D: usize> Driver<D> {
             };
             now = self.search(system, &line, now);
             counts.shortened += usize::from(!now.full);
-            observe(self, &now);
         }
     }
 
     /// The predictor as the first iterate, under the committed contact forces.
-    pub(crate) fn begin(
+    pub(crate) fn first_iterate(
         &mut self,
         system: &mut System,
         start: &Loading<D>,
@@ -339,36 +361,35 @@ impl<const D: usize> Driver<D> {
 
     pub(crate) fn not_converged(
         &self,
-        free: &[usize],
         residual: &[f64],
         iterations: usize,
         target: f64,
     ) -> StepError {
-        let mut force = vec![0.0; self.mesh.nodes().len()];
-        for (&dof, r) in free.iter().zip(residual) {
-            force[dof / D] += r * r;
-        }
-        let mut order: Vec<usize> = (0..force.len()).collect();
-        order.sort_by(|&a, &b| force[b].total_cmp(&force[a]));
-        let worst = order
-            .iter()
-            .take(5)
-            .map(|&node| Imbalance {
-                node,
-                position: self.mesh.nodes()[node].to_vec(),
-                force: force[node].sqrt(),
-            })
-            .collect();
         StepError::NotConverged {
             iterations,
             out_of_balance: largest(residual.iter().copied()),
             tolerance: target,
-            worst,
+            worst: self.worst(residual),
             plastic_fraction: self.plastic_fraction(),
         }
     }
 
-    fn plastic_fraction(&self) -> f64 {
+    /// The five nodes with the largest force that nothing balances, worst first; `residual` has an
+    /// entry for every degree of freedom \[N\].
+    pub fn worst(&self, residual: &[f64]) -> Vec<Imbalance> {
+        let norm = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>().sqrt();
+        let force: Vec<f64> = residual.chunks(D).map(norm).collect();
+        let mut order: Vec<usize> = (0..force.len()).collect();
+        order.sort_by(|&a, &b| force[b].total_cmp(&force[a]));
+        let imbalance = |&node: &usize| Imbalance {
+            node,
+            position: self.mesh.nodes()[node].to_vec(),
+            force: force[node],
+        };
+        order.iter().take(5).map(imbalance).collect()
+    }
+
+    pub(crate) fn plastic_fraction(&self) -> f64 {
         let energies = self.blocks.iter().map(|b| b.energy());
         let (flow, all) =
             energies.fold((0.0, 0.0), |(f, a), e| (f + e.plastic_volume, a + e.volume));

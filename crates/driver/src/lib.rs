@@ -40,7 +40,9 @@ mod load;
 mod model;
 mod nested;
 mod ordering;
+mod ramp;
 mod report;
+mod saved;
 mod system;
 mod timings;
 
@@ -50,5 +52,7 @@ pub use driver::{Driver, Nesting, Settings};
 pub use error::{Imbalance, ModelError, StepError};
 pub use load::{Axis, Loading, Step};
 pub use model::{Analysis, Model};
-pub use report::{ContactRecord, Energies, StepReport};
+pub use ramp::Ramp;
+pub use report::{ContactRecord, Energies, Iteration, StepReport};
+pub use saved::Reader;
 pub use timings::Timings;

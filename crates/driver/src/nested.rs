@@ -7,10 +7,10 @@ use crate::error::StepError;
 use crate::increment::{Candidate, Counts, Iterate, Start, force_scale, largest};
 use crate::line_search::Line;
 use crate::load::Loading;
-use crate::report::StepReport;
+use crate::report::{Iteration, StepReport};
 use crate::system::System;
 use moreau_contact::{ContactError, ContactSolution, uzawa_steps};
-use moreau_laws::Local;
+use moreau_laws::{Local, Status};
 
 impl<const D: usize> Driver<D> {
     /// Applies an increment as section 7.2 of the paper does: t ← proj(t − α ũ(t)), where u(t)
@@ -23,15 +23,15 @@ impl<const D: usize> Driver<D> {
         system: &mut System,
         start: &Loading<D>,
         end: &Loading<D>,
-        tolerance: f64,
-        iterations: usize,
+        (tolerance, iterations): (f64, usize),
+        watch: &mut dyn FnMut(&Iteration<'_>),
     ) -> Result<StepReport, StepError> {
         let Start {
             free,
             mut missing,
             mut now,
             factorisations,
-        } = self.begin(system, start, end);
+        } = self.first_iterate(system, start, end);
         let mut counts = Counts::default();
         let kinematics = self.kinematics(system, start, end, &now.d_u);
         let mut t = self.previous_forces(&kinematics);
@@ -67,16 +67,25 @@ impl<const D: usize> Driver<D> {
                 .fold(0.0, f64::max);
             counts.contact += 1;
             left = residual;
+            let status: Vec<Status> = (0..t.len())
+                .map(|i| law(i).status(&u[i], &t[i], common[i]))
+                .collect();
+            let unbalanced = now.imbalance(end, &free);
+            watch(&Iteration {
+                increment: self.state.increment + 1,
+                cuts: 0,
+                newton: counts.newton,
+                contact_iterations: 1,
+                out_of_balance: residual,
+                scale,
+                d_u: &now.d_u,
+                residual: &unbalanced,
+                status: &status,
+            });
             if residual <= tolerance * scale {
                 counts.factorisations = system.factorisations - factorisations;
-                let status = (0..t.len())
-                    .map(|i| law(i).status(&u[i], &t[i], common[i]))
-                    .collect();
-                let residuals = free
-                    .iter()
-                    .map(|&d| end.force[d] + now.contact[d] - now.assembly.internal[d]);
                 let candidate = Candidate {
-                    out_of_balance: largest(residuals),
+                    out_of_balance: largest(unbalanced.into_iter()),
                     d_u: now.d_u,
                     internal: now.assembly.internal,
                     kinematics,
@@ -131,10 +140,7 @@ impl<const D: usize> Driver<D> {
         counts: &mut Counts,
     ) -> Result<Iterate, StepError> {
         for _ in 0..self.settings.iterations {
-            let residual: Vec<f64> = free
-                .iter()
-                .map(|&d| end.force[d] + now.contact[d] - now.assembly.internal[d])
-                .collect();
+            let residual = now.imbalance(end, free);
             let scale = force_scale(&now.assembly, end, &now.contact);
             let complete = missing.iter().all(|&m| m == 0.0);
             let worst = largest(residual.iter().copied());
@@ -164,15 +170,12 @@ impl<const D: usize> Driver<D> {
             };
             now = self.search(system, &line, now);
         }
-        let residual: Vec<f64> = free
-            .iter()
-            .map(|&d| end.force[d] + now.contact[d] - now.assembly.internal[d])
-            .collect();
+        let residual = now.imbalance(end, free);
         let target = self.target(
             system,
             force_scale(&now.assembly, end, &now.contact),
             &now.d_u,
         );
-        Err(self.not_converged(free, &residual, self.settings.iterations, target))
+        Err(self.not_converged(&residual, self.settings.iterations, target))
     }
 }

@@ -31,6 +31,31 @@ impl Energies {
     }
 }
 
+/// An iterate on the way to an increment, whether that converges or not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Iteration<'a> {
+    /// Number of the increment that is tried, from 1.
+    pub increment: usize,
+    /// Times that it has been halved.
+    pub cuts: usize,
+    /// Newton iterations done, 0 for the predictor; under the paper's nesting those of all
+    /// nonlinear solves.
+    pub newton: usize,
+    /// Iterations of the contact solver in the last of them.
+    pub contact_iterations: usize,
+    /// Largest nodal force that nothing balances \[N\]; under the paper's nesting, largest residual
+    /// of the contact law.
+    pub out_of_balance: f64,
+    /// Largest nodal force in play \[N\].
+    pub scale: f64,
+    /// Displacement increments of the candidate, at every degree of freedom \[mm\].
+    pub d_u: &'a [f64],
+    /// Force that nothing balances, at every degree of freedom \[N\].
+    pub residual: &'a [f64],
+    /// Status of every contact point; empty before the first solution.
+    pub status: &'a [Status],
+}
+
 /// Report of a converged increment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepReport {

@@ -245,6 +245,11 @@ impl System {
         };
     }
 
+    /// Whether the factor held is that of the elastic stiffness.
+    pub(crate) fn holds_elastic_factor(&self) -> bool {
+        self.elastic_factor
+    }
+
     /// Largest diagonal of the elastic stiffness \[N/mm\].
     pub(crate) fn stiffest(&self) -> f64 {
         self.stiffest

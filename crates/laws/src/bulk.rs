@@ -2,6 +2,19 @@
 
 use moreau_mandel::{Sym2, Sym4};
 
+/// The numbers that a state consists of, always the same count in the same order: enough to write
+/// the state to a file and to read it back to the bit.
+pub trait Numbers {
+    /// Hands every number on, to be read or replaced.
+    fn visit(&mut self, each: &mut dyn FnMut(&mut f64));
+}
+
+impl Numbers for Sym2 {
+    fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        self.iter_mut().for_each(each);
+    }
+}
+
 /// Outcome of a step at a material point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response<S> {
@@ -20,7 +33,7 @@ pub struct Response<S> {
 /// kinematics, not laws. A strain that is not a number gives a stress that is not a number.
 pub trait BulkLaw: 'static + Clone + Send + Sync {
     /// What the material remembers; the default is the virgin state.
-    type State: Copy + Default + Send + Sync + PartialEq + std::fmt::Debug;
+    type State: Copy + Default + Send + Sync + PartialEq + std::fmt::Debug + Numbers;
 
     /// Response to the strain increment Δε of the whole step, from the state at its start.
     fn respond(&self, old: &Self::State, d_eps: &Sym2) -> Response<Self::State>;

@@ -1,7 +1,7 @@
 //! Von Mises plasticity with linear hardening, \[5\]-\[9\] and \[57\]-\[65\]; not a law of finite
 //! strain, though logarithmic strains may be fed to it.
 
-use crate::bulk::{BulkLaw, IncrementalPotential, Response};
+use crate::bulk::{BulkLaw, IncrementalPotential, Numbers, Response};
 use crate::duality::{Superpotential, at_most, indicator, restricted};
 use crate::elastic::Elastic;
 use crate::error::{LawError, non_negative, positive};
@@ -52,6 +52,14 @@ pub struct VonMisesState {
     pub plastic_strain: Sym2,
     /// Equivalent plastic strain p ≥ 0, \[60\].
     pub p: f64,
+}
+
+impl Numbers for VonMisesState {
+    fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        self.elastic_strain.visit(each);
+        self.plastic_strain.visit(each);
+        each(&mut self.p);
+    }
 }
 
 /// Isotropic elasticity with the yield criterion of von Mises, associated flow, and linear

@@ -255,12 +255,6 @@ fn what_is_doubtful_is_a_warning() {
         &["nothing loads the model"],
     );
     says("quad8", "quad4", "yield-stress", &["locks in plastic flow"]);
-    says(
-        "[expect]",
-        "[output]\ncheckpoint = 5\n[expect]",
-        "checkpoint",
-        &["not available yet"],
-    );
     let twice = "[[tool]]\nname = \"idle\"\nplane = { point = [0, 9], normal = [0, 1] }\n[[tool]]";
     says(
         "[[tool]]",

@@ -182,6 +182,7 @@ fn tail(deck: &Deck, out: &mut String) -> fmt::Result {
         writeln!(out, "directory = {}", text(directory))?;
     }
     writeln!(out, "vtu = \"{}\"", Vtu::NAMES[deck.vtu as usize])?;
+    writeln!(out, "checkpoint = {}", deck.checkpoint)?;
     if !deck.expectations.is_empty() {
         writeln!(out, "\n[expect]")?;
     }

@@ -276,6 +276,8 @@ pub struct Deck {
     pub directory: Option<String>,
     /// Which VTU files.
     pub vtu: Vtu,
+    /// Increments between checkpoints; 0: none.
+    pub checkpoint: usize,
     /// Expectations.
     pub expectations: Vec<Expectation>,
 }

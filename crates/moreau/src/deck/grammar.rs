@@ -74,7 +74,7 @@ fn deck(root: &Table<'_>) -> Deck {
         missing(root, "[[step]]", "name, increments, fix, move and load");
     }
     let solver = solver::read_solver(root);
-    let (directory, vtu) = solver::read_output(root);
+    let (directory, vtu, checkpoint) = solver::read_output(root);
     Deck {
         title: title.map_or_else(String::new, |t| t.value),
         units: units.unwrap_or(Units::MmNMpa),
@@ -91,6 +91,7 @@ fn deck(root: &Table<'_>) -> Deck {
         solver,
         directory,
         vtu,
+        checkpoint,
         expectations: solver::read_expectations(root),
     }
 }

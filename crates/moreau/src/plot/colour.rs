@@ -39,3 +39,8 @@ pub(super) fn colour(level: usize) -> String {
     });
     format!("#{r:02x}{g:02x}{b:02x}")
 }
+
+/// The colours of a field, as "#rrggbb", from the least value to the largest.
+pub fn colours() -> Vec<String> {
+    (0..LEVELS).map(colour).collect()
+}

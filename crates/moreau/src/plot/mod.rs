@@ -50,6 +50,7 @@ mod sheet;
 mod text;
 
 pub use chart::{Chart, ChartAxis, Scale, Series, Style};
+pub use colour::colours;
 pub use error::PlotError;
 pub use nodal::nodal_average;
 pub use picture::{Field, MeshPicture};

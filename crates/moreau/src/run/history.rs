@@ -62,26 +62,16 @@ pub(super) struct Place<'a> {
     pub(super) stage: usize,
     /// Directions in which the step holds or moves each group.
     pub(super) directions: &'a [Vec<usize>],
-    /// Translation of every tool.
-    pub(super) tools: Vec<Vec<f64>>,
 }
 
-/// The part of the way between two sets of translations.
-pub(super) fn between(from: &[Vec<f64>], to: &[Vec<f64>], part: f64) -> Vec<Vec<f64>> {
-    let mix = |a: &Vec<f64>, b: &Vec<f64>| {
-        let pairs = a.iter().zip(b);
-        pairs.map(|(a, b)| a + part * (b - a)).collect()
-    };
-    from.iter().zip(to).map(|(a, b)| mix(a, b)).collect()
-}
-
-/// The rows so far.
+/// How a row is made, and the last one.
 pub(super) struct History {
     units: Units,
     columns: Vec<(String, Unit)>,
     held: Vec<[String; 2]>,
     tools: Vec<String>,
-    pub(super) rows: Vec<Vec<f64>>,
+    /// The last row; empty before the first.
+    pub(super) last: Vec<f64>,
 }
 
 impl History {
@@ -96,7 +86,7 @@ impl History {
             columns: names_of(dimension, held.iter().map(|[n, _]| n).chain(&tools)),
             held,
             tools,
-            rows: Vec::new(),
+            last: Vec::new(),
         }
     }
 
@@ -111,7 +101,7 @@ impl History {
         self.columns.iter().map(label).collect::<Vec<_>>().join(",")
     }
 
-    /// Adds a row, and returns it as a line.
+    /// Makes the row of an increment, and returns it as a line.
     pub(super) fn record<const D: usize>(
         &mut self,
         driver: &Driver<D>,
@@ -154,19 +144,19 @@ impl History {
                 sum / list.len() as f64
             }));
         }
-        for (tool, motion) in self.tools.iter().zip(&place.tools) {
+        for (tool, motion) in self.tools.iter().zip(&driver.applied().tools) {
             let force = driver.tool_force(tool).ok();
             row.extend((0..D).map(|i| force.map_or(f64::NAN, |f| f[i])));
             row.extend(motion);
         }
         let line: Vec<String> = row.iter().map(|&v| number(v)).collect();
-        self.rows.push(row);
+        self.last = row;
         line.join(",")
     }
 
     /// Steps done so far, with the part of the current one.
     pub(super) fn time(&self) -> f64 {
-        self.rows.last().map_or(0.0, |row| row[2])
+        self.last.get(2).copied().unwrap_or(0.0)
     }
 
     /// Names of the columns.
@@ -174,9 +164,9 @@ impl History {
         self.columns.iter().map(|(name, _)| name.as_str())
     }
 
-    /// A column, by name.
-    pub(super) fn column(&self, name: &str) -> Option<Vec<f64>> {
+    /// The last value of a column, by name.
+    pub(super) fn value(&self, name: &str) -> Option<f64> {
         let index = self.names().position(|n| n == name)?;
-        Some(self.rows.iter().map(|row| row[index]).collect())
+        self.last.get(index).copied()
     }
 }

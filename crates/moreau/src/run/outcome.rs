@@ -1,11 +1,13 @@
 //! How a run ended: status, certificate, expectations, and a summary to paste into a report; not
 //! its course.
 
+use super::diagnosis::Diagnosis;
 use super::history::History;
 use crate::contact::Certificate;
 use crate::deck::{Deck, Units};
-use crate::driver::{Driver, StepError, StepReport};
+use crate::driver::{Driver, Energies, ModelError, Reader, StepError, StepReport};
 use crate::laws::Status;
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// How a run ended.
@@ -17,6 +19,28 @@ pub enum RunStatus {
     Refused(String),
     /// A step stopped; what converged before is kept.
     NotConverged(String),
+    /// Stopped from outside after this increment; the run can be resumed.
+    Interrupted(usize),
+}
+
+impl RunStatus {
+    /// The word for it in `run.json`.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Refused(_) => "refused",
+            Self::NotConverged(_) => "not converged",
+            Self::Interrupted(_) => "interrupted",
+        }
+    }
+
+    pub(super) fn of(failure: Option<&StepError>) -> Self {
+        match failure {
+            None => Self::Done,
+            Some(StepError::Model(error)) => Self::Refused(error.to_string()),
+            Some(error) => Self::NotConverged(error.to_string()),
+        }
+    }
 }
 
 /// An expectation and what came of it.
@@ -43,12 +67,12 @@ impl Verdict {
 pub(super) struct Tally {
     factorisations: usize,
     newton: usize,
+    contact: usize,
     cuts: usize,
     certificate: Certificate,
     relative_gap: f64,
     /// Whether each contact was ever closed.
     closed: Vec<bool>,
-    last: Option<StepReport>,
 }
 
 impl Tally {
@@ -57,17 +81,18 @@ impl Tally {
         Self {
             factorisations: 0,
             newton: 0,
+            contact: 0,
             cuts: 0,
             certificate: Certificate::default(),
             relative_gap: 0.0,
             closed: vec![false; contacts.unwrap_or(0)],
-            last: None,
         }
     }
 
     pub(super) fn add<const D: usize>(&mut self, driver: &Driver<D>, report: &StepReport) {
         self.factorisations += report.factorisations;
         self.newton += report.newton_iterations;
+        self.contact += report.contact_iterations;
         self.cuts += report.cuts;
         let (all, one) = (&mut self.certificate, &report.certificate);
         all.bipotential_gap = all.bipotential_gap.max(one.bipotential_gap);
@@ -81,7 +106,32 @@ impl Tally {
         {
             self.closed[c.contact] = true;
         }
-        self.last = Some(report.clone());
+    }
+
+    /// Appends all that [`Tally::read`] needs.
+    pub(super) fn write(&self, out: &mut Vec<f64>) {
+        let counts = [self.factorisations, self.newton, self.contact, self.cuts];
+        out.extend(counts.map(|n| n as f64));
+        let c = &self.certificate;
+        out.extend([c.bipotential_gap, c.penetration, c.excess_force]);
+        out.push(self.relative_gap);
+        out.extend(self.closed.iter().map(|&c| f64::from(u8::from(c))));
+    }
+
+    /// Takes over what [`Tally::write`] left.
+    pub(super) fn read(&mut self, from: &mut Reader<'_>) -> Result<(), ModelError> {
+        self.factorisations = from.count()?;
+        self.newton = from.count()?;
+        self.contact = from.count()?;
+        self.cuts = from.count()?;
+        self.certificate.bipotential_gap = from.number()?;
+        self.certificate.penetration = from.number()?;
+        self.certificate.excess_force = from.number()?;
+        self.relative_gap = from.number()?;
+        for closed in &mut self.closed {
+            *closed = from.count()? == 1;
+        }
+        Ok(())
     }
 }
 
@@ -100,6 +150,8 @@ pub struct Outcome {
     pub increments: usize,
     /// Newton iterations of the converged increments.
     pub newton_iterations: usize,
+    /// Iterations of the contact solver in the converged increments.
+    pub contact_iterations: usize,
     /// Sparse factorisations of the converged increments.
     pub factorisations: usize,
     /// Times that increments were halved before they converged.
@@ -112,27 +164,35 @@ pub struct Outcome {
     pub certificate: Certificate,
     /// The largest gap in parts of the external work.
     pub relative_gap: f64,
-    /// The last converged increment.
-    pub last: Option<StepReport>,
+    /// Contact points that are open, stick and slip at the end; those held along the surface are
+    /// not counted as sticking or slipping.
+    pub contacts: [usize; 3],
+    /// Energies at the end.
+    pub energies: Energies,
     /// Final forces and displacements by column of `history.csv`.
     pub values: Vec<(String, f64)>,
     /// What came of the expectations.
     pub verdicts: Vec<Verdict>,
     /// Doubts about the run.
     pub warnings: Vec<String>,
+    /// Why it did not converge.
+    pub diagnosis: Option<Diagnosis>,
 }
 
 pub(super) fn conclude<const D: usize>(
     driver: &Driver<D>,
     deck: &Deck,
-    history: History,
-    tally: Tally,
-    failure: Option<StepError>,
+    history: &History,
+    tally: &Tally,
+    (status, diagnosis): (RunStatus, Option<Diagnosis>),
     seconds: f64,
 ) -> Outcome {
-    let last = |name: &str| {
-        let column = history.column(name)?;
-        column.last().copied()
+    let last = |name: &str| history.value(name);
+    let count = |status| {
+        let points = driver.contacts().iter();
+        points
+            .filter(|c| c.status == status && (status == Status::Open || !c.held))
+            .count()
     };
     let verdict = |e: &crate::deck::Expectation| Verdict {
         column: e.column.value.clone(),
@@ -142,7 +202,7 @@ pub(super) fn conclude<const D: usize>(
     };
     let never = |(k, closed): (usize, &bool)| {
         let (surface, tool) = driver.contact_name(k);
-        (!closed && tally.last.is_some())
+        (!closed && driver.increments() > 0)
             .then(|| format!("the contact of \"{surface}\" with \"{tool}\" never closed"))
     };
     let values = history
@@ -153,14 +213,11 @@ pub(super) fn conclude<const D: usize>(
     Outcome {
         title: deck.title.clone(),
         units: deck.units,
-        status: match failure {
-            None => RunStatus::Done,
-            Some(StepError::Model(error)) => RunStatus::Refused(error.to_string()),
-            Some(error) => RunStatus::NotConverged(error.to_string()),
-        },
+        status,
         seconds,
         increments: driver.increments(),
         newton_iterations: tally.newton,
+        contact_iterations: tally.contact,
         factorisations: tally.factorisations,
         cuts: tally.cuts,
         dofs: D * driver.mesh().nodes().len(),
@@ -170,7 +227,9 @@ pub(super) fn conclude<const D: usize>(
         values,
         verdicts: deck.expectations.iter().map(verdict).collect(),
         warnings: tally.closed.iter().enumerate().filter_map(never).collect(),
-        last: tally.last,
+        contacts: [Status::Open, Status::Stick, Status::Slip].map(count),
+        energies: driver.energies(),
+        diagnosis,
     }
 }
 
@@ -183,18 +242,13 @@ impl Outcome {
     /// The error, if there was one.
     pub fn error(&self) -> Option<&str> {
         match &self.status {
-            RunStatus::Done => None,
+            RunStatus::Done | RunStatus::Interrupted(_) => None,
             RunStatus::Refused(error) | RunStatus::NotConverged(error) => Some(error),
         }
     }
 
     /// The content of `run.json`.
     pub(super) fn json(&self) -> String {
-        let status = match &self.status {
-            RunStatus::Done => "done",
-            RunStatus::Refused(_) => "refused",
-            RunStatus::NotConverged(_) => "not converged",
-        };
         let verdict = |v: &Verdict| {
             serde_json::json!({
                 "column": v.column, "expected": v.expected, "tolerance": v.tolerance,
@@ -204,11 +258,12 @@ impl Outcome {
         let value = serde_json::json!({
             "title": self.title,
             "units": self.units.name(),
-            "status": status,
+            "status": self.status.name(),
             "error": self.error(),
             "seconds": self.seconds,
             "increments": self.increments,
             "newton_iterations": self.newton_iterations,
+            "contact_iterations": self.contact_iterations,
             "factorisations": self.factorisations,
             "peak_memory_mb": peak_memory(),
             "dofs": self.dofs,
@@ -219,8 +274,10 @@ impl Outcome {
                 "penetration": self.certificate.penetration,
                 "excess_force": self.certificate.excess_force,
             },
+            "values": self.values.iter().cloned().collect::<BTreeMap<_, _>>(),
             "expectations": self.verdicts.iter().map(verdict).collect::<Vec<_>>(),
             "warnings": self.warnings,
+            "diagnosis": self.diagnosis.as_ref().map(Diagnosis::json),
         });
         format!("{value:#}\n")
     }
@@ -244,28 +301,27 @@ impl fmt::Display for Outcome {
             RunStatus::Done => "done".to_owned(),
             RunStatus::Refused(error) => format!("refused: {error}"),
             RunStatus::NotConverged(error) => format!("not converged: {error}"),
+            RunStatus::Interrupted(increment) => format!("interrupted after increment {increment}"),
         };
         writeln!(f, "  status        {status}")?;
         writeln!(
             f,
-            "  effort        {} increments, {} Newton iterations, {} factorisations, {} cuts; \
+            "  effort        {} increments, {} Newton and {} contact iterations, {} factorisations, {} cuts; \
              {:.2} s on {} threads, {} degrees of freedom",
             self.increments,
             self.newton_iterations,
+            self.contact_iterations,
             self.factorisations,
             self.cuts,
             self.seconds,
             self.threads,
             self.dofs
         )?;
-        if let Some(last) = &self.last {
-            let e = &last.energies;
+        if self.increments > 0 {
+            let e = &self.energies;
+            let [open, stick, slip] = self.contacts;
             let energy = units.energy();
-            writeln!(
-                f,
-                "  contact       {} open, {} stick, {} slip",
-                last.open, last.stick, last.slip
-            )?;
+            writeln!(f, "  contact       {open} open, {stick} stick, {slip} slip")?;
             writeln!(
                 f,
                 "  energy        external {:.6e} {energy} = stored {:.6e} + plastic {:.6e} + \
@@ -303,6 +359,9 @@ impl fmt::Display for Outcome {
                 "  expect {} = {:.8e} ± {:.2e}: found {:.8e}, {mark}",
                 v.column, v.expected, v.tolerance, v.found
             )?;
+        }
+        if let Some(diagnosis) = &self.diagnosis {
+            write!(f, "{diagnosis}")?;
         }
         for warning in &self.warnings {
             writeln!(f, "  warning: {warning}")?;

@@ -1,40 +1,80 @@
 //! Results as VTK files: bodies and contact surfaces of an increment, and the list of all; appended
-//! binary data, compressed. No file is read back.
+//! binary data, compressed.
 
+use super::RunError;
+use super::files::{Stream, read_text, write_file};
 use super::view::{NodalField, View};
-use super::{OutputError, write_file};
 use crate::driver::{ContactRecord, Driver};
 use crate::laws::Status;
 use crate::mesh::{CellKind, Facet, FacetKind};
-use flate2::{Compression, write::ZlibEncoder};
+use flate2::{Compression, read::ZlibDecoder, write::ZlibEncoder};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::io::Write as _;
-use std::path::PathBuf;
+use std::io::{Read as _, Write as _};
+use std::path::{Path, PathBuf};
 
 /// Bytes that are compressed together.
 const BLOCK: usize = 32768;
 
+/// Name of the list.
+const LIST: &str = "result.pvd";
+const LIST_HEAD: &str = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
+                         byte_order=\"LittleEndian\">\n<Collection>";
+const LIST_TAIL: &str = "</Collection>\n</VTKFile>\n";
+
 /// The files written so far, listed in `result.pvd`.
 pub(super) struct Collection {
-    pub(super) directory: PathBuf,
-    entries: Vec<(f64, usize, String)>,
+    directory: PathBuf,
+    list: Option<Stream>,
 }
 
 impl Collection {
-    pub(super) fn new(directory: PathBuf) -> Self {
-        Self {
-            directory,
-            entries: Vec::new(),
+    /// The collection as it was when its list had a length; files that came later are
+    /// removed. At 0 it is empty; the list begins with the first file.
+    pub(super) fn reopen(directory: PathBuf, length: u64) -> Result<Self, RunError> {
+        let path = directory.join(LIST);
+        let mut kept = String::new();
+        let mut list = None;
+        if length > 0 {
+            let mut stream = Stream::reopen(path.clone(), length)?;
+            stream.tail(LIST_TAIL)?;
+            list = Some(stream);
+            kept = read_text(&path)?;
+        } else {
+            let _ = std::fs::remove_file(path);
         }
+        for entry in std::fs::read_dir(&directory)
+            .into_iter()
+            .flatten()
+            .flatten()
+        {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let ours = ["body_", "contact_", "failed"]
+                .iter()
+                .any(|p| name.starts_with(p));
+            if ours && name.ends_with(".vtu") && !kept.contains(&format!("\"{name}\"")) {
+                // One that stays does no harm.
+                let _ = std::fs::remove_file(entry.path());
+            }
+        }
+        Ok(Self { directory, list })
     }
 
-    /// Writes the state of a driver, and the list anew.
+    /// Length of the list without its end.
+    pub(super) fn length(&self) -> u64 {
+        self.list.as_ref().map_or(0, Stream::length)
+    }
+
+    pub(super) fn sync(&mut self) -> Result<(), RunError> {
+        self.list.as_mut().map_or(Ok(()), Stream::sync)
+    }
+
+    /// Writes the state of a driver, and lists it.
     pub(super) fn add<const D: usize>(
         &mut self,
         driver: &Driver<D>,
         time: f64,
-    ) -> Result<(), OutputError>
+    ) -> Result<(), RunError>
     where
         Driver<D>: View,
     {
@@ -43,24 +83,119 @@ impl Collection {
         if let Some(contact) = surface(driver) {
             files.push((1, format!("contact_{number:05}.vtu"), contact));
         }
+        let mut list = match self.list.take() {
+            Some(list) => list,
+            None => {
+                let mut list = Stream::create(self.directory.join(LIST))?;
+                list.line(LIST_HEAD)?;
+                list
+            }
+        };
         for (part, name, file) in files {
             write_file(&self.directory.join(&name), &file.bytes())?;
-            self.entries.push((time, part, name));
-        }
-        let mut text = String::from(
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
-             byte_order=\"LittleEndian\">\n<Collection>\n",
-        );
-        for (time, part, name) in &self.entries {
-            // Writing to a string does not fail.
-            let _ = writeln!(
-                text,
+            list.line(&format!(
                 "<DataSet timestep=\"{time}\" part=\"{part}\" file=\"{name}\"/>"
-            );
+            ))?;
         }
-        text.push_str("</Collection>\n</VTKFile>\n");
-        write_file(&self.directory.join("result.pvd"), text.as_bytes())
+        list.tail(LIST_TAIL)?;
+        self.list = Some(list);
+        Ok(())
     }
+
+    /// Writes a candidate that did not converge: its displacement and what nothing balances.
+    pub(super) fn failed<const D: usize>(
+        &self,
+        driver: &Driver<D>,
+        displacement: &[f64],
+        residual: &[f64],
+    ) -> Result<(), RunError>
+    where
+        Driver<D>: View,
+    {
+        let mut grid = body(driver);
+        let vector = |name: &str, values: &[f64]| Array {
+            name: name.to_owned(),
+            components: 3,
+            values: values.chunks(D).flat_map(three).collect(),
+        };
+        grid.point_data[0] = vector("displacement", displacement);
+        grid.point_data.push(vector("out_of_balance", residual));
+        write_file(&self.directory.join("failed.vtu"), &grid.bytes())
+    }
+}
+
+/// Number, time and file of the bodies listed in a directory; none without a list.
+pub(super) fn bodies(directory: &Path) -> Vec<(usize, f64, PathBuf)> {
+    let text = std::fs::read_to_string(directory.join(LIST)).unwrap_or_default();
+    let body = |line: &str| {
+        let file = attribute(line, "file")?;
+        let number = file.strip_prefix("body_")?.strip_suffix(".vtu")?.parse();
+        let time = attribute(line, "timestep")?.parse().ok()?;
+        Some((number.ok()?, time, directory.join(file)))
+    };
+    text.lines().filter_map(body).collect()
+}
+
+/// The value of an attribute in a tag.
+fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
+    let (_, after) = tag.split_once(&format!(" {name}=\""))?;
+    after.split_once('"').map(|(value, _)| value)
+}
+
+/// The values at the nodes in a file that a run wrote.
+pub(super) fn read_point_data(path: &Path) -> Result<Vec<Array>, RunError> {
+    let error = |source| RunError::Read {
+        path: path.to_owned(),
+        source,
+    };
+    let bytes = std::fs::read(path).map_err(error)?;
+    point_data(&bytes)
+        .ok_or_else(|| error(std::io::Error::other("it is not a file of a run, or torn")))
+}
+
+fn point_data(bytes: &[u8]) -> Option<Vec<Array>> {
+    const START: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
+    let at = bytes.windows(START.len()).position(|w| w == START)?;
+    let head = std::str::from_utf8(&bytes[..at]).ok()?;
+    let data = &bytes[at + START.len()..];
+    let section = head
+        .split("<PointData>")
+        .nth(1)?
+        .split("</PointData>")
+        .next()?;
+    let array = |tag: &str| {
+        let offset: usize = attribute(tag, "offset")?.parse().ok()?;
+        let values = decompressed(data.get(offset..)?)?;
+        let number = |b: &[u8]| f64::from_le_bytes(std::array::from_fn(|i| b[i]));
+        Some(Array {
+            name: attribute(tag, "Name")?.to_owned(),
+            components: attribute(tag, "NumberOfComponents")?.parse().ok()?,
+            values: values.chunks_exact(8).map(number).collect(),
+        })
+    };
+    section
+        .lines()
+        .filter(|l| l.starts_with("<DataArray"))
+        .map(array)
+        .collect()
+}
+
+/// The inverse of [`compressed`], from the start of `bytes`.
+fn decompressed(bytes: &[u8]) -> Option<Vec<u8>> {
+    let word = |k: usize| -> Option<usize> {
+        let bytes: [u8; 8] = bytes.get(8 * k..8 * k + 8)?.try_into().ok()?;
+        usize::try_from(u64::from_le_bytes(bytes)).ok()
+    };
+    let blocks = word(0)?;
+    let mut at = 8usize.checked_mul(blocks.checked_add(3)?)?;
+    let mut out = Vec::new();
+    for block in 0..blocks {
+        let end = at.checked_add(word(3 + block)?)?;
+        let mut stream = ZlibDecoder::new(bytes.get(at..end)?);
+        stream.read_to_end(&mut out).ok()?;
+        at = end;
+    }
+    Some(out)
 }
 
 /// An unstructured grid.
@@ -73,15 +208,24 @@ struct Grid {
 }
 
 /// Values of points or cells.
-struct Array {
-    name: &'static str,
-    components: usize,
-    values: Vec<f64>,
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Array {
+    pub(super) name: String,
+    pub(super) components: usize,
+    pub(super) values: Vec<f64>,
 }
 
 /// Fills up with zeros to three components.
 fn three(v: &[f64]) -> [f64; 3] {
     std::array::from_fn(|i| v.get(i).copied().unwrap_or(0.0))
+}
+
+/// Values at the nodes of the body of a driver.
+pub(super) fn nodal<const D: usize>(driver: &Driver<D>) -> Vec<Array>
+where
+    Driver<D>: View,
+{
+    body(driver).point_data
 }
 
 fn body<const D: usize>(driver: &Driver<D>) -> Grid
@@ -90,8 +234,8 @@ where
 {
     let mesh = driver.mesh();
     let nodes = 0..mesh.nodes().len();
-    let scalar = |name, field| Array {
-        name,
+    let scalar = |name: &str, field| Array {
+        name: name.to_owned(),
         components: 1,
         values: driver.nodal(field),
     };
@@ -105,7 +249,7 @@ where
         cells: (0..mesh.cell_count()).map(cell).collect(),
         point_data: vec![
             Array {
-                name: "displacement",
+                name: "displacement".into(),
                 components: 3,
                 values: displacement.collect(),
             },
@@ -113,7 +257,7 @@ where
             scalar("equivalent_plastic_strain", NodalField::PlasticStrain),
         ],
         cell_data: vec![Array {
-            name: "cell",
+            name: "cell".into(),
             components: 1,
             values: (0..mesh.cell_count()).map(|c| c as f64).collect(),
         }],
@@ -146,10 +290,10 @@ fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
             contact.push(k as f64);
         }
     }
-    let array = |name, value: &dyn Fn(&ContactRecord<D>) -> Vec<f64>| {
+    let array = |name: &str, value: &dyn Fn(&ContactRecord<D>) -> Vec<f64>| {
         let values: Vec<Vec<f64>> = records.iter().map(value).collect();
         Array {
-            name,
+            name: name.to_owned(),
             components: values.first().map_or(1, Vec::len),
             values: values.concat(),
         }
@@ -177,7 +321,7 @@ fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
             }),
         ],
         cell_data: vec![Array {
-            name: "contact",
+            name: "contact".into(),
             components: 1,
             values: contact,
         }],
@@ -231,7 +375,7 @@ impl Grid {
             head.push_str(&format!("<{tag}>\n"));
             for array in arrays {
                 let bytes = floats(&array.values);
-                add(&mut head, array.name, "Float64", array.components, &bytes);
+                add(&mut head, &array.name, "Float64", array.components, &bytes);
             }
             head.push_str(&format!("</{tag}>\n"));
         }

@@ -1,7 +1,10 @@
-//! The `moreau` command: checks and runs decks; all that it does is in the library.
+//! The `moreau` command: checks, runs, resumes, compares and draws; all that it does is in the
+//! library.
 #![allow(clippy::print_stdout, clippy::print_stderr)] // It talks to a person.
 
+mod bench;
 mod check;
+mod plot;
 mod progress;
 mod run;
 
@@ -11,15 +14,15 @@ use std::process::ExitCode;
 
 /// Exit status for input that makes no sense.
 const INPUT_ERROR: u8 = 1;
-/// Exit status for a run that did not converge.
+/// Exit status for a run that did not converge, or was interrupted: what converged is kept.
 const NOT_CONVERGED: u8 = 2;
 /// Exit status for an expectation that failed.
 const UNEXPECTED: u8 = 3;
 
 /// Elastoplastic solids in unilateral contact with Coulomb friction.
 ///
-/// Exit status: 0 done, 1 input error, 2 not converged (what converged is kept and written), 3 an
-/// expectation failed.
+/// Exit status: 0 done, 1 input error, 2 not converged or interrupted (what converged is kept and
+/// written), 3 an expectation failed.
 #[derive(Debug, Parser)]
 #[command(name = "moreau", version)]
 struct Arguments {
@@ -34,23 +37,62 @@ enum Command {
         /// The deck.
         deck: PathBuf,
     },
-    /// Runs a deck and writes its results.
+    /// Runs a deck and writes its results. Ctrl-C finishes the increment, and `resume` goes on.
     Run {
         /// The deck.
         deck: PathBuf,
         /// Directory of the results, instead of the deck's.
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// Threads, instead of the deck's; 0: all. The results do not depend on it.
-        #[arg(long)]
-        threads: Option<usize>,
-        /// Fail with status 3 if an expectation of the deck is not met.
-        #[arg(long)]
-        verify: bool,
-        /// No progress and no summary.
-        #[arg(long)]
-        quiet: bool,
+        #[command(flatten)]
+        manner: Manner,
     },
+    /// Continues a run from its last checkpoint, as if it had never stopped.
+    Resume {
+        /// Directory of the results.
+        directory: PathBuf,
+        #[command(flatten)]
+        manner: Manner,
+    },
+    /// Runs a deck under every contact algorithm and compares.
+    Bench {
+        /// The deck.
+        deck: PathBuf,
+        /// Directory of the results, instead of the deck's name with `-bench`.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
+    /// Draws a run again: history, contact line, deformed body, report.
+    Plot {
+        /// Directory of the results.
+        directory: PathBuf,
+        /// Field on the body, as in `von_mises` or `displacement.x`.
+        #[arg(long)]
+        field: Option<String>,
+        /// Increment, instead of the last.
+        #[arg(long)]
+        increment: Option<usize>,
+        /// How many times displacements are drawn.
+        #[arg(long, value_name = "FACTOR")]
+        scale: Option<f64>,
+    },
+}
+
+/// How a run goes on.
+#[derive(Debug, clap::Args)]
+struct Manner {
+    /// Threads, instead of the deck's; 0: all. The results do not depend on it.
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Fail with status 3 if an expectation of the deck is not met.
+    #[arg(long)]
+    verify: bool,
+    /// No progress and no summary.
+    #[arg(long)]
+    quiet: bool,
+    /// Every iteration as a line of JSON on stdout, instead of progress and summary.
+    #[arg(long)]
+    json_log: bool,
 }
 
 fn main() -> ExitCode {
@@ -67,19 +109,22 @@ fn main() -> ExitCode {
     };
     let status = match arguments.command {
         Command::Check { deck } => check::check(&deck),
-        Command::Run {
-            deck,
-            out,
-            threads,
-            verify,
-            quiet,
-        } => run::run(&run::Request {
-            deck,
-            out,
-            threads,
-            verify,
-            quiet,
-        }),
+        Command::Run { deck, out, manner } => run::run(&deck, out, &manner),
+        Command::Resume { directory, manner } => run::resume(&directory, &manner),
+        Command::Bench { deck, out } => bench::bench(&deck, out),
+        Command::Plot {
+            directory,
+            field,
+            increment,
+            scale,
+        } => {
+            let drawing = moreau::run::Drawing {
+                field,
+                increment,
+                magnification: scale,
+            };
+            plot::plot(&directory, &drawing)
+        }
     };
     ExitCode::from(status)
 }

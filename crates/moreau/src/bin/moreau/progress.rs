@@ -1,17 +1,23 @@
-//! One line for each increment on stderr: a bar on a terminal, plain lines elsewhere.
+//! One line for each increment on stderr, a bar on a terminal, plain lines elsewhere; or every
+//! iteration as JSON on stdout. And the wish to stop.
 
 use indicatif::{ProgressBar, ProgressStyle};
-use moreau::run::Event;
-use std::io::IsTerminal;
+use moreau::run::{Event, Watch};
+use std::io::{IsTerminal, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Shows increments as they converge.
+/// Shows a run as it goes on.
 pub(crate) struct Progress {
     bar: Option<ProgressBar>,
     quiet: bool,
+    json: bool,
+    stop: Arc<AtomicBool>,
 }
 
 impl Progress {
-    pub(crate) fn new(quiet: bool) -> Self {
+    pub(crate) fn new(quiet: bool, json: bool, stop: Arc<AtomicBool>) -> Self {
+        let quiet = quiet || json;
         let terminal = std::io::stderr().is_terminal();
         let bar = (terminal && !quiet).then(|| {
             let bar = ProgressBar::new(1000);
@@ -19,10 +25,33 @@ impl Progress {
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
             bar
         });
-        Self { bar, quiet }
+        Self {
+            bar,
+            quiet,
+            json,
+            stop,
+        }
     }
 
-    pub(crate) fn show(&self, event: &Event<'_>) {
+    pub(crate) fn end(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish();
+        }
+    }
+}
+
+/// A duration for a person.
+fn span(seconds: f64) -> String {
+    let s = seconds.max(0.0).round() as u64;
+    match s {
+        0..60 => format!("{s} s"),
+        60..3600 => format!("{} min {:02} s", s / 60, s % 60),
+        _ => format!("{} h {:02} min", s / 3600, s % 3600 / 60),
+    }
+}
+
+impl Watch for Progress {
+    fn converged(&mut self, event: &Event<'_>) {
         if self.quiet {
             return;
         }
@@ -33,7 +62,7 @@ impl Progress {
         };
         let line = format!(
             "step {}/{} {}, increment {} ({:.4} % of the step{cuts}): {} Newton, {} contact; \
-             {} open, {} stick, {} slip; {:.1} % plastic; gap {:.1e}",
+             {} open, {} stick, {} slip; {:.1} % plastic; gap {:.1e}; {} left",
             event.stage,
             event.stages,
             event.step,
@@ -45,21 +74,26 @@ impl Progress {
             r.stick,
             r.slip,
             100.0 * r.plastic_fraction,
-            r.certificate.bipotential_gap
+            r.certificate.bipotential_gap,
+            span(event.seconds_left)
         );
         match &self.bar {
             None => eprintln!("{line}"),
             Some(bar) => {
-                let done = (event.stage - 1) as f64 + r.fraction;
-                bar.set_position((1000.0 * done / event.stages as f64) as u64);
+                bar.set_position((1000.0 * event.done) as u64);
                 bar.set_message(line);
             }
         }
     }
 
-    pub(crate) fn end(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish();
+    fn iterated(&mut self, line: &str) {
+        if self.json {
+            // A reader that has gone does not end the run.
+            let _ = writeln!(std::io::stdout(), "{line}");
         }
+    }
+
+    fn stops(&self) -> bool {
+        self.stop.load(Ordering::SeqCst)
     }
 }

@@ -1,32 +1,55 @@
-//! `moreau run`: a deck run to its end or to where it stops, and the exit status that says so.
+//! `moreau run` and `moreau resume`: a deck run to its end or to where it stops, and the exit
+//! status that says so.
 
 use super::progress::Progress;
-use super::{INPUT_ERROR, NOT_CONVERGED, UNEXPECTED, read, report};
-use moreau::deck::{Problem, open};
-use moreau::run::{Event, Outcome, RunStatus};
+use super::{INPUT_ERROR, Manner, NOT_CONVERGED, UNEXPECTED, read, report};
+use moreau::deck::{Deck, Problem, open};
+use moreau::run::{Outcome, RunError, RunStatus, Watch};
 use std::path::{Path, PathBuf};
-
-/// What is asked for.
-#[derive(Debug)]
-pub(crate) struct Request {
-    pub(crate) deck: PathBuf,
-    pub(crate) out: Option<PathBuf>,
-    pub(crate) threads: Option<usize>,
-    pub(crate) verify: bool,
-    pub(crate) quiet: bool,
-}
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Runs a deck; the exit status.
-pub(crate) fn run(request: &Request) -> u8 {
-    let Some(text) = read(&request.deck) else {
+pub(crate) fn run(path: &Path, out: Option<PathBuf>, manner: &Manner) -> u8 {
+    let Some((deck, problem)) = problem(path) else {
         return INPUT_ERROR;
     };
+    let given = deck.directory.as_ref().map(PathBuf::from);
+    let directory = out.or(given).unwrap_or_else(|| default_directory(path, ""));
+    let (deck, to) = (&deck, directory.as_path());
+    go(deck, to, manner, move |watch| match problem {
+        Problem::Plane(setup) => moreau::run::run(*setup, deck, to, watch),
+        Problem::Solid(setup) => moreau::run::run(*setup, deck, to, watch),
+    })
+}
+
+/// Continues a run; the exit status.
+pub(crate) fn resume(directory: &Path, manner: &Manner) -> u8 {
+    let Some((deck, problem)) = problem(&directory.join("deck.resolved.toml")) else {
+        return INPUT_ERROR;
+    };
+    let deck = &deck;
+    go(deck, directory, manner, move |watch| match problem {
+        Problem::Plane(setup) => moreau::run::resume(*setup, deck, directory, watch),
+        Problem::Solid(setup) => moreau::run::resume(*setup, deck, directory, watch),
+    })
+}
+
+/// The problem of a deck; findings are printed.
+pub(crate) fn problem(path: &Path) -> Option<(Deck, Problem)> {
+    let text = read(path)?;
     let (deck, problem, findings) = open(&text);
-    report(&findings, &request.deck, &text);
-    let Some(problem) = problem else {
-        return INPUT_ERROR;
-    };
-    let threads = request.threads.unwrap_or(deck.solver.threads);
+    report(&findings, path, &text);
+    Some((deck, problem?))
+}
+
+fn go(
+    deck: &Deck,
+    directory: &Path,
+    manner: &Manner,
+    solve: impl FnOnce(&mut dyn Watch) -> Result<Outcome, RunError> + Send,
+) -> u8 {
+    let threads = manner.threads.unwrap_or(deck.solver.threads);
     let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool,
         Err(error) => {
@@ -34,21 +57,11 @@ pub(crate) fn run(request: &Request) -> u8 {
             return INPUT_ERROR;
         }
     };
-    let given = deck.directory.as_ref().map(PathBuf::from);
-    let directory = request
-        .out
-        .clone()
-        .or(given)
-        .unwrap_or_else(|| default_directory(&request.deck));
-    let progress = Progress::new(request.quiet);
-    let show = |event: &Event<'_>| progress.show(event);
-    let outcome = pool.install(|| match problem {
-        Problem::Plane(setup) => moreau::run::run(*setup, &deck, &directory, show),
-        Problem::Solid(setup) => moreau::run::run(*setup, &deck, &directory, show),
-    });
+    let mut progress = Progress::new(manner.quiet, manner.json_log, stopping());
+    let outcome = pool.install(|| solve(&mut progress));
     progress.end();
     match outcome {
-        Ok(outcome) => conclude(&outcome, request, &directory),
+        Ok(outcome) => conclude(&outcome, manner, directory),
         Err(error) => {
             eprintln!("{error}");
             INPUT_ERROR
@@ -56,17 +69,44 @@ pub(crate) fn run(request: &Request) -> u8 {
     }
 }
 
-fn conclude(outcome: &Outcome, request: &Request, directory: &Path) -> u8 {
-    if !request.quiet {
-        println!("{outcome}  results       {}", directory.display());
+/// A flag that the first Ctrl-C raises; the second ends the process.
+fn stopping() -> Arc<AtomicBool> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let raised = flag.clone();
+    let handler = move || {
+        if raised.swap(true, Ordering::SeqCst) {
+            std::process::exit(i32::from(NOT_CONVERGED));
+        }
+        eprintln!("stopping after this increment; once more to stop now");
+    };
+    // Without a handler Ctrl-C ends the process, and checkpoints are there all the same.
+    let _ = ctrlc::set_handler(handler);
+    flag
+}
+
+fn conclude(outcome: &Outcome, manner: &Manner, directory: &Path) -> u8 {
+    let shown = directory.display();
+    if !manner.quiet && !manner.json_log {
+        println!("{outcome}  results       {shown}");
     }
     if let Some(error) = outcome.error() {
         eprintln!("{error}");
     }
     match outcome.status {
         RunStatus::Refused(_) => INPUT_ERROR,
-        RunStatus::NotConverged(_) => NOT_CONVERGED,
-        RunStatus::Done if request.verify && !outcome.as_expected() => {
+        RunStatus::NotConverged(_) => {
+            if let Some(diagnosis) = &outcome.diagnosis {
+                eprintln!("try: {}", diagnosis.suggestion);
+            }
+            NOT_CONVERGED
+        }
+        RunStatus::Interrupted(increment) => {
+            eprintln!(
+                "interrupted after increment {increment}; to go on: moreau resume \"{shown}\""
+            );
+            NOT_CONVERGED
+        }
+        RunStatus::Done if manner.verify && !outcome.as_expected() => {
             for v in outcome.verdicts.iter().filter(|v| !v.passed()) {
                 eprintln!(
                     "{} is {:.10e}, expected {:.10e} ± {:.2e}",
@@ -80,10 +120,8 @@ fn conclude(outcome: &Outcome, request: &Request, directory: &Path) -> u8 {
 }
 
 /// The deck's name without its ending, where the command is given.
-fn default_directory(deck: &Path) -> PathBuf {
-    match deck.extension() {
-        Some(_) => deck.file_stem().map(PathBuf::from),
-        None => None,
-    }
-    .unwrap_or_else(|| "out".into())
+pub(crate) fn default_directory(deck: &Path, suffix: &str) -> PathBuf {
+    let name = deck.extension().and_then(|_| deck.file_stem());
+    let name = name.map_or("out".into(), |n| n.to_string_lossy().into_owned());
+    PathBuf::from(name + suffix)
 }

@@ -6,6 +6,9 @@ use crate::deck::reader::{self, Table};
 
 const METHODS: [&str; 3] = ["exact", "uzawa", "gauss-seidel"];
 
+/// Increments between checkpoints, unless the deck says.
+const CHECKPOINT: usize = 10;
+
 fn section<'a>(root: &Table<'a>, key: &'static str, shown: &str) -> Option<Table<'a>> {
     reader::table(root.get(key)?, key, shown, root.log())
 }
@@ -69,9 +72,9 @@ fn method(table: &Table<'_>) -> Option<Method> {
     method
 }
 
-pub(super) fn read_output(root: &Table<'_>) -> (Option<String>, Vtu) {
+pub(super) fn read_output(root: &Table<'_>) -> (Option<String>, Vtu, usize) {
     let Some(table) = section(root, "output", "[output]") else {
-        return (None, Vtu::All);
+        return (None, Vtu::All, CHECKPOINT);
     };
     let log = table.log();
     let directory = table
@@ -83,18 +86,14 @@ pub(super) fn read_output(root: &Table<'_>) -> (Option<String>, Vtu) {
         Some("none") => Vtu::None,
         _ => Vtu::All,
     };
-    if let Some(value) = table.get("checkpoint") {
-        let every = reader::integer(value, "checkpoint", 0..=1_000_000, log);
-        if every.is_some_and(|e| e.value > 0) {
-            log.borrow_mut().warning(
-                &value.span(),
-                "resuming a run is not available yet: no checkpoints are written",
-                "not used",
-            );
-        }
-    }
+    let every = table.get("checkpoint");
+    let every = every.and_then(|v| reader::integer(v, "checkpoint", 0..=1_000_000, log));
     table.finish();
-    (directory.map(|d| d.value), vtu)
+    (
+        directory.map(|d| d.value),
+        vtu,
+        every.map_or(CHECKPOINT, |e| e.value),
+    )
 }
 
 pub(super) fn read_expectations(root: &Table<'_>) -> Vec<Expectation> {
