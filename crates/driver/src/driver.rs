@@ -422,6 +422,15 @@ impl<const D: usize> Driver<D> {
         Ok(system)
     }
 
+    /// Checks that every rigid motion of every body is resisted by the prescribed displacements of
+    /// a loading, by a contact normal, or by friction; nothing is solved.
+    ///
+    /// # Errors
+    /// [`ModelError::FreeRigidMotion`].
+    pub fn check_supports(&self, loading: &Loading<D>) -> Result<(), ModelError> {
+        self.check_rigid_motions(&|dof| loading.displacement.contains_key(&dof))
+    }
+
     /// Every rigid motion of every body must be resisted by a prescribed displacement, by a
     /// contact normal, or by friction.
     fn check_rigid_motions(&self, fixed: &impl Fn(usize) -> bool) -> Result<(), ModelError> {

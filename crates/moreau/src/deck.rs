@@ -41,7 +41,7 @@ mod grammar;
 mod reader;
 mod units;
 
-pub use build::{GroupFacts, Problem, Setup, Stage};
+pub use build::{Body, GroupFacts, Problem, Setup, Stage};
 pub use entries::{
     Action, Analysis, BlockEntry, ConditionEntry, ContactEntry, Deck, Expectation, Grid,
     GroupEntry, MaterialEntry, Method, Part, Shape, SolverEntry, StepEntry, ToolEntry, Vtu,
@@ -49,10 +49,18 @@ pub use entries::{
 pub use finding::{At, Finding, Findings, Severity};
 pub use units::Units;
 
+use std::path::Path;
+
 /// Reads a deck and builds its problem, if it has no error. The findings are errors and warnings.
+/// Paths in it are relative to the current folder: see [`open_in`].
 pub fn open(text: &str) -> (Deck, Option<Problem>, Findings) {
-    let (deck, mut findings) = grammar::read(text);
-    let problem = build::build(&deck, &mut findings);
+    open_in(text, Path::new(""))
+}
+
+/// As [`open`], with the paths in the deck relative to a folder: that of the deck's file.
+pub fn open_in(text: &str, folder: &Path) -> (Deck, Option<Problem>, Findings) {
+    let (mut deck, mut findings) = grammar::read(text, folder);
+    let problem = build::build(&mut deck, &mut findings);
     if let Some(problem) = &problem {
         let columns = match problem {
             Problem::Plane(setup) => crate::run::columns(setup),

@@ -11,6 +11,7 @@ mod vtu;
 pub use history::columns;
 pub use outcome::{Outcome, RunStatus, Verdict};
 pub use view::{NodalField, View};
+pub(crate) use vtu::vtu_of_mesh;
 
 use crate::deck::{Deck, Setup, Vtu};
 use crate::driver::{Driver, StepError, StepReport};

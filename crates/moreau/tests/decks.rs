@@ -42,7 +42,7 @@ fn the_example_is_clean() {
         panic!("a plane problem")
     };
     assert_eq!(setup.driver.mesh().cell_count(), 20);
-    assert!((setup.volumes[0] - 1000.0).abs() < 1e-9);
+    assert!((setup.bodies[0].volume - 1000.0).abs() < 1e-9);
     let punch = setup
         .groups
         .iter()

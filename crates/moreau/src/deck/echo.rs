@@ -1,10 +1,12 @@
 //! A deck written out again with every default spelt; not a copy of the file.
 
-use super::build::quadrature;
+use super::build::quadratures;
 use super::entries::{Action, ConditionEntry, Deck, Grid, Method, Part, Shape, Vtu};
-use crate::mesh::{CellKind, Integration};
+use crate::mesh::Integration;
 use std::fmt::{self, Write};
 
+/// Where a material has several rules.
+const BY_ELEMENT: &str = "by element";
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Deck {
@@ -16,12 +18,13 @@ impl Deck {
         out
     }
 
-    /// The quadrature of a material, chosen by the deck or by its elements.
+    /// The quadrature of a material, chosen by the deck or by its elements: `"by element"` where
+    /// these differ, or are not known because the mesh is not.
     pub fn quadrature(&self, material: &super::MaterialEntry) -> &'static str {
-        let kind = super::build::kinds(self, material).next();
-        match quadrature(kind.unwrap_or(CellKind::Quad8), material) {
-            Integration::Reduced => "reduced",
-            Integration::Full => "full",
+        match quadratures(material)[..] {
+            [(Integration::Reduced, _)] => "reduced",
+            [(Integration::Full, _)] => "full",
+            _ => BY_ELEMENT,
         }
     }
 }
@@ -36,6 +39,11 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
     writeln!(out, "analysis = \"{}\"", deck.analysis.name())?;
     if deck.analysis == super::Analysis::PlaneStrain {
         writeln!(out, "thickness = {:?}", deck.thickness.value)?;
+    }
+    if let Some(file) = &deck.mesh_file {
+        // What is written stands in another folder than the deck.
+        let path = std::path::absolute(&file.value).unwrap_or_else(|_| file.value.clone());
+        writeln!(out, "\n[mesh]\nfile = {}", text(&path.to_string_lossy()))?;
     }
     for block in &deck.blocks {
         writeln!(out, "\n[[mesh.block]]\nname = {}", text(&block.name.value))?;
@@ -78,7 +86,10 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
                 "kinematic = [{{ modulus = {modulus:?}, recall = 0.0 }}]"
             )?;
         }
-        writeln!(out, "quadrature = \"{}\"", deck.quadrature(material))?;
+        let quadrature = deck.quadrature(material);
+        if quadrature != BY_ELEMENT {
+            writeln!(out, "quadrature = \"{quadrature}\"")?;
+        }
     }
     for tool in &deck.tools {
         writeln!(out, "\n[[tool]]\nname = {}", text(&tool.name.value))?;

@@ -4,6 +4,7 @@ use super::finding::At;
 use super::units::Units;
 use crate::mesh::{CellKind, Integration};
 use std::ops::Range;
+use std::path::PathBuf;
 
 /// The modelling hypothesis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,6 +47,14 @@ impl Grid {
         match self {
             Self::Range(_, cells) => *cells,
             Self::Lines(lines) => lines.len().saturating_sub(1),
+        }
+    }
+
+    /// The least coordinate; NaN without lines.
+    pub fn first(&self) -> f64 {
+        match self {
+            Self::Range([a, _], _) => *a,
+            Self::Lines(lines) => lines.first().copied().unwrap_or(f64::NAN),
         }
     }
 
@@ -106,6 +115,8 @@ pub struct MaterialEntry {
     pub kinematic: Option<At<f64>>,
     /// Quadrature, if given.
     pub quadrature: Option<At<Integration>>,
+    /// Kinds of the cells that have it; known when the mesh is.
+    pub kinds: Vec<CellKind>,
 }
 
 /// Surface of a tool.
@@ -254,6 +265,8 @@ pub struct Deck {
     pub analysis: Analysis,
     /// Thickness of plane strain.
     pub thickness: At<f64>,
+    /// Path of the mesh file, if there is one.
+    pub mesh_file: Option<At<PathBuf>>,
     /// Blocks.
     pub blocks: Vec<BlockEntry>,
     /// Groups.

@@ -10,10 +10,12 @@ use super::entries::{Analysis, Deck};
 use super::finding::{At, Findings};
 use super::reader::{self, Log, Table};
 use super::units::Units;
+use std::path::Path;
 use toml::de::DeTable;
 
-/// Reads a deck. What was not understood is left out, and noted.
-pub(super) fn read(text: &str) -> (Deck, Findings) {
+/// Reads a deck whose paths are relative to a folder. What was not understood is left out, and
+/// noted.
+pub(super) fn read(text: &str, folder: &Path) -> (Deck, Findings) {
     let (document, errors) = DeTable::parse_recoverable(text);
     let log = Log::default();
     for error in errors {
@@ -22,12 +24,12 @@ pub(super) fn read(text: &str) -> (Deck, Findings) {
         log.borrow_mut().error(&span, message, "here");
     }
     let root = Table::new(document.get_ref(), 0..0, "the deck", &log);
-    let deck = deck(&root);
+    let deck = deck(&root, folder);
     root.finish();
     (deck, log.into_inner())
 }
 
-fn deck(root: &Table<'_>) -> Deck {
+fn deck(root: &Table<'_>, folder: &Path) -> Deck {
     let log = root.log();
     let title = root
         .get("title")
@@ -53,7 +55,7 @@ fn deck(root: &Table<'_>) -> Deck {
         );
     }
     let before = log.borrow().errors();
-    let (blocks, groups) = mesh::read(root, dimension);
+    let mesh = mesh::read(root, dimension, folder);
     let mesh_understood = log.borrow().errors() == before;
     let materials = root
         .tables("material", "[[material]]")
@@ -80,8 +82,9 @@ fn deck(root: &Table<'_>) -> Deck {
         units: units.unwrap_or(Units::MmNMpa),
         analysis,
         thickness: thickness.unwrap_or(At::new(1.0, 0..0)),
-        blocks,
-        groups,
+        mesh_file: mesh.file,
+        blocks: mesh.blocks,
+        groups: mesh.groups,
         mesh_understood,
         materials,
         tools,

@@ -5,7 +5,7 @@ use super::view::{NodalField, View};
 use super::{OutputError, write_file};
 use crate::driver::{ContactRecord, Driver};
 use crate::laws::Status;
-use crate::mesh::{CellKind, Facet, FacetKind};
+use crate::mesh::{CellKind, Facet, FacetKind, Mesh};
 use flate2::{Compression, write::ZlibEncoder};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -64,17 +64,17 @@ impl Collection {
 }
 
 /// An unstructured grid.
-struct Grid {
+struct Grid<'a> {
     points: Vec<[f64; 3]>,
     /// Nodes and VTK type of every cell.
     cells: Vec<(Vec<i64>, u8)>,
-    point_data: Vec<Array>,
-    cell_data: Vec<Array>,
+    point_data: Vec<Array<'a>>,
+    cell_data: Vec<Array<'a>>,
 }
 
 /// Values of points or cells.
-struct Array {
-    name: &'static str,
+struct Array<'a> {
+    name: &'a str,
     components: usize,
     values: Vec<f64>,
 }
@@ -84,7 +84,47 @@ fn three(v: &[f64]) -> [f64; 3] {
     std::array::from_fn(|i| v.get(i).copied().unwrap_or(0.0))
 }
 
-fn body<const D: usize>(driver: &Driver<D>) -> Grid
+/// A mesh without results: its groups as arrays of 0 and 1, of cells for groups of cells and of
+/// points for the others.
+pub(crate) fn vtu_of_mesh<const D: usize>(mesh: &Mesh<D>) -> Vec<u8> {
+    let (mut point_data, mut cell_data) = (Vec::new(), Vec::new());
+    let array = |name, members: &[usize], count: usize| {
+        let mut values = vec![0.0; count];
+        members.iter().for_each(|&m| values[m] = 1.0);
+        Array {
+            name,
+            components: 1,
+            values,
+        }
+    };
+    for name in mesh.group_names() {
+        match mesh.cell_group(name) {
+            Ok(cells) => cell_data.push(array(name, cells, mesh.cell_count())),
+            Err(_) => {
+                let nodes = mesh.node_group(name).unwrap_or_default();
+                point_data.push(array(name, &nodes, mesh.nodes().len()));
+            }
+        }
+    }
+    Grid {
+        points: mesh.nodes().iter().map(|x| three(x)).collect(),
+        cells: cells(mesh),
+        point_data,
+        cell_data,
+    }
+    .bytes()
+}
+
+/// Nodes and VTK type of all cells.
+fn cells<const D: usize>(mesh: &Mesh<D>) -> Vec<(Vec<i64>, u8)> {
+    let cell = |c: usize| {
+        let nodes = mesh.cell_nodes(c).iter().map(|&n| n as i64).collect();
+        (nodes, cell_type(mesh.kind(c)))
+    };
+    (0..mesh.cell_count()).map(cell).collect()
+}
+
+fn body<const D: usize>(driver: &Driver<D>) -> Grid<'static>
 where
     Driver<D>: View,
 {
@@ -96,13 +136,9 @@ where
         values: driver.nodal(field),
     };
     let displacement = nodes.flat_map(|n| three(driver.displacement(n).as_slice()));
-    let cell = |c: usize| {
-        let nodes = mesh.cell_nodes(c).iter().map(|&n| n as i64).collect();
-        (nodes, cell_type(mesh.kind(c)))
-    };
     Grid {
         points: mesh.nodes().iter().map(|x| three(x)).collect(),
-        cells: (0..mesh.cell_count()).map(cell).collect(),
+        cells: cells(mesh),
         point_data: vec![
             Array {
                 name: "displacement",
@@ -121,7 +157,7 @@ where
 }
 
 /// All contact surfaces; none without contacts.
-fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
+fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid<'static>> {
     let records = driver.contacts();
     let last = records.iter().map(|c| c.contact).max()?;
     let index: BTreeMap<usize, i64> = (0..).zip(records).map(|(k, c)| (c.node, k)).collect();
@@ -198,7 +234,7 @@ fn cell_type(kind: CellKind) -> u8 {
     }
 }
 
-impl Grid {
+impl Grid<'_> {
     /// The file.
     fn bytes(&self) -> Vec<u8> {
         let mut head = format!(
@@ -213,6 +249,10 @@ impl Grid {
         let mut add = |head: &mut String, name: &str, kind: &str, components, bytes: &[u8]| {
             let offset = data.len();
             // Writing to a string does not fail.
+            let name = name
+                .replace('&', "&amp;")
+                .replace('<', "&lt;")
+                .replace('"', "&quot;");
             let _ = writeln!(
                 head,
                 "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \

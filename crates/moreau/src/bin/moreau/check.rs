@@ -1,7 +1,7 @@
 //! `moreau check`: what a deck was understood to say; nothing is solved.
 
-use super::{INPUT_ERROR, read, report};
-use moreau::deck::{Action, Deck, Method, Problem, Setup, Shape, open};
+use super::{INPUT_ERROR, folder, read, report};
+use moreau::deck::{Action, Deck, Method, Problem, Setup, Shape, open_in};
 use std::path::Path;
 
 /// Checks a deck; the exit status.
@@ -9,7 +9,7 @@ pub(crate) fn check(path: &Path) -> u8 {
     let Some(text) = read(path) else {
         return INPUT_ERROR;
     };
-    let (deck, problem, findings) = open(&text);
+    let (deck, problem, findings) = open_in(&text, folder(path));
     report(&findings, path, &text);
     match problem {
         None => INPUT_ERROR,
@@ -50,11 +50,21 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
         mesh.cell_count(),
         D * mesh.nodes().len()
     );
-    for (block, volume) in deck.blocks.iter().zip(&setup.volumes) {
+    if let Some(file) = &deck.mesh_file {
+        println!("           from {}", file.value.display());
+    }
+    for body in &setup.bodies {
+        let cells: Vec<String> = body.cells.iter().map(|(k, n)| format!("{n} {k}")).collect();
         println!(
-            "body       {}: {}, volume {volume:.6e} {length}³",
-            block.name.value, block.element.value
+            "body       {}: {}, volume {:.6e} {length}³",
+            body.name,
+            cells.join(", "),
+            body.volume
         );
+        for (step, supports) in deck.steps.iter().zip(&body.supports) {
+            let held = supports.join("; ");
+            println!("           held in step {} by {held}", step.name.value);
+        }
     }
     for group in &setup.groups {
         let unit = if group.kind == "cells" { "³" } else { "²" };

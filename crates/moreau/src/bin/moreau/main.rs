@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)] // It talks to a person.
 
 mod check;
+mod convert;
 mod progress;
 mod run;
 
@@ -51,6 +52,8 @@ enum Command {
         #[arg(long)]
         quiet: bool,
     },
+    /// Converts a mesh file: .msh or .inp to .vtu or .msh.
+    Convert(convert::Convert),
 }
 
 fn main() -> ExitCode {
@@ -80,6 +83,7 @@ fn main() -> ExitCode {
             verify,
             quiet,
         }),
+        Command::Convert(convert) => convert.run(),
     };
     ExitCode::from(status)
 }
@@ -93,6 +97,11 @@ fn read(path: &Path) -> Option<String> {
             None
         }
     }
+}
+
+/// The folder of a deck, to which the paths in it are relative.
+fn folder(deck: &Path) -> &Path {
+    deck.parent().unwrap_or(Path::new(""))
 }
 
 /// Prints findings to stderr, and how many there are.

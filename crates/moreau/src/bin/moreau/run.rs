@@ -1,8 +1,8 @@
 //! `moreau run`: a deck run to its end or to where it stops, and the exit status that says so.
 
 use super::progress::Progress;
-use super::{INPUT_ERROR, NOT_CONVERGED, UNEXPECTED, read, report};
-use moreau::deck::{Problem, open};
+use super::{INPUT_ERROR, NOT_CONVERGED, UNEXPECTED, folder, read, report};
+use moreau::deck::{Problem, open_in};
 use moreau::run::{Event, Outcome, RunStatus};
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ pub(crate) fn run(request: &Request) -> u8 {
     let Some(text) = read(&request.deck) else {
         return INPUT_ERROR;
     };
-    let (deck, problem, findings) = open(&text);
+    let (deck, problem, findings) = open_in(&text, folder(&request.deck));
     report(&findings, &request.deck, &text);
     let Some(problem) = problem else {
         return INPUT_ERROR;

@@ -1,12 +1,13 @@
 //! Laws, tools and frictions of a deck, and the model they make; their ranges are checked by the
 //! libraries.
 
+use super::groups::HIDDEN;
 use crate::contact::{Ball, ContactError, Plane};
 use crate::deck::entries::{Deck, MaterialEntry, Shape};
 use crate::deck::finding::Findings;
 use crate::driver::{Analysis, Model, ModelError};
 use crate::laws::{Coulomb, Elastic, LawError, VonMises};
-use crate::mesh::{CellKind, Integration, Mesh};
+use crate::mesh::{CellKind, Integration, Mesh, MeshError};
 use std::ops::Range;
 
 /// A bulk law.
@@ -39,7 +40,7 @@ pub(super) fn parts(deck: &Deck, findings: &mut Findings) -> Option<Parts> {
                 findings.error(&span, error.to_string(), "out of range");
             }
         }
-        locking(deck, material, findings);
+        locking(material, findings);
     }
     let mut frictions = Vec::new();
     for contact in &deck.contacts {
@@ -102,7 +103,7 @@ fn culprit(material: &MaterialEntry, error: &LawError) -> Range<usize> {
 }
 
 /// The rule that does not lock for an element, or the one that the deck asks for.
-pub(in crate::deck) fn quadrature(kind: CellKind, material: &MaterialEntry) -> Integration {
+fn quadrature(kind: CellKind, material: &MaterialEntry) -> Integration {
     match &material.quadrature {
         Some(rule) => rule.value,
         None if matches!(kind, CellKind::Tri6 | CellKind::Quad8 | CellKind::Quad9) => {
@@ -112,29 +113,24 @@ pub(in crate::deck) fn quadrature(kind: CellKind, material: &MaterialEntry) -> I
     }
 }
 
-/// Elements in which a body gets its material: those of the block it is, or is a part of.
-pub(in crate::deck) fn kinds<'a>(
-    deck: &'a Deck,
-    material: &'a MaterialEntry,
-) -> impl Iterator<Item = CellKind> + 'a {
-    let mut name = &material.on.value;
-    // A group is a part of one before it: the walk ends.
-    for group in deck.groups.iter().rev() {
-        if group.name.value == *name {
-            name = &group.on.value;
+/// The rules of the cells of a material, each with the kinds that have it.
+pub(in crate::deck) fn quadratures(material: &MaterialEntry) -> Vec<(Integration, Vec<CellKind>)> {
+    let mut rules: Vec<(Integration, Vec<CellKind>)> = Vec::new();
+    for &kind in &material.kinds {
+        let rule = quadrature(kind, material);
+        match rules.iter_mut().find(|(r, _)| *r == rule) {
+            Some((_, kinds)) => kinds.push(kind),
+            None => rules.push((rule, vec![kind])),
         }
     }
-    deck.blocks
-        .iter()
-        .filter(move |b| b.name.value == *name)
-        .map(|b| b.element.value)
+    rules
 }
 
-fn locking(deck: &Deck, material: &MaterialEntry, findings: &mut Findings) {
+fn locking(material: &MaterialEntry, findings: &mut Findings) {
     let Some(yield_stress) = &material.yield_stress else {
         return;
     };
-    for kind in kinds(deck, material) {
+    for &kind in &material.kinds {
         let quadratic = matches!(kind, CellKind::Tri6 | CellKind::Quad8 | CellKind::Quad9);
         let full = quadrature(kind, material) == Integration::Full;
         if full && !quadratic {
@@ -161,10 +157,40 @@ fn surface<const D: usize>(shape: &Shape) -> Result<Surface<D>, ContactError> {
     })
 }
 
+/// The group of a material with its rule; where its cells have several, a hidden group for each.
+fn by_rule<const D: usize>(
+    mesh: &mut Mesh<D>,
+    material: &MaterialEntry,
+) -> Result<Vec<(String, Integration)>, MeshError> {
+    let on = &material.on.value;
+    let mut rules = quadratures(material);
+    if rules.len() < 2 {
+        return Ok(rules
+            .pop()
+            .map(|(rule, _)| (on.clone(), rule))
+            .into_iter()
+            .collect());
+    }
+    let mut pieces = Vec::new();
+    for (k, (rule, kinds)) in rules.into_iter().enumerate() {
+        let of_kind = |c: &&usize| kinds.contains(&mesh.kind(**c));
+        let cells = mesh
+            .cell_group(on)?
+            .iter()
+            .filter(of_kind)
+            .copied()
+            .collect();
+        let name = format!("{on}{HIDDEN}{k}");
+        mesh.add_cell_group(&name, cells)?;
+        pieces.push((name, rule));
+    }
+    Ok(pieces)
+}
+
 /// The model.
 pub(super) fn assemble<const D: usize, H: Analysis<D>>(
     deck: &Deck,
-    mesh: Mesh<D>,
+    mut mesh: Mesh<D>,
     hypothesis: H,
     parts: &Parts,
     findings: &mut Findings,
@@ -172,18 +198,20 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
     let mut note = |span: &Range<usize>, error: ModelError| {
         findings.error(span, error.to_string(), "here");
     };
-    let mut model = Model::new(mesh, hypothesis);
+    let mut pieces = Vec::new();
     for (entry, law) in deck.materials.iter().zip(&parts.laws) {
-        let kind = model
-            .mesh()
-            .cell_group(&entry.on.value)
-            .ok()
-            .and_then(|cells| Some(model.mesh().kind(*cells.first()?)))?;
-        let rule = quadrature(kind, entry);
-        let name = &entry.on.value;
-        let added = match *law {
-            Law::Elastic(law) => model.material(name, law, rule),
-            Law::VonMises(law) => model.material(name, law, rule),
+        for (name, rule) in by_rule(&mut mesh, entry)
+            .map_err(|e| note(&entry.on.span, e.into()))
+            .ok()?
+        {
+            pieces.push((entry, *law, name, rule));
+        }
+    }
+    let mut model = Model::new(mesh, hypothesis);
+    for (entry, law, name, rule) in pieces {
+        let added = match law {
+            Law::Elastic(law) => model.material(&name, law, rule),
+            Law::VonMises(law) => model.material(&name, law, rule),
         };
         model = added.map_err(|e| note(&entry.on.span, e)).ok()?;
     }
