@@ -2,6 +2,7 @@
 
 use crate::block::{Block, PointState, Stiffness};
 use crate::error::{ModelError, StepError};
+use crate::increments::Increments;
 use crate::interface::{ContactPoint, Tool};
 use crate::load::{Condition, Loading, Step, axis_letter};
 use crate::model::{Analysis, ContactName, Measure, Model};
@@ -317,8 +318,9 @@ impl<const D: usize> Driver<D> {
         start
     }
 
-    /// Applies a step in equal increments, halving those that fail and doubling again after those
-    /// that converge. `observe` sees the driver after every converged increment.
+    /// Applies a step in increments, a number of equal ones or [`Increments`], halving those that
+    /// fail and doubling again after those that converge. `observe` sees the driver after every
+    /// converged increment.
     ///
     /// # Errors
     /// [`StepError::Stopped`] when an increment has been halved as often as the settings allow;
@@ -326,23 +328,26 @@ impl<const D: usize> Driver<D> {
     pub fn run(
         &mut self,
         step: &Step<D>,
-        increments: usize,
+        increments: impl Into<Increments>,
         mut observe: impl FnMut(&Self, &StepReport),
     ) -> Result<Vec<StepReport>, StepError> {
         let end = self.loading(step)?;
         let start = self.start_of(&end);
-        let base = 1.0 / increments.max(1) as f64;
-        let smallest = base * 0.5f64.powi(self.settings.cuts as i32);
+        let increments: Increments = increments.into();
+        let pieces = increments.pieces();
+        let base = 1.0 / pieces as f64;
+        let fewest = increments.start * 0.5f64.powi(self.settings.cuts as i32);
+        let smallest = increments.min.unwrap_or(fewest);
         let mut reports: Vec<StepReport> = Vec::new();
-        let (mut done, mut length) = (0.0f64, base);
-        let mut cuts = 0;
-        // Whole increments are counted, so that their ends are exact multiples of the base.
+        let (mut done, mut length) = (0.0f64, increments.start);
+        let (mut cuts, mut easy) = (0, 0);
+        // Whole pieces are counted, so that their ends are exact multiples of the base.
         let mut whole = 0;
-        while whole < increments.max(1) {
+        while whole < pieces {
             let next = (whole + 1) as f64 * base;
             let at_end = done + length >= next - 1e-9 * base;
             let target = match at_end {
-                true if whole + 1 == increments.max(1) => 1.0,
+                true if whole + 1 == pieces => 1.0,
                 true => next,
                 false => done + length,
             };
@@ -354,12 +359,13 @@ impl<const D: usize> Driver<D> {
                     reports.push(report);
                     done = target;
                     whole += usize::from(at_end);
-                    length = (2.0 * length).min(base);
+                    let iterations = reports.last().map_or(0, |r| r.newton_iterations);
+                    length = increments.next(length, &mut easy, iterations);
                     cuts = 0;
                 }
                 Err(error @ StepError::Model(_)) => return Err(error),
                 Err(cause) => {
-                    length *= 0.5;
+                    length = 0.5 * (target - done);
                     cuts += 1;
                     if length < smallest {
                         let last = reports.last().map_or(0.0, |r| r.plastic_fraction);

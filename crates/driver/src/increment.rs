@@ -233,7 +233,7 @@ impl<const D: usize> Driver<D> {
                 let position = SVector::from(self.mesh.nodes()[p.node]) + self.displacement(p.node);
                 let free = std::array::from_fn(|i| system.is_free(D * p.node + i));
                 Kinematics::new(
-                    self.tools[p.tool].obstacle.as_ref(),
+                    (self.tools[p.tool].obstacle.as_ref(), p.offset),
                     &position,
                     &SVector::from_column_slice(&d_u[dofs]),
                     (&start.tools[p.tool], &end.tools[p.tool]),

@@ -20,6 +20,8 @@ pub(crate) struct ContactPoint<const D: usize> {
     /// Index of the contact (surface and tool) that it belongs to.
     pub(crate) contact: usize,
     pub(crate) law: Coulomb,
+    /// Distance to the tool at which it touches \[mm\]: the gap is the distance less this.
+    pub(crate) offset: f64,
     /// Share of the surface \[mm²\], to turn a force into a traction.
     pub(crate) area: f64,
     pub(crate) kind: NodeKind,
@@ -48,10 +50,11 @@ pub(crate) struct Kinematics<const D: usize> {
 const PRESCRIBED: f64 = 1e-9;
 
 impl<const D: usize> Kinematics<D> {
-    /// From the node's position at the start of the step, its displacement increment, and the
-    /// tool's position at both ends of the step.
+    /// From the tool and the distance at which the node touches it, the node's position at the
+    /// start of the step, its displacement increment, and the tool's position at both ends of the
+    /// step.
     pub(crate) fn new(
-        obstacle: &dyn Obstacle<D>,
+        (obstacle, offset): (&dyn Obstacle<D>, f64),
         start: &SVector<f64, D>,
         d_u: &SVector<f64, D>,
         tool: (&SVector<f64, D>, &SVector<f64, D>),
@@ -59,7 +62,7 @@ impl<const D: usize> Kinematics<D> {
     ) -> Self {
         let relative = start + d_u - tool.1;
         let n = obstacle.normal(&relative);
-        let gap = obstacle.distance(&relative);
+        let gap = obstacle.distance(&relative) - offset;
         let slip = d_u - (tool.1 - tool.0);
         let mut projected = n;
         for i in 0..D {
@@ -256,7 +259,7 @@ mod tests {
         let zero = SVector::<f64, 2>::zeros();
         let start = SVector::<f64, 2>::new(0.0, 0.25);
         let d_u = SVector::<f64, 2>::new(0.0, -0.1);
-        let k = Kinematics::new(&floor, &start, &d_u, (&zero, &zero), [false, true]);
+        let k = Kinematics::new((&floor, 0.0), &start, &d_u, (&zero, &zero), [false, true]);
         assert_eq!(k.active, [true, false]);
         assert!((k.u - Local::<2>::new(0.15, 0.0)).norm() < 1e-15);
         let product = k.to_local * k.to_node;
@@ -269,7 +272,7 @@ mod tests {
         let slope = Plane::new([0.0, 0.0], [-s, c]).expect("valid");
         let zero = SVector::<f64, 2>::zeros();
         let d_u = SVector::<f64, 2>::new(0.0, 0.3);
-        let k = Kinematics::new(&slope, &zero, &d_u, (&zero, &zero), [false, true]);
+        let k = Kinematics::new((&slope, 0.0), &zero, &d_u, (&zero, &zero), [false, true]);
         // Moving up by 0.3 opens the gap by 0.3 cos; the force n t_n does the same work.
         assert!((k.u[0] - 0.3 * c).abs() < 1e-15);
         assert!((k.to_local * d_u - k.u).norm() < 1e-15);
@@ -283,7 +286,7 @@ mod tests {
         let zero = SVector::<f64, 3>::zeros();
         let tool = SVector::<f64, 3>::new(0.5, 0.1, 0.0);
         let d_u = SVector::<f64, 3>::new(0.5, 0.1, 0.0);
-        let k = Kinematics::new(&floor, &zero, &d_u, (&zero, &tool), [true; 3]);
+        let k = Kinematics::new((&floor, 0.0), &zero, &d_u, (&zero, &tool), [true; 3]);
         assert!(k.u.norm() < 1e-15, "carried along: {}", k.u);
     }
 
@@ -292,7 +295,13 @@ mod tests {
         let floor = Plane::new([0.0, 0.0, 0.0], [0.0, 1.0, 0.0]).expect("valid");
         let zero = SVector::<f64, 3>::zeros();
         let d_u = SVector::<f64, 3>::new(0.0, 0.0, 0.2);
-        let k = Kinematics::new(&floor, &zero, &d_u, (&zero, &zero), [false, true, true]);
+        let k = Kinematics::new(
+            (&floor, 0.0),
+            &zero,
+            &d_u,
+            (&zero, &zero),
+            [false, true, true],
+        );
         assert_eq!(k.active, [true, true, false]);
         assert!((k.u[1].abs() - 0.2).abs() < 1e-15 && k.u[2] == 0.0);
     }

@@ -43,7 +43,7 @@ mod units;
 
 pub use build::{Body, GroupFacts, Problem, Setup, Stage};
 pub use entries::{
-    Action, Analysis, BlockEntry, ConditionEntry, ContactEntry, Deck, Expectation, Grid,
+    Action, Adjust, Analysis, BlockEntry, ConditionEntry, ContactEntry, Deck, Expectation, Grid,
     GroupEntry, MaterialEntry, Method, Part, Shape, SolverEntry, StepEntry, ToolEntry, Vtu,
 };
 pub use finding::{At, Finding, Findings, Severity};

@@ -116,7 +116,7 @@ where
                 step: stage.step.name(),
                 stage: index + 1,
                 stages: stages.len(),
-                increments: stage.increments,
+                increments: stage.increments.count(),
                 report,
             });
         });

@@ -10,7 +10,7 @@ mod parts;
 use super::entries::{Analysis, Deck, Method};
 use super::finding::Findings;
 use crate::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
-use crate::driver::{Analysis as Cells, Driver, ModelError, Nesting, Settings, Step};
+use crate::driver::{Analysis as Cells, Driver, Increments, ModelError, Nesting, Settings, Step};
 use crate::mesh::{Axisymmetric, CellKind, Mesh, PlaneStrain, Solid};
 use groups::Groups;
 pub(super) use parts::quadratures;
@@ -49,8 +49,8 @@ pub struct Body {
 pub struct Stage<const D: usize> {
     /// The step.
     pub step: Step<D>,
-    /// Equal increments.
-    pub increments: usize,
+    /// Its increments.
+    pub increments: Increments,
     /// Directions in which the step itself holds or moves each group of [`Setup::held`].
     pub directions: Vec<Vec<usize>>,
 }
@@ -92,16 +92,23 @@ pub(super) fn build(deck: &mut Deck, findings: &mut Findings) -> Option<Problem>
                 }
             };
             let mesh = meshes::plane(deck, findings);
-            setup(deck, mesh, thickness.unwrap_or_default(), findings)
-                .map(|s| Problem::Plane(Box::new(s)))
+            setup(
+                deck,
+                mesh,
+                thickness.unwrap_or_default(),
+                parts::profile,
+                findings,
+            )
+            .map(|s| Problem::Plane(Box::new(s)))
         }
         Analysis::Axisymmetric => {
             let mesh = meshes::meridian(deck, findings);
-            setup(deck, mesh, Axisymmetric, findings).map(|s| Problem::Plane(Box::new(s)))
+            setup(deck, mesh, Axisymmetric, parts::profile, findings)
+                .map(|s| Problem::Plane(Box::new(s)))
         }
         Analysis::Solid => {
             let mesh = meshes::solid(deck, findings);
-            setup(deck, mesh, Solid, findings).map(|s| Problem::Solid(Box::new(s)))
+            setup(deck, mesh, Solid, parts::surface, findings).map(|s| Problem::Solid(Box::new(s)))
         }
     }
 }
@@ -110,6 +117,7 @@ fn setup<const D: usize, H: Cells<D>>(
     deck: &mut Deck,
     mesh: Option<Mesh<D>>,
     hypothesis: H,
+    surface: parts::Surface<D>,
     findings: &mut Findings,
 ) -> Option<Setup<D>> {
     let groups = mesh.map(|mesh| Groups::new(deck, mesh, findings));
@@ -126,8 +134,10 @@ fn setup<const D: usize, H: Cells<D>>(
         return None;
     }
     let parts = parts?;
-    let model = parts::assemble(deck, groups.mesh.clone(), hypothesis, &parts, findings)?;
-    let settings = settings(deck, findings)?;
+    let mesh = groups.mesh.clone();
+    let model = parts::assemble(deck, mesh, hypothesis, &parts, surface, findings)?;
+    let stiffness = |part| parts::stiffness(deck, &groups.mesh, &hypothesis, part);
+    let settings = settings(deck, stiffness, findings)?;
     let driver = driver(Driver::new(model, settings), deck, &groups, findings)?;
     let stages = conditions::stages(deck, &groups);
     let mut possible = true;
@@ -153,7 +163,12 @@ fn setup<const D: usize, H: Cells<D>>(
 }
 
 /// The method and its settings.
-fn settings<const D: usize>(deck: &Deck, findings: &mut Findings) -> Option<Settings<D>> {
+fn settings<const D: usize>(
+    deck: &Deck,
+    stiffness: impl Fn(f64) -> f64,
+    findings: &mut Findings,
+) -> Option<Settings<D>> {
+    let spring = |k: f64| Penalty::new(k, k);
     let contact: Box<dyn ContactSolver<D>> = match &deck.solver.method {
         Method::Exact => Box::new(SemismoothNewton::default()),
         Method::Uzawa => Box::new(Uzawa::default()),
@@ -163,6 +178,13 @@ fn settings<const D: usize>(deck: &Deck, findings: &mut Findings) -> Option<Sett
             Err(error) => {
                 let culprit = if normal.value > 0.0 { tangent } else { normal };
                 findings.error(&culprit.span, error.to_string(), "out of range");
+                return None;
+            }
+        },
+        Method::Penetration(part) => match spring(stiffness(part.value)) {
+            Ok(penalty) => Box::new(penalty),
+            Err(error) => {
+                findings.error(&part.span, error.to_string(), "out of range");
                 return None;
             }
         },
@@ -176,9 +198,6 @@ fn settings<const D: usize>(deck: &Deck, findings: &mut Findings) -> Option<Sett
             tolerance: 1e-8,
             iterations: 20_000,
         };
-    }
-    if let Some(cuts) = deck.steps.iter().filter_map(|s| s.cuts).max() {
-        settings.cuts = cuts;
     }
     Some(settings)
 }

@@ -1,7 +1,8 @@
 //! A deck written out again with every default spelt; not a copy of the file.
 
 use super::build::quadratures;
-use super::entries::{Action, ConditionEntry, Deck, Grid, Method, Part, Shape, Vtu};
+use super::entries::{Action, Adjust, ConditionEntry, Deck, Grid, Method, Part, Shape, Vtu};
+use crate::driver::Increments;
 use crate::mesh::Integration;
 use std::fmt::{self, Write};
 
@@ -104,6 +105,14 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
                 )?;
                 writeln!(out, "inside = {hollow}")?;
             }
+            Shape::Cylinder(center, axis, radius, hollow) => {
+                writeln!(
+                    out,
+                    "cylinder = {{ center = {center:?}, axis = {axis:?}, radius = {radius:?} }}"
+                )?;
+                writeln!(out, "inside = {hollow}")?;
+            }
+            Shape::Polyline(points) => writeln!(out, "polyline = {points:?}")?,
         }
     }
     for contact in &deck.contacts {
@@ -114,19 +123,24 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
         )?;
         writeln!(out, "against = {}", text(&contact.against.value))?;
         writeln!(out, "friction = {:?}", contact.friction.value)?;
+        if let Some(offset) = &contact.gap_offset {
+            writeln!(out, "gap-offset = {:?}", offset.value)?;
+        }
+        match contact.adjust.as_ref().map(|a| a.value) {
+            None => {}
+            Some(Adjust::Near) => writeln!(out, "adjust = true")?,
+            Some(Adjust::Within(distance)) => writeln!(out, "adjust = {distance:?}")?,
+        }
     }
     for step in &deck.steps {
         writeln!(out, "\n[[step]]\nname = {}", text(&step.name.value))?;
-        match step.cuts {
-            None => writeln!(out, "increments = {}", step.increments)?,
-            Some(cuts) => {
-                let start = 1.0 / step.increments as f64;
-                let min = start * 0.5f64.powi(cuts as i32);
-                writeln!(
-                    out,
-                    "increments = {{ start = {start:?}, min = {min:?}, max = {start:?} }}"
-                )?;
-            }
+        let Increments { start, min, max } = step.increments;
+        match min {
+            None => writeln!(out, "increments = {}", step.increments.count())?,
+            Some(min) => writeln!(
+                out,
+                "increments = {{ start = {start:?}, min = {min:?}, max = {max:?} }}"
+            )?,
         }
         for (key, list) in lists(&step.conditions) {
             writeln!(out, "{key} = [{}]", list.join(", "))?;
@@ -177,6 +191,7 @@ fn tail(deck: &Deck, out: &mut String) -> fmt::Result {
             "{{ penalty = {{ normal = {:?}, tangent = {:?} }} }}",
             n.value, t.value
         ),
+        Method::Penetration(part) => format!("{{ penetration = {:?} }}", part.value),
     };
     let nesting = if deck.solver.outside {
         "outside"

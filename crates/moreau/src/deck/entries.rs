@@ -2,6 +2,7 @@
 
 use super::finding::At;
 use super::units::Units;
+use crate::driver::Increments;
 use crate::mesh::{CellKind, Integration};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -126,6 +127,10 @@ pub enum Shape {
     Plane(Vec<f64>, Vec<f64>),
     /// Centre, radius and whether the tool is hollow; with the name that it was given by.
     Ball(Vec<f64>, f64, bool, &'static str),
+    /// In space: point and direction of the axis, radius and whether the tool is hollow.
+    Cylinder(Vec<f64>, Vec<f64>, f64, bool),
+    /// In the plane: points with the tool on the right.
+    Polyline(Vec<[f64; 2]>),
 }
 
 /// `[[tool]]`.
@@ -137,6 +142,15 @@ pub struct ToolEntry {
     pub shape: At<Shape>,
 }
 
+/// Up to which gap or penetration nodes touch where they are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Adjust {
+    /// Up to a twentieth of the shortest side of the surface's cells.
+    Near,
+    /// Up to a distance.
+    Within(f64),
+}
+
 /// `[[contact]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactEntry {
@@ -146,6 +160,10 @@ pub struct ContactEntry {
     pub against: At<String>,
     /// Coefficient of Coulomb friction.
     pub friction: At<f64>,
+    /// Distance from the tool at which the surface touches.
+    pub gap_offset: Option<At<f64>>,
+    /// Whether nodes near the tool touch where they are.
+    pub adjust: Option<At<Adjust>>,
 }
 
 /// A condition of a step.
@@ -183,10 +201,8 @@ pub enum Action {
 pub struct StepEntry {
     /// Name.
     pub name: At<String>,
-    /// Equal increments.
-    pub increments: usize,
-    /// Times an increment may be halved, if the deck says so.
-    pub cuts: Option<usize>,
+    /// Increments.
+    pub increments: Increments,
     /// Conditions.
     pub conditions: Vec<ConditionEntry>,
     /// Place of the step.
@@ -204,6 +220,9 @@ pub enum Method {
     GaussSeidel,
     /// Springs, normal and tangential.
     Penalty(At<f64>, At<f64>),
+    /// Springs such that a pressure of three times the yield stress penetrates by this part of the
+    /// shortest side of the cells in contact.
+    Penetration(At<f64>),
 }
 
 /// `[solver]`.

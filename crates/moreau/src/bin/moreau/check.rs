@@ -106,17 +106,36 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
                 let inside = if *hollow { ", hollow" } else { "" };
                 format!("{key} around {center:?}, radius {radius} {length}{inside}")
             }
+            Shape::Cylinder(center, axis, radius, hollow) => {
+                let inside = if *hollow { ", hollow" } else { "" };
+                format!(
+                    "cylinder around {center:?} along {axis:?}, radius {radius} {length}{inside}"
+                )
+            }
+            Shape::Polyline(points) => format!("polyline {points:?}"),
         };
         println!("tool       {}: {shape}", tool.name.value);
     }
     for (k, contact) in deck.contacts.iter().enumerate() {
         let points = setup.driver.contacts().iter().filter(|c| c.contact == k);
         println!(
-            "contact    {} against {}, friction {}, {} points",
+            "contact    {} against {}, friction {}, {} points{}{}",
             contact.surface.value,
             contact.against.value,
             contact.friction.value,
-            points.count()
+            points.count(),
+            contact
+                .gap_offset
+                .as_ref()
+                .map_or(String::new(), |o| format!(
+                    ", touching at {} {length}",
+                    o.value
+                )),
+            if contact.adjust.is_some() {
+                ", adjusted"
+            } else {
+                ""
+            }
         );
     }
     let method = match &deck.solver.method {
@@ -125,6 +144,7 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
         Method::Uzawa => "exact, Uzawa".to_owned(),
         Method::GaussSeidel => "exact, Gauss-Seidel".to_owned(),
         Method::Penalty(n, t) => format!("penalty, {} and {}", n.value, t.value),
+        Method::Penetration(part) => format!("penalty, penetration {} of a cell", part.value),
     };
     println!("solver     {method}");
 }
@@ -134,8 +154,13 @@ fn conditions(deck: &Deck) {
     let (length, force, stress) = (deck.units.length(), deck.units.force(), deck.units.stress());
     for step in &deck.steps {
         println!(
-            "step       {}: {} increments",
-            step.name.value, step.increments
+            "step       {}: {} increments{}",
+            step.name.value,
+            step.increments.count(),
+            match step.increments.min {
+                Some(min) => format!(", of {min} to {} of the step", step.increments.max),
+                None => String::new(),
+            }
         );
         for condition in &step.conditions {
             let what = match &condition.action {
