@@ -46,10 +46,13 @@ pub use entries::{
     Action, Adjust, Analysis, BlockEntry, ConditionEntry, ContactEntry, Deck, Expectation, Grid,
     GroupEntry, MaterialEntry, Method, Part, Shape, SolverEntry, StepEntry, ToolEntry, Vtu,
 };
-pub use finding::{At, Finding, Findings, Severity};
+pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;
 
 use std::path::Path;
+
+/// JSON schema of decks, for editors: `docs/deck.schema.json`.
+pub const SCHEMA: &str = include_str!("../../../docs/deck.schema.json");
 
 /// Reads a deck and builds its problem, if it has no error. The findings are errors and warnings.
 /// Paths in it are relative to the current folder: see [`open_in`].
@@ -71,7 +74,9 @@ pub fn open_in(text: &str, folder: &Path) -> (Deck, Option<Problem>, Findings) {
             if !columns.contains(&column.value) {
                 let near = finding::did_you_mean(&column.value, columns.iter().map(String::as_str));
                 let message = format!("no result is called \"{}\"{near}", column.value);
-                findings.error(&column.span, message, "not a column of history.csv");
+                findings
+                    .error(&column.span, message, "not a column of history.csv")
+                    .about(Class::Names);
             }
         }
     }

@@ -11,6 +11,7 @@ mod hypotheses;
 mod integrals;
 mod quadrature;
 mod validity;
+mod write;
 
 use moreau_mesh::{CellKind, Mesh};
 

@@ -8,7 +8,7 @@ mod names;
 mod parts;
 
 use super::entries::{Analysis, Deck, Method};
-use super::finding::Findings;
+use super::finding::{Class, Findings};
 use crate::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
 use crate::driver::{Analysis as Cells, Driver, Increments, ModelError, Nesting, Settings, Step};
 use crate::mesh::{Axisymmetric, CellKind, Mesh, PlaneStrain, Solid};
@@ -143,7 +143,9 @@ fn setup<const D: usize, H: Cells<D>>(
     let mut possible = true;
     for (stage, entry) in stages.iter().zip(&deck.steps) {
         if let Err(error) = driver.loading(&stage.step) {
-            findings.error(&entry.span, error.to_string(), "in this step");
+            findings
+                .error(&entry.span, error.to_string(), "in this step")
+                .about(Class::Steps);
             possible = false;
         }
     }
@@ -217,7 +219,9 @@ fn driver<const D: usize>(
                 _ => 0,
             };
             let (name, span) = groups.origin(deck, cell);
-            findings.error(&span, format!("body \"{name}\": {error}"), "of this mesh");
+            findings
+                .error(&span, format!("body \"{name}\": {error}"), "of this mesh")
+                .about(Class::Bodies);
             None
         }
     }
@@ -243,7 +247,9 @@ fn free_motions<const D: usize>(
                 _ => String::new(),
             };
             let message = format!("step \"{}\"{name}: {error}", entry.name.value);
-            findings.error(&entry.name.span, message, "in this step");
+            findings
+                .error(&entry.name.span, message, "in this step")
+                .about(Class::Bodies);
         }
     }
 }

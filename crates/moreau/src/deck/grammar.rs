@@ -7,7 +7,7 @@ mod step;
 mod tool;
 
 use super::entries::{Analysis, Deck};
-use super::finding::{At, Findings};
+use super::finding::{At, Class, Findings};
 use super::reader::{self, Log, Table};
 use super::units::Units;
 use std::path::Path;
@@ -21,7 +21,9 @@ pub(super) fn read(text: &str, folder: &Path) -> (Deck, Findings) {
     for error in errors {
         let span = error.span().unwrap_or(0..0);
         let message = format!("not TOML: {}", error.message().replace('\n', ", "));
-        log.borrow_mut().error(&span, message, "here");
+        log.borrow_mut()
+            .error(&span, message, "here")
+            .about(Class::Syntax);
     }
     let root = Table::new(document.get_ref(), 0..0, "the deck", &log);
     let deck = deck(&root, folder);
@@ -99,19 +101,24 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
 }
 
 fn missing(root: &Table<'_>, what: &str, keys: &str) {
-    root.log().borrow_mut().error(
-        &root.span,
-        format!("the deck has no {what}, expected at least one with {keys}"),
-        format!("{what} is missing"),
-    );
+    root.log()
+        .borrow_mut()
+        .error(
+            &root.span,
+            format!("the deck has no {what}, expected at least one with {keys}"),
+            format!("{what} is missing"),
+        )
+        .about(Class::Keys);
 }
 
 /// Notes that something of the grammar is not available yet.
 fn not_yet(log: &Log, span: &std::ops::Range<usize>, what: &str, instead: &str) {
-    log.borrow_mut().error_with(
-        span,
-        format!("{what}: not available yet"),
-        "not available yet",
-        instead,
-    );
+    log.borrow_mut()
+        .error_with(
+            span,
+            format!("{what}: not available yet"),
+            "not available yet",
+            instead,
+        )
+        .about(Class::Unavailable);
 }

@@ -54,6 +54,8 @@ enum Command {
     },
     /// Converts a mesh file: .msh or .inp to .vtu or .msh.
     Convert(convert::Convert),
+    /// Prints the JSON schema of decks, for editors.
+    Schema,
 }
 
 fn main() -> ExitCode {
@@ -84,6 +86,10 @@ fn main() -> ExitCode {
             quiet,
         }),
         Command::Convert(convert) => convert.run(),
+        Command::Schema => {
+            print!("{}", moreau::deck::SCHEMA);
+            0
+        }
     };
     ExitCode::from(status)
 }

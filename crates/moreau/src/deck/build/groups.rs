@@ -3,7 +3,7 @@
 use super::conditions::directions;
 use super::{Body, GroupFacts};
 use crate::deck::entries::{BlockEntry, Deck, GroupEntry, Part, StepEntry};
-use crate::deck::finding::{Findings, did_you_mean};
+use crate::deck::finding::{Class, Findings, did_you_mean};
 use crate::driver::Analysis;
 use crate::mesh::{CellKind, Facet, Mesh};
 use std::collections::{BTreeMap, BTreeSet};
@@ -43,23 +43,27 @@ impl<const D: usize> Groups<D> {
     fn add(&mut self, entry: &GroupEntry, findings: &mut Findings) -> Option<()> {
         let (name, on) = (&entry.name.value, &entry.on.value);
         if self.has(name) {
-            findings.error(
-                &entry.name.span,
-                format!("the group \"{name}\" exists already: the names of groups must differ"),
-                "used twice",
-            );
+            findings
+                .error(
+                    &entry.name.span,
+                    format!("the group \"{name}\" exists already: the names of groups must differ"),
+                    "used twice",
+                )
+                .about(Class::Names);
             return None;
         }
         if !self.has(on) {
             if !self.broken.contains(on) {
-                findings.error(
-                    &entry.on.span,
-                    format!(
-                        "no group \"{on}\" before this one{}",
-                        did_you_mean(on, self.names())
-                    ),
-                    "not a group",
-                );
+                findings
+                    .error(
+                        &entry.on.span,
+                        format!(
+                            "no group \"{on}\" before this one{}",
+                            did_you_mean(on, self.names())
+                        ),
+                        "not a group",
+                    )
+                    .about(Class::Names);
             }
             return None;
         }
@@ -91,14 +95,19 @@ impl<const D: usize> Groups<D> {
                         &entry.part.span,
                         format!("the group \"{name}\" is empty: no node of \"{on}\" lies within these limits"),
                         "of this group",
-                    );
+                    ).about(Class::Groups);
                     return None;
                 }
                 self.add_box(entry, nodes, inside, findings)
             }
         };
         added
-            .map_err(|error| findings.error(&entry.name.span, error.to_string(), "of this group"))
+            .map_err(|error| {
+                let span = &entry.name.span;
+                findings
+                    .error(span, error.to_string(), "of this group")
+                    .about(Class::Groups);
+            })
             .ok()
     }
 

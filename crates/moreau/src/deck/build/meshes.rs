@@ -1,7 +1,7 @@
 //! The mesh of a deck: its file and its blocks in one mesh, no node merged; no groups of the deck.
 
 use crate::deck::entries::{BlockEntry, Deck};
-use crate::deck::finding::Findings;
+use crate::deck::finding::{Class, Findings};
 use crate::files::read_mesh;
 use crate::mesh::{Mesh, MeshError, block2, block3};
 use std::ops::Range;
@@ -30,11 +30,13 @@ pub(super) fn meridian(deck: &Deck, findings: &mut Findings) -> Option<Mesh<2>> 
 }
 
 fn beyond(findings: &mut Findings, span: &Range<usize>, what: &str, least: f64) {
-    findings.error(
-        span,
-        format!("the {what} reaches the radius {least}, expected x ≥ 0"),
-        "x is the radius, y the axis",
-    );
+    findings
+        .error(
+            span,
+            format!("the {what} reaches the radius {least}, expected x ≥ 0"),
+            "x is the radius, y the axis",
+        )
+        .about(Class::Meshes);
 }
 
 /// The mesh of a solid.
@@ -63,6 +65,7 @@ fn joined<const D: usize>(
                     Some(help) => findings.error_with(&file.span, message, "this file", help),
                     None => findings.error(&file.span, message, "this file"),
                 }
+                .about(Class::Meshes);
                 return None;
             }
         }
@@ -75,7 +78,9 @@ fn joined<const D: usize>(
         match joined {
             Ok(joined) => mesh = Some(joined),
             Err(error) => {
-                findings.error(&block.name.span, error.to_string(), "of this block");
+                findings
+                    .error(&block.name.span, error.to_string(), "of this block")
+                    .about(Class::Meshes);
                 return None;
             }
         }

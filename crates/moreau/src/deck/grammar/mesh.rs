@@ -2,7 +2,7 @@
 
 use super::not_yet;
 use crate::deck::entries::{BlockEntry, Grid, GroupEntry, Part};
-use crate::deck::finding::At;
+use crate::deck::finding::{At, Class};
 use crate::deck::reader::{self, Table, Value};
 use crate::mesh::CellKind;
 use std::path::{Path, PathBuf};
@@ -59,11 +59,13 @@ pub(super) fn read(root: &Table<'_>, dimension: usize, folder: &Path) -> MeshEnt
     };
     let total: f64 = blocks.iter().map(cells).sum();
     if total > MOST_CELLS {
-        log.borrow_mut().error(
-            &mesh.span,
-            format!("the blocks have {total:.0} cells, expected at most {MOST_CELLS:.0}"),
-            "too many cells",
-        );
+        log.borrow_mut()
+            .error(
+                &mesh.span,
+                format!("the blocks have {total:.0} cells, expected at most {MOST_CELLS:.0}"),
+                "too many cells",
+            )
+            .about(Class::Meshes);
     }
     mesh.finish();
     MeshEntries {
