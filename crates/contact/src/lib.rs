@@ -25,11 +25,13 @@
 mod dense;
 mod error;
 mod obstacle;
+mod polyline;
 mod problem;
 mod solvers;
 
 pub use error::ContactError;
-pub use obstacle::{Ball, Obstacle, Plane, frame};
+pub use obstacle::{Ball, Cylinder, Obstacle, Plane, frame};
+pub use polyline::Polyline;
 pub use problem::{Certificate, ContactProblem, Delassus};
 pub use solvers::{
     ContactSolution, ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Tolerance, Uzawa,

@@ -13,6 +13,16 @@ pub trait Obstacle<const D: usize>: Send + Sync {
     fn normal(&self, x: &SVector<f64, D>) -> SVector<f64, D>;
 }
 
+impl<const D: usize, T: Obstacle<D> + ?Sized> Obstacle<D> for Box<T> {
+    fn distance(&self, x: &SVector<f64, D>) -> f64 {
+        (**self).distance(x)
+    }
+
+    fn normal(&self, x: &SVector<f64, D>) -> SVector<f64, D> {
+        (**self).normal(x)
+    }
+}
+
 /// A half-space; its surface is a plane (in 2D a straight line).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plane<const D: usize> {
@@ -109,6 +119,65 @@ impl<const D: usize> Obstacle<D> for Ball<D> {
     }
 }
 
+/// A cylinder in space, without ends, or the hollow left by one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cylinder {
+    /// A ball around a point of the axis: the section of the cylinder through it.
+    ball: Ball<3>,
+    axis: SVector<f64, 3>,
+}
+
+impl Cylinder {
+    /// The cylinder around the axis through `center` along `axis`, of any length; the body is
+    /// outside.
+    ///
+    /// # Errors
+    /// [`ContactError::OutOfRange`] unless the radius and the length of the axis are positive and
+    /// all numbers are finite.
+    pub fn new(center: [f64; 3], axis: [f64; 3], radius: f64) -> Result<Self, ContactError> {
+        let axis = SVector::from(axis);
+        let length = axis.norm();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(ContactError::OutOfRange {
+                what: "length of the cylinder's axis",
+                value: length,
+                expected: "a positive number",
+            });
+        }
+        Ok(Self {
+            ball: Ball::new(center, radius)?,
+            axis: axis / length,
+        })
+    }
+
+    /// The same surface around a hollow: the body is inside.
+    pub fn hollow(self) -> Self {
+        Self {
+            ball: self.ball.hollow(),
+            ..self
+        }
+    }
+
+    /// The point at the same distance in the section through the center.
+    fn section(&self, x: &SVector<f64, 3>) -> SVector<f64, 3> {
+        x - self.axis * (x - self.ball.center).dot(&self.axis)
+    }
+}
+
+impl Obstacle<3> for Cylinder {
+    fn distance(&self, x: &SVector<f64, 3>) -> f64 {
+        self.ball.distance(&self.section(x))
+    }
+
+    fn normal(&self, x: &SVector<f64, 3>) -> SVector<f64, 3> {
+        let radial = self.section(x) - self.ball.center;
+        // On the axis every direction across it is as good as another.
+        let unit = radial.try_normalize(0.0);
+        let unit = unit.unwrap_or_else(|| frame(&self.axis).column(1).into_owned());
+        unit * self.ball.side()
+    }
+}
+
 /// Unit vector along coordinate k.
 fn axis<const D: usize>(k: usize) -> SVector<f64, D> {
     SVector::from_fn(|i, _| if i == k { 1.0 } else { 0.0 })
@@ -176,6 +245,28 @@ mod tests {
             obeys_eikonal(&Plane::new(center, [1.0, -2.0, 0.5]).expect("valid"), x);
             obeys_eikonal(&Ball::new(center, 2.0).expect("valid"), x);
             obeys_eikonal(&Ball::new(center, 30.0).expect("valid").hollow(), x);
+            let along = [0.3, 1.0, -0.4];
+            // From 0.5 mm off the axis on the surface is smooth.
+            let cylinder = Cylinder::new(center, along, 2.0).expect("valid");
+            prop_assume!(cylinder.distance(&x) > -1.5);
+            obeys_eikonal(&cylinder, x);
+            obeys_eikonal(&Cylinder::new(center, along, 30.0).expect("valid").hollow(), x);
+        }
+
+        #[test]
+        fn a_cylinder_is_the_same_along_its_axis(
+            x in prop::array::uniform3(-5.0..5.0f64),
+            s in -9.0..9.0f64,
+        ) {
+            let axis = SVector::from([1.0, 2.0, -2.0]);
+            let cylinder = Cylinder::new([1.0, 0.5, 0.0], axis.into(), 1.5).expect("valid");
+            let (x, y) = (SVector::from(x), SVector::from(x) + axis * s);
+            prop_assert!((cylinder.distance(&x) - cylinder.distance(&y)).abs() < 1e-12);
+            // Distance of a point to a line, by the cross product.
+            let from = x - SVector::from([1.0, 0.5, 0.0]);
+            let distance = from.cross(&axis).norm() / axis.norm() - 1.5;
+            prop_assert!((cylinder.distance(&x) - distance).abs() < 1e-12);
+            prop_assert!(cylinder.normal(&x).dot(&axis).abs() < 1e-12);
         }
 
         #[test]
@@ -198,6 +289,8 @@ mod tests {
     fn bad_obstacles_are_refused() {
         assert!(Plane::new([0.0, 0.0], [0.0, 0.0]).is_err());
         assert!(Plane::new([0.0, f64::NAN], [0.0, 1.0]).is_err());
+        assert!(Cylinder::new([0.0; 3], [0.0; 3], 1.0).is_err());
+        assert!(Cylinder::new([0.0; 3], [0.0, 0.0, 1.0], 0.0).is_err());
         assert!(Ball::new([0.0, 0.0], -1.0).is_err());
         assert!(Ball::new([0.0, 0.0], f64::INFINITY).is_err());
     }

@@ -433,6 +433,15 @@ impl<const D: usize> Driver<D> {
         Ok(system)
     }
 
+    /// Checks that every rigid motion of the bodies is resisted by the prescribed displacements of a
+    /// loading, by a contact normal, or by friction; nothing is solved.
+    ///
+    /// # Errors
+    /// [`ModelError::FreeRigidMotion`].
+    pub fn check_supports(&self, loading: &Loading<D>) -> Result<(), ModelError> {
+        self.check_rigid_motions(&|dof| loading.displacement.contains_key(&dof))
+    }
+
     /// Every rigid motion of the bodies must be resisted by a prescribed displacement, by a contact
     /// normal, or by friction.
     fn check_rigid_motions(&self, fixed: &impl Fn(usize) -> bool) -> Result<(), ModelError> {

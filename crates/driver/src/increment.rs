@@ -289,7 +289,7 @@ impl<const D: usize> Driver<D> {
             let slip = footing.relative(moved);
             let Some(tool) = p.tool else {
                 return match footing.plane(&slip) {
-                    Some((n, gap)) => Kinematics::new(&n, gap, &slip, free),
+                    Some((n, gap)) => Kinematics::new(&n, gap - p.offset, &slip, free),
                     // Opposite to nothing: as far away as anything can be.
                     None => Kinematics::open(self.mesh.size()),
                 };
@@ -298,7 +298,8 @@ impl<const D: usize> Driver<D> {
             let x = SVector::from(self.mesh.nodes()[p.node]) + self.displacement(p.node);
             let x = x + slip - end.tools[tool];
             let slip = slip - (end.tools[tool] - start.tools[tool]);
-            Kinematics::new(&obstacle.normal(&x), obstacle.distance(&x), &slip, free)
+            let gap = obstacle.distance(&x) - p.offset;
+            Kinematics::new(&obstacle.normal(&x), gap, &slip, free)
         };
         self.points.iter().zip(&self.footings).map(at).collect()
     }

@@ -36,6 +36,8 @@ pub(crate) struct ContactPoint<const D: usize> {
     pub(crate) contact: usize,
     /// Between forces: limits of the shear are those of its share of the surface.
     pub(crate) law: Friction,
+    /// Distance to what is opposite at which it touches \[mm\]: the gap is the distance less this.
+    pub(crate) offset: f64,
     /// Share of the surface \[mm²\], to turn a force into a traction.
     pub(crate) area: f64,
     pub(crate) kind: NodeKind,

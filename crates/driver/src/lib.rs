@@ -34,6 +34,7 @@ mod condensation;
 mod driver;
 mod error;
 mod increment;
+mod increments;
 mod interface;
 mod line_search;
 mod load;
@@ -50,6 +51,7 @@ pub use block::{Block, BlockEnergy, CellResult, PointState, SolidBlock, Stiffnes
 pub use cells::Cells;
 pub use driver::{Driver, Nesting, Settings};
 pub use error::{Imbalance, ModelError, StepError};
+pub use increments::Increments;
 pub use load::{Axis, Loading, Step};
 pub use model::{Analysis, Model};
 pub use ramp::Ramp;

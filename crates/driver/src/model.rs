@@ -133,6 +133,14 @@ impl<const D: usize, H: Hypothesis<D>> Measure<D> for H {
     }
 }
 
+fn out_of_range(what: &str, value: f64, expected: &'static str) -> ModelError {
+    ModelError::OutOfRange {
+        what: what.into(),
+        value,
+        expected,
+    }
+}
+
 /// A surface and what is opposite to it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Contact {
@@ -319,11 +327,55 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 tool,
                 contact: self.contacts.len(),
                 law: law.scaled(share.area),
+                offset: 0.0,
                 area: share.area,
                 kind: share.kind,
             });
         }
         Ok(())
+    }
+
+    /// Lets the nodes of the contact added last touch at a distance from the tool \[mm\]: that of a
+    /// coating, or of half a sheet; negative, to lie into it.
+    ///
+    /// # Errors
+    /// [`ModelError::OutOfRange`] for a number that is not finite.
+    pub fn gap_offset(mut self, offset: f64) -> Result<Self, ModelError> {
+        if !offset.is_finite() {
+            return Err(out_of_range("gap offset", offset, "a finite number"));
+        }
+        let last = self.contacts.len();
+        for point in self.points.iter_mut().filter(|p| p.contact + 1 == last) {
+            point.offset += offset;
+        }
+        Ok(self)
+    }
+
+    /// Takes the nodes of the contact added last, as far as their gap or penetration is at most the
+    /// tolerance \[mm\], to touch where they are: each gets an offset of its own, and neither moves
+    /// nor is strained.
+    ///
+    /// # Errors
+    /// [`ModelError::OutOfRange`] for a tolerance that is negative or not finite.
+    pub fn adjust(mut self, tolerance: f64) -> Result<Self, ModelError> {
+        if !(tolerance >= 0.0 && tolerance.is_finite()) {
+            let expected = "a non-negative number";
+            return Err(out_of_range(
+                "tolerance of adjusted gaps",
+                tolerance,
+                expected,
+            ));
+        }
+        let last = self.contacts.len();
+        for point in self.points.iter_mut().filter(|p| p.contact + 1 == last) {
+            let x = self.mesh.nodes()[point.node].into();
+            let Some(tool) = point.tool else { continue };
+            let gap = self.tools[tool].obstacle.distance(&x) - point.offset;
+            if gap.abs() <= tolerance {
+                point.offset += gap;
+            }
+        }
+        Ok(self)
     }
 
     /// The mesh.

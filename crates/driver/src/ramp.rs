@@ -3,6 +3,7 @@
 use crate::ModelError;
 use crate::driver::Driver;
 use crate::error::StepError;
+use crate::increments::Increments;
 use crate::load::{Loading, Step};
 use crate::report::{Iteration, StepReport};
 use crate::saved::{Reader, write_loading};
@@ -13,12 +14,14 @@ pub struct Ramp<const D: usize> {
     step: String,
     start: Loading<D>,
     end: Loading<D>,
-    increments: usize,
-    /// Whole increments done: counted, so that their ends are exact multiples of the base.
+    increments: Increments,
+    /// Equal pieces done: counted, so that their ends are exact multiples of the base.
     whole: usize,
     done: f64,
     /// Length of the next attempt.
     length: f64,
+    /// Easy increments in a row.
+    easy: usize,
     /// Times that the next increment has been halved.
     cuts: usize,
     /// Plastic fraction of the last converged increment.
@@ -33,30 +36,35 @@ impl<const D: usize> Ramp<D> {
 
     /// Whether the step is done.
     pub fn is_done(&self) -> bool {
-        self.whole >= self.increments
+        self.whole >= self.increments.pieces()
     }
 
     /// Appends all that [`Ramp::read`] needs.
     pub fn write(&self, out: &mut Vec<f64>) {
         write_loading(&self.start, out);
         write_loading(&self.end, out);
-        out.extend([self.increments as f64, self.whole as f64, self.done]);
-        out.extend([self.length, self.cuts as f64, self.plastic_fraction]);
+        out.extend([self.whole as f64, self.done, self.length]);
+        out.extend([self.easy as f64, self.cuts as f64, self.plastic_fraction]);
     }
 
-    /// The ramp of a step, as [`Ramp::write`] left it.
+    /// The ramp of a step in the increments that it began with, as [`Ramp::write`] left it.
     ///
     /// # Errors
     /// [`ModelError::Saved`] for numbers that are too few.
-    pub fn read(step: &Step<D>, from: &mut Reader<'_>) -> Result<Self, ModelError> {
+    pub fn read(
+        step: &Step<D>,
+        increments: Increments,
+        from: &mut Reader<'_>,
+    ) -> Result<Self, ModelError> {
         Ok(Self {
             step: step.name.clone(),
             start: from.loading()?,
             end: from.loading()?,
-            increments: from.count()?,
+            increments,
             whole: from.count()?,
             done: from.number()?,
             length: from.number()?,
+            easy: from.count()?,
             cuts: from.count()?,
             plastic_fraction: from.number()?,
         })
@@ -64,13 +72,17 @@ impl<const D: usize> Ramp<D> {
 }
 
 impl<const D: usize> Driver<D> {
-    /// Begins a step of equal increments; none is applied yet.
+    /// Begins a step in a number of equal increments or in [`Increments`]; none is applied yet.
     ///
     /// # Errors
     /// See [`Driver::loading`].
-    pub fn begin(&self, step: &Step<D>, increments: usize) -> Result<Ramp<D>, ModelError> {
+    pub fn begin(
+        &self,
+        step: &Step<D>,
+        increments: impl Into<Increments>,
+    ) -> Result<Ramp<D>, ModelError> {
         let end = self.loading(step)?;
-        let increments = increments.max(1);
+        let increments = increments.into();
         Ok(Ramp {
             step: step.name.clone(),
             start: self.start_of(&end),
@@ -78,14 +90,15 @@ impl<const D: usize> Driver<D> {
             increments,
             whole: 0,
             done: 0.0,
-            length: 1.0 / increments as f64,
+            length: increments.start,
+            easy: 0,
             cuts: 0,
             plastic_fraction: 0.0,
         })
     }
 
     /// Applies the next increment of a step, halving it as often as it takes, and doubling again
-    /// after one that converges; `watch` sees every iterate of every attempt.
+    /// after one that converges, as [`Increments`] say; `watch` sees every iterate of every attempt.
     ///
     /// # Errors
     /// [`StepError::Stopped`] when the increment has been halved as often as the settings allow;
@@ -95,13 +108,15 @@ impl<const D: usize> Driver<D> {
         ramp: &mut Ramp<D>,
         watch: &mut dyn FnMut(&Iteration<'_>),
     ) -> Result<StepReport, StepError> {
-        let base = 1.0 / ramp.increments as f64;
-        let smallest = base * 0.5f64.powi(self.settings.cuts as i32);
+        let pieces = ramp.increments.pieces();
+        let base = 1.0 / pieces as f64;
+        let fewest = ramp.increments.start * 0.5f64.powi(self.settings.cuts as i32);
+        let smallest = ramp.increments.min.unwrap_or(fewest);
         loop {
             let next = (ramp.whole + 1) as f64 * base;
             let at_end = ramp.done + ramp.length >= next - 1e-9 * base;
             let target = match at_end {
-                true if ramp.whole + 1 >= ramp.increments => 1.0,
+                true if ramp.whole + 1 >= pieces => 1.0,
                 true => next,
                 false => ramp.done + ramp.length,
             };
@@ -114,14 +129,17 @@ impl<const D: usize> Driver<D> {
                     report.cuts = cuts;
                     ramp.done = target;
                     ramp.whole += usize::from(at_end);
-                    ramp.length = (2.0 * ramp.length).min(base);
+                    let iterations = report.newton_iterations;
+                    ramp.length = ramp
+                        .increments
+                        .next(ramp.length, &mut ramp.easy, iterations);
                     ramp.cuts = 0;
                     ramp.plastic_fraction = report.plastic_fraction;
                     return Ok(report);
                 }
                 Err(error @ StepError::Model(_)) => return Err(error),
                 Err(cause) => {
-                    ramp.length *= 0.5;
+                    ramp.length = 0.5 * (target - ramp.done);
                     ramp.cuts += 1;
                     if ramp.length < smallest {
                         let last = ramp.plastic_fraction;
@@ -144,7 +162,7 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// Applies a step in equal increments to its end, as [`Driver::proceed`] does. `observe` sees
+    /// Applies a step in a number of equal increments or in [`Increments`] to its end, as [`Driver::proceed`] does. `observe` sees
     /// the driver after every converged increment.
     ///
     /// # Errors
@@ -152,7 +170,7 @@ impl<const D: usize> Driver<D> {
     pub fn run(
         &mut self,
         step: &Step<D>,
-        increments: usize,
+        increments: impl Into<Increments>,
         mut observe: impl FnMut(&Self, &StepReport),
     ) -> Result<Vec<StepReport>, StepError> {
         let mut ramp = self.begin(step, increments)?;

@@ -4,6 +4,9 @@ mod input;
 mod kind;
 mod v2;
 mod v4;
+mod write;
+
+pub use write::write_gmsh;
 
 use crate::Mesh;
 use crate::read::{Cell, Draft, ReadError, Side};

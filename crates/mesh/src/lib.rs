@@ -10,6 +10,7 @@
 //! | pair two surfaces | [`Mesh::couplings`] |
 //! | make one | [`block2`], [`block3`] on the lines of [`uniform`], [`geometric`], [`refine`] |
 //! | read one, from the bytes of a file | [`read_gmsh`], [`read_abaqus`] |
+//! | write one | [`write_gmsh`] |
 //!
 //! Cells are numbered as in Gmsh, lengths are in millimetres, tensors are Mandel vectors
 //! `[11, 22, 33, √2·23, √2·13, √2·12]`.
@@ -62,7 +63,7 @@ pub use cell::{CellKind, FacetKind};
 pub use element::{Element, Hex8, Line2, Line3, Mapped, Quad4, Quad8, Quad9, Tet4, Tri3, Tri6};
 pub use error::{GroupKind, MeshError};
 pub use generate::{block2, block3, geometric, refine, uniform};
-pub use gmsh::read_gmsh;
+pub use gmsh::{read_gmsh, write_gmsh};
 pub use hypothesis::{Axisymmetric, Hypothesis, PlaneStrain, Solid};
 pub use mesh::{Facet, Mesh, NodeKind, Share};
 pub use nearest::nearest;

@@ -41,18 +41,29 @@ mod grammar;
 mod reader;
 mod units;
 
-pub use build::{GroupFacts, Problem, Setup, Stage};
+pub use build::{Body, GroupFacts, Problem, Setup, Stage};
 pub use entries::{
-    Action, Analysis, BlockEntry, ConditionEntry, ContactEntry, Deck, Expectation, Grid,
+    Action, Adjust, Analysis, BlockEntry, ConditionEntry, ContactEntry, Deck, Expectation, Grid,
     GroupEntry, MaterialEntry, Method, Part, Shape, SolverEntry, StepEntry, ToolEntry, Vtu,
 };
-pub use finding::{At, Finding, Findings, Severity};
+pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;
 
+use std::path::Path;
+
+/// JSON schema of decks, for editors: `docs/deck.schema.json`.
+pub const SCHEMA: &str = include_str!("../../../docs/deck.schema.json");
+
 /// Reads a deck and builds its problem, if it has no error. The findings are errors and warnings.
+/// Paths in it are relative to the current folder: see [`open_in`].
 pub fn open(text: &str) -> (Deck, Option<Problem>, Findings) {
-    let (deck, mut findings) = grammar::read(text);
-    let problem = build::build(&deck, &mut findings);
+    open_in(text, Path::new(""))
+}
+
+/// As [`open`], with the paths in the deck relative to a folder: that of the deck's file.
+pub fn open_in(text: &str, folder: &Path) -> (Deck, Option<Problem>, Findings) {
+    let (mut deck, mut findings) = grammar::read(text, folder);
+    let problem = build::build(&mut deck, &mut findings);
     if let Some(problem) = &problem {
         let columns = match problem {
             Problem::Plane(setup) => crate::run::columns(setup),
@@ -63,7 +74,9 @@ pub fn open(text: &str) -> (Deck, Option<Problem>, Findings) {
             if !columns.contains(&column.value) {
                 let near = finding::did_you_mean(&column.value, columns.iter().map(String::as_str));
                 let message = format!("no result is called \"{}\"{near}", column.value);
-                findings.error(&column.span, message, "not a column of history.csv");
+                findings
+                    .error(&column.span, message, "not a column of history.csv")
+                    .about(Class::Names);
             }
         }
     }

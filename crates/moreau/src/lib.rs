@@ -10,6 +10,7 @@
 //! | steps and reports | `moreau-driver` | [`driver`] |
 //! | charts and pictures | | [`plot`] |
 //! | problems in text files | | [`deck`] |
+//! | mesh files | | [`files`] |
 //! | their results | | [`run`] |
 //!
 //! ```
@@ -28,6 +29,7 @@
 //! ```
 
 pub mod deck;
+pub mod files;
 pub mod plot;
 pub mod run;
 

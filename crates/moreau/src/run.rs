@@ -19,6 +19,7 @@ pub use diagnosis::{Diagnosis, Flip};
 pub use history::columns;
 pub use outcome::{Outcome, RunStatus, Verdict};
 pub use view::{NodalField, View};
+pub(crate) use vtu::vtu_of_mesh;
 
 use crate::deck::{Deck, Setup, Vtu};
 use crate::driver::{Driver, Ramp, Reader, StepError, StepReport};
@@ -387,7 +388,7 @@ where
         self.history.last = from.take(columns)?.to_vec();
         self.setup.driver.read(from)?;
         self.ramp = match (from.count()?, self.setup.stages.get(self.stage)) {
-            (1, Some(stage)) => Some(Ramp::read(&stage.step, from)?),
+            (1, Some(stage)) => Some(Ramp::read(&stage.step, stage.increments, from)?),
             _ => None,
         };
         let at = |name: &str| self.directory.join(name);
@@ -489,7 +490,7 @@ where
                     step: &name,
                     stage: self.stage + 1,
                     stages,
-                    increments: self.setup.stages[self.stage].increments,
+                    increments: self.setup.stages[self.stage].increments.count(),
                     done: done / stages as f64,
                     seconds_left: rate * (stages as f64 - done),
                     report: &report,

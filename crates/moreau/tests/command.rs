@@ -61,7 +61,11 @@ fn every_example_is_as_expected() {
             .expect("a name")
             .to_string_lossy()
             .into_owned();
-        let (status, out, err, results) = run(&name, &deck, &["--verify"]);
+        let results = directory(&name);
+        let (from, to) = (path.to_string_lossy(), results.to_string_lossy());
+        let output = moreau(&["run", &from, "--out", &to, "--verify"]);
+        let (out, err) = (text(&output.stdout), text(&output.stderr));
+        let status = output.status.code().expect("a status");
         assert_eq!(status, 0, "{}\n{out}{err}", path.display());
         assert!(out.contains("met") && !out.contains("FAILED"), "{out}");
         for file in [
@@ -80,7 +84,219 @@ fn every_example_is_as_expected() {
         assert_eq!(check.status.code(), Some(0), "{}", text(&check.stderr));
         count += 1;
     }
-    assert!(count >= 4);
+    assert!(count >= 6);
+}
+
+/// A column of history.csv, by the name before its unit.
+fn column(results: &Path, name: &str) -> Vec<f64> {
+    let history = fs::read_to_string(results.join("history.csv")).expect("a history");
+    let mut lines = history.lines();
+    let header = lines.next().expect("a header");
+    let at = header
+        .split(',')
+        .position(|h| h.split(' ').next() == Some(name));
+    let at = at.unwrap_or_else(|| panic!("{name} in {header}"));
+    let value = |line: &str| line.split(',').nth(at).and_then(|v| v.parse().ok());
+    lines.map(|l| value(l).expect("a number")).collect()
+}
+
+fn last(results: &Path, name: &str) -> f64 {
+    column(results, name).pop().expect("a row")
+}
+
+/// On a mesh of Gmsh, forces balance: punch and foundation, friction and symmetry plane.
+#[test]
+fn forces_balance_on_a_mesh_of_gmsh() {
+    let deck = examples().join("punch-on-gmsh-mesh.toml");
+    let results = directory("balance");
+    let (from, to) = (deck.to_string_lossy(), results.to_string_lossy());
+    assert_eq!(
+        moreau(&["run", &from, "--out", &to, "--quiet"])
+            .status
+            .code(),
+        Some(0)
+    );
+    let pairs = [
+        ("force.punch.y", "force.foundation.y"),
+        ("force.symmetry.x", "force.foundation.x"),
+    ];
+    for (given, taken) in pairs {
+        for (a, b) in column(&results, given).iter().zip(column(&results, taken)) {
+            assert!((a + b).abs() < 1e-9 * b.abs().max(1.0), "{given}: {a} {b}");
+        }
+    }
+    // The foundation carries what the punch gives, and friction at most a tenth of it.
+    let (normal, friction) = (
+        last(&results, "force.foundation.y"),
+        last(&results, "force.foundation.x"),
+    );
+    assert!(normal > 0.0 && friction < 0.0 && -friction <= 0.1 * normal * (1.0 + 1e-9));
+}
+
+/// A floor given as a polyline, one that touches at a distance, and one that is a little too low
+/// are the same floor.
+#[test]
+fn floors_that_are_the_same() {
+    let plane = "plane = { point = [0, 0], normal = [0, 1] }";
+    for (name, from, to) in [
+        (
+            "polyline",
+            plane.to_owned(),
+            "polyline = [[-9, 0], [20, 0], [99, 0]]".to_owned(),
+        ),
+        (
+            "offset",
+            format!("{plane}\n\n[[contact]]"),
+            "plane = { point = [0, -0.5], normal = [0, 2] }\n\n[[contact]]\ngap-offset = 0.5"
+                .into(),
+        ),
+        (
+            "adjust",
+            format!("{plane}\n\n[[contact]]"),
+            "plane = { point = [0, -0.01], normal = [0, 1] }\n\n[[contact]]\nadjust = 0.02".into(),
+        ),
+        (
+            // A twentieth of a cell of 5 mm.
+            "near",
+            format!("{plane}\n\n[[contact]]"),
+            "plane = { point = [0, 0.2], normal = [0, 1] }\n\n[[contact]]\nadjust = true".into(),
+        ),
+    ] {
+        let deck = punched().replace(&from, &to);
+        assert_ne!(deck, punched());
+        let (status, out, err, results) = run(&format!("floor-{name}"), &deck, &["--verify"]);
+        assert_eq!(status, 0, "{name}: {out}{err}");
+        let force = last(&results, "force.punch.y");
+        assert!((force + 10519.53783).abs() < 1e-3, "{name}: {force}");
+    }
+}
+
+/// A cylinder in space on a slice that cannot strain along it is a circle in plane strain.
+#[test]
+fn a_cylinder_in_space_is_a_circle_in_the_plane() {
+    let deck = |analysis: &str, element: &str, z: [&str; 4], tool: &str, up: &str| {
+        format!(
+            r#"
+units = "mm-N-MPa"
+analysis = "{analysis}"
+mesh.block = [{{ name = "b", element = "{element}", x = [0, 4], y = [0, 3], {} cells = [8, 6{}] }}]
+material = [{{ on = "b", young = 1000.0, poisson = 0.3 }}]
+tool = [{{ name = "roll", cylinder = {{ {tool}, radius = 10 }} }}]
+contact = [{{ surface = "b.top", against = "roll", friction = 0.3 }}]
+[[step]]
+name = "press"
+increments = 2
+fix = [
+  {{ on = "b.bottom", u = ["y"] }},
+  {{ on = "b.left", u = ["x"] }},
+  {}
+]
+tools = [{{ name = "roll", move = {up} }}]
+"#,
+            z[0], z[1], z[2]
+        )
+    };
+    let flat = deck(
+        "plane-strain",
+        "quad4",
+        ["", "", "", ""],
+        "center = [0, 13]",
+        "[0, -0.2]",
+    );
+    let solid = deck(
+        "solid",
+        "hex8",
+        ["z = [0, 1],", ", 1", "{ on = \"b\", u = [\"z\"] },", ""],
+        "center = [0, 13, 7], axis = [0, 0, -3]",
+        "[0, -0.2, 0]",
+    );
+    let (a, _, err, flat) = run("circle", &flat, &[]);
+    assert_eq!(a, 0, "{err}");
+    let (b, _, err, solid) = run("roll", &solid, &[]);
+    assert_eq!(b, 0, "{err}");
+    let forces = (last(&flat, "force.roll.y"), last(&solid, "force.roll.y"));
+    assert!(
+        forces.0 < -1.0 && (forces.1 / forces.0 - 1.0).abs() < 1e-8,
+        "{forces:?}"
+    );
+}
+
+/// Springs by the penetration that is wanted: no node goes deeper, and the load is nearly exact.
+#[test]
+fn a_penetration_is_kept() {
+    let solver = "[solver]\ncontact = { penetration = 1e-3 }\n[expect]";
+    let deck = punched().replace("[expect]", solver);
+    let (status, _, err, results) = run("penetration", &deck, &[]);
+    assert_eq!(status, 0, "{err}");
+    let depth = column(&results, "penetration")
+        .into_iter()
+        .fold(0.0, f64::max);
+    // Cells of 5 mm.
+    assert!(depth > 1e-4 * 5.0 && depth <= 1e-3 * 5.0, "{depth}");
+    let force = last(&results, "force.punch.y");
+    assert!((force / -10519.53783 - 1.0).abs() < 1e-2, "{force}");
+}
+
+/// Automatic increments grow, end at the end, and give nearly the same load.
+#[test]
+fn automatic_increments_grow() {
+    let automatic = "increments = { start = 0.02, min = 1e-4, max = 0.2 }";
+    let deck = punched().replace("increments = 20", automatic);
+    let (status, _, err, results) = run("automatic", &deck, &[]);
+    assert_eq!(status, 0, "{err}");
+    let time = column(&results, "time");
+    let lengths: Vec<f64> = time.windows(2).map(|t| t[1] - t[0]).collect();
+    assert!(
+        time.len() < 20 && time[0] == 0.02 && time[time.len() - 1] == 1.0,
+        "{time:?}"
+    );
+    assert!(
+        lengths.iter().all(|l| *l > 0.0 && *l <= 0.2 + 1e-12),
+        "{lengths:?}"
+    );
+    assert!(lengths.iter().any(|l| *l > 0.19), "{lengths:?}");
+    let force = last(&results, "force.punch.y");
+    assert!((force / -10519.53783 - 1.0).abs() < 2e-3, "{force}");
+}
+
+#[test]
+fn meshes_are_converted() {
+    let mesh = examples().join("punch-on-gmsh-mesh.msh");
+    let at = directory("converted");
+    let from = mesh.to_string_lossy();
+    for name in ["mesh.msh", "mesh.vtu"] {
+        let to = at.join(name);
+        let output = moreau(&["convert", &from, &to.to_string_lossy()]);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        assert!(text(&output.stdout).contains("358 nodes, 161 cells, 5 groups"));
+    }
+    let vtu = text(&fs::read(at.join("mesh.vtu")).expect("a file"));
+    assert!(vtu.contains("NumberOfPoints=\"358\" NumberOfCells=\"161\""));
+    assert!(vtu.contains("Name=\"block\"") && vtu.contains("Name=\"round\""));
+    let hex = examples().join("../../crates/mesh/tests/data/hex8.4b.msh");
+    let to = at.join("hex.msh");
+    let output = moreau(&["convert", &hex.to_string_lossy(), &to.to_string_lossy()]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    for (from, to, word) in [
+        ("none.msh", "a.vtu", "none.msh"),
+        (&*from, "a.stl", ".msh (Gmsh) or .vtu (VTK)"),
+        ("a.stl", "a.vtu", ".msh (Gmsh) or .inp"),
+    ] {
+        let output = moreau(&["convert", from, to]);
+        assert_eq!(output.status.code(), Some(1));
+        assert!(
+            text(&output.stderr).contains(word),
+            "{}",
+            text(&output.stderr)
+        );
+    }
+}
+
+#[test]
+fn the_schema_is_printed() {
+    let output = moreau(&["schema"]);
+    let schema: serde_json::Value = serde_json::from_slice(&output.stdout).expect("json");
+    assert_eq!(schema["title"], "moreau deck");
 }
 
 #[test]

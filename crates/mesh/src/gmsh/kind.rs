@@ -55,6 +55,13 @@ pub(super) fn kind(number: i32) -> Option<Kind> {
     KINDS.into_iter().find(|kind| kind.number == number)
 }
 
+/// The number of the type of that dimension and number of nodes; 0, which Gmsh does not use, if
+/// there is none.
+pub(super) fn of_nodes(dimension: usize, nodes: usize) -> i32 {
+    let same = |kind: &Kind| kind.dimension == dimension && kind.nodes == nodes;
+    KINDS.into_iter().find(same).map_or(0, |kind| kind.number)
+}
+
 /// Name and number of a type that is not read.
 pub(super) fn name(number: i32) -> String {
     let name = match number {

@@ -12,6 +12,7 @@ mod integrals;
 mod pairing;
 mod quadrature;
 mod validity;
+mod write;
 
 use moreau_mesh::{CellKind, Mesh};
 

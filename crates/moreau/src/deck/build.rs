@@ -3,16 +3,17 @@
 
 mod conditions;
 mod groups;
+mod meshes;
 mod names;
 mod parts;
 
 use super::entries::{Analysis, Deck, Method};
-use super::finding::Findings;
+use super::finding::{Class, Findings};
 use crate::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
-use crate::driver::{Analysis as Cells, Driver, ModelError, Nesting, Settings, Step, StepError};
-use crate::mesh::{Axisymmetric, Mesh, PlaneStrain, Solid, block2, block3};
+use crate::driver::{Analysis as Cells, Driver, Increments, ModelError, Nesting, Settings, Step};
+use crate::mesh::{Axisymmetric, CellKind, Mesh, PlaneStrain, Solid};
 use groups::Groups;
-pub(super) use parts::{kinds, quadrature};
+pub(super) use parts::quadratures;
 
 /// A group of the mesh and what it measures.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,13 +31,26 @@ pub struct GroupFacts {
     pub measure: Option<f64>,
 }
 
+/// A body: cells connected through shared nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// Name of the smallest group of cells that holds it, or its number from 1.
+    pub name: String,
+    /// Number of its cells of each kind.
+    pub cells: Vec<(CellKind, usize)>,
+    /// Volume, in the units of the deck.
+    pub volume: f64,
+    /// What resists its motion in each step: conditions with their directions, and contacts.
+    pub supports: Vec<Vec<String>>,
+}
+
 /// A step and how it is cut.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stage<const D: usize> {
     /// The step.
     pub step: Step<D>,
-    /// Equal increments.
-    pub increments: usize,
+    /// Its increments.
+    pub increments: Increments,
     /// Directions in which the step itself holds or moves each group of [`Setup::held`].
     pub directions: Vec<Vec<usize>>,
 }
@@ -53,8 +67,8 @@ pub struct Setup<const D: usize> {
     pub tools: Vec<String>,
     /// Groups of the mesh.
     pub groups: Vec<GroupFacts>,
-    /// Volume of the body of each block.
-    pub volumes: Vec<f64>,
+    /// Bodies: cells connected through shared nodes.
+    pub bodies: Vec<Body>,
 }
 
 /// A problem in the plane or in space.
@@ -66,7 +80,7 @@ pub enum Problem {
 }
 
 /// Builds what the deck describes; `None` if that has errors.
-pub(super) fn build(deck: &Deck, findings: &mut Findings) -> Option<Problem> {
+pub(super) fn build(deck: &mut Deck, findings: &mut Findings) -> Option<Problem> {
     match deck.analysis {
         Analysis::PlaneStrain => {
             let thickness = match PlaneStrain::new(deck.thickness.value) {
@@ -77,75 +91,42 @@ pub(super) fn build(deck: &Deck, findings: &mut Findings) -> Option<Problem> {
                     None
                 }
             };
-            let mesh = plane_mesh(deck, findings);
-            setup(deck, mesh, thickness.unwrap_or_default(), findings)
-                .map(|s| Problem::Plane(Box::new(s)))
+            let mesh = meshes::plane(deck, findings);
+            setup(
+                deck,
+                mesh,
+                thickness.unwrap_or_default(),
+                parts::profile,
+                findings,
+            )
+            .map(|s| Problem::Plane(Box::new(s)))
         }
         Analysis::Axisymmetric => {
-            for block in &deck.blocks {
-                let x = &block.grid[0];
-                if let Some(least) = x.value.lines().first().filter(|x| **x < 0.0) {
-                    findings.error(
-                        &x.span,
-                        format!("the block reaches the radius {least}, expected x ≥ 0"),
-                        "x is the radius",
-                    );
-                }
-            }
-            let mesh = plane_mesh(deck, findings);
-            setup(deck, mesh, Axisymmetric, findings).map(|s| Problem::Plane(Box::new(s)))
+            let mesh = meshes::meridian(deck, findings);
+            setup(deck, mesh, Axisymmetric, parts::profile, findings)
+                .map(|s| Problem::Plane(Box::new(s)))
         }
         Analysis::Solid => {
-            let mesh = joined(deck, findings, |block, lines: [Vec<f64>; 3]| {
-                let [x, y, z] = &lines;
-                block3(&block.name.value, block.element.value, x, y, z)
-            });
-            setup(deck, mesh, Solid, findings).map(|s| Problem::Solid(Box::new(s)))
+            let mesh = meshes::solid(deck, findings);
+            setup(deck, mesh, Solid, parts::surface, findings).map(|s| Problem::Solid(Box::new(s)))
         }
     }
-}
-
-fn plane_mesh(deck: &Deck, findings: &mut Findings) -> Option<Mesh<2>> {
-    joined(deck, findings, |block, lines: [Vec<f64>; 2]| {
-        let [x, y] = &lines;
-        block2(&block.name.value, block.element.value, x, y)
-    })
-}
-
-/// All blocks in one mesh, no node merged.
-fn joined<const D: usize>(
-    deck: &Deck,
-    findings: &mut Findings,
-    make: impl Fn(&super::BlockEntry, [Vec<f64>; D]) -> Result<Mesh<D>, crate::mesh::MeshError>,
-) -> Option<Mesh<D>> {
-    if !deck.mesh_understood {
-        return None;
-    }
-    let mut mesh: Option<Mesh<D>> = None;
-    for block in &deck.blocks {
-        let lines = std::array::from_fn(|i| block.grid[i].value.lines());
-        let joined = make(block, lines).and_then(|new| match mesh.take() {
-            Some(old) => old.joined(new),
-            None => Ok(new),
-        });
-        match joined {
-            Ok(joined) => mesh = Some(joined),
-            Err(error) => {
-                findings.error(&block.name.span, error.to_string(), "of this block");
-                return None;
-            }
-        }
-    }
-    mesh
 }
 
 fn setup<const D: usize, H: Cells<D>>(
-    deck: &Deck,
+    deck: &mut Deck,
     mesh: Option<Mesh<D>>,
     hypothesis: H,
+    surface: parts::Surface<D>,
     findings: &mut Findings,
 ) -> Option<Setup<D>> {
     let groups = mesh.map(|mesh| Groups::new(deck, mesh, findings));
+    if let Some(groups) = &groups {
+        for material in &mut deck.materials {
+            material.kinds = groups.kinds(&material.on.value);
+        }
+    }
+    let deck = &*deck;
     names::check(deck, groups.as_ref(), findings);
     let parts = parts::parts(deck, findings);
     let groups = groups?;
@@ -153,52 +134,43 @@ fn setup<const D: usize, H: Cells<D>>(
         return None;
     }
     let parts = parts?;
-    let model = parts::assemble(deck, groups.mesh.clone(), hypothesis, &parts, findings)?;
-    let settings = settings(deck, findings)?;
+    let mesh = groups.mesh.clone();
+    let model = parts::assemble(deck, mesh, hypothesis, &parts, surface, findings)?;
+    let stiffness = |part| parts::stiffness(deck, &groups.mesh, &hypothesis, part);
+    let settings = settings(deck, stiffness, findings)?;
     let driver = driver(Driver::new(model, settings), deck, &groups, findings)?;
     let stages = conditions::stages(deck, &groups);
     let mut possible = true;
     for (stage, entry) in stages.iter().zip(&deck.steps) {
         if let Err(error) = driver.loading(&stage.step) {
-            findings.error(&entry.span, error.to_string(), "in this step");
+            findings
+                .error(&entry.span, error.to_string(), "in this step")
+                .about(Class::Steps);
             possible = false;
         }
     }
     if !possible {
         return None;
     }
-    // What is free to move is found on a second driver, under no load: the first stays virgin.
-    let model = parts::assemble(deck, groups.mesh.clone(), hypothesis, &parts, findings)?;
-    let scratch = Settings {
-        iterations: 1,
-        ..Settings::default()
-    };
-    free_motions(
-        Driver::new(model, scratch).ok()?,
-        deck,
-        &stages,
-        &groups,
-        findings,
-    );
+    free_motions(&driver, deck, &stages, &groups, findings);
     conditions::doubts(deck, findings);
-    let volumes = deck
-        .blocks
-        .iter()
-        .filter_map(|b| groups.mesh.cell_group(&b.name.value).ok())
-        .map(|cells| groups.mesh.measure(cells, &hypothesis))
-        .collect();
     Some(Setup {
         driver,
         stages,
         held: conditions::held(deck, &groups),
         tools: deck.tools.iter().map(|t| t.name.value.clone()).collect(),
         groups: groups.facts(&hypothesis),
-        volumes,
+        bodies: groups.bodies(deck, &hypothesis),
     })
 }
 
 /// The method and its settings.
-fn settings<const D: usize>(deck: &Deck, findings: &mut Findings) -> Option<Settings<D>> {
+fn settings<const D: usize>(
+    deck: &Deck,
+    stiffness: impl Fn(f64) -> f64,
+    findings: &mut Findings,
+) -> Option<Settings<D>> {
+    let spring = |k: f64| Penalty::new(k, k);
     let contact: Box<dyn ContactSolver<D>> = match &deck.solver.method {
         Method::Exact => Box::new(SemismoothNewton::default()),
         Method::Uzawa => Box::new(Uzawa::default()),
@@ -208,6 +180,13 @@ fn settings<const D: usize>(deck: &Deck, findings: &mut Findings) -> Option<Sett
             Err(error) => {
                 let culprit = if normal.value > 0.0 { tangent } else { normal };
                 findings.error(&culprit.span, error.to_string(), "out of range");
+                return None;
+            }
+        },
+        Method::Penetration(part) => match spring(stiffness(part.value)) {
+            Ok(penalty) => Box::new(penalty),
+            Err(error) => {
+                findings.error(&part.span, error.to_string(), "out of range");
                 return None;
             }
         },
@@ -222,9 +201,6 @@ fn settings<const D: usize>(deck: &Deck, findings: &mut Findings) -> Option<Sett
             iterations: 20_000,
         };
     }
-    if let Some(cuts) = deck.steps.iter().filter_map(|s| s.cuts).max() {
-        settings.cuts = cuts;
-    }
     Some(settings)
 }
 
@@ -238,12 +214,14 @@ fn driver<const D: usize>(
     match driver {
         Ok(driver) => Some(driver),
         Err(error) => {
-            let bare = match &error {
-                ModelError::MissingMaterial { first, .. } => groups.block_of(deck, *first),
-                _ => deck.blocks.first(),
+            let cell = match &error {
+                ModelError::MissingMaterial { first, .. } => *first,
+                _ => 0,
             };
-            let span = bare.map_or(0..0, |b| b.name.span.clone());
-            findings.error(&span, error.to_string(), "of this block");
+            let (name, span) = groups.origin(deck, cell);
+            findings
+                .error(&span, format!("body \"{name}\": {error}"), "of this mesh")
+                .about(Class::Bodies);
             None
         }
     }
@@ -251,27 +229,27 @@ fn driver<const D: usize>(
 
 /// Notes rigid motions that nothing resists, step by step.
 fn free_motions<const D: usize>(
-    mut driver: Driver<D>,
+    driver: &Driver<D>,
     deck: &Deck,
     stages: &[Stage<D>],
     groups: &Groups<D>,
     findings: &mut Findings,
 ) {
     for (stage, entry) in stages.iter().zip(&deck.steps) {
-        let Ok(mut loading) = driver.loading(&stage.step) else {
+        let Ok(loading) = driver.loading(&stage.step) else {
             return;
         };
-        loading.displacement.values_mut().for_each(|u| *u = 0.0);
-        loading.force.iter_mut().for_each(|f| *f = 0.0);
-        loading.tools.iter_mut().for_each(|u| u.fill(0.0));
-        if let Err(StepError::Model(error)) = driver.advance(&loading) {
-            let of = match &error {
-                ModelError::FreeRigidMotion { cell, .. } => groups.block_of(deck, *cell),
-                _ => None,
+        if let Err(error) = driver.check_supports(&loading) {
+            let name = match &error {
+                ModelError::FreeRigidMotion { cell, .. } => {
+                    format!(", body \"{}\"", groups.origin(deck, *cell).0)
+                }
+                _ => String::new(),
             };
-            let name = of.map_or(String::new(), |b| format!(", body \"{}\"", b.name.value));
             let message = format!("step \"{}\"{name}: {error}", entry.name.value);
-            findings.error(&entry.name.span, message, "in this step");
+            findings
+                .error(&entry.name.span, message, "in this step")
+                .about(Class::Bodies);
         }
     }
 }

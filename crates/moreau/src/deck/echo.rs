@@ -1,10 +1,13 @@
 //! A deck written out again with every default spelt; not a copy of the file.
 
-use super::build::quadrature;
-use super::entries::{Action, ConditionEntry, Deck, Grid, Method, Part, Shape, Vtu};
-use crate::mesh::{CellKind, Integration};
+use super::build::quadratures;
+use super::entries::{Action, Adjust, ConditionEntry, Deck, Grid, Method, Part, Shape, Vtu};
+use crate::driver::Increments;
+use crate::mesh::Integration;
 use std::fmt::{self, Write};
 
+/// Where a material has several rules.
+const BY_ELEMENT: &str = "by element";
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Deck {
@@ -16,12 +19,13 @@ impl Deck {
         out
     }
 
-    /// The quadrature of a material, chosen by the deck or by its elements.
+    /// The quadrature of a material, chosen by the deck or by its elements: `"by element"` where
+    /// these differ, or are not known because the mesh is not.
     pub fn quadrature(&self, material: &super::MaterialEntry) -> &'static str {
-        let kind = super::build::kinds(self, material).next();
-        match quadrature(kind.unwrap_or(CellKind::Quad8), material) {
-            Integration::Reduced => "reduced",
-            Integration::Full => "full",
+        match quadratures(material)[..] {
+            [(Integration::Reduced, _)] => "reduced",
+            [(Integration::Full, _)] => "full",
+            _ => BY_ELEMENT,
         }
     }
 }
@@ -36,6 +40,11 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
     writeln!(out, "analysis = \"{}\"", deck.analysis.name())?;
     if deck.analysis == super::Analysis::PlaneStrain {
         writeln!(out, "thickness = {:?}", deck.thickness.value)?;
+    }
+    if let Some(file) = &deck.mesh_file {
+        // What is written stands in another folder than the deck.
+        let path = std::path::absolute(&file.value).unwrap_or_else(|_| file.value.clone());
+        writeln!(out, "\n[mesh]\nfile = {}", text(&path.to_string_lossy()))?;
     }
     for block in &deck.blocks {
         writeln!(out, "\n[[mesh.block]]\nname = {}", text(&block.name.value))?;
@@ -78,7 +87,10 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
                 "kinematic = [{{ modulus = {modulus:?}, recall = 0.0 }}]"
             )?;
         }
-        writeln!(out, "quadrature = \"{}\"", deck.quadrature(material))?;
+        let quadrature = deck.quadrature(material);
+        if quadrature != BY_ELEMENT {
+            writeln!(out, "quadrature = \"{quadrature}\"")?;
+        }
     }
     for tool in &deck.tools {
         writeln!(out, "\n[[tool]]\nname = {}", text(&tool.name.value))?;
@@ -93,6 +105,14 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
                 )?;
                 writeln!(out, "inside = {hollow}")?;
             }
+            Shape::Cylinder(center, axis, radius, hollow) => {
+                writeln!(
+                    out,
+                    "cylinder = {{ center = {center:?}, axis = {axis:?}, radius = {radius:?} }}"
+                )?;
+                writeln!(out, "inside = {hollow}")?;
+            }
+            Shape::Polyline(points) => writeln!(out, "polyline = {points:?}")?,
         }
     }
     for contact in &deck.contacts {
@@ -103,19 +123,24 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
         )?;
         writeln!(out, "against = {}", text(&contact.against.value))?;
         writeln!(out, "friction = {:?}", contact.friction.value)?;
+        if let Some(offset) = &contact.gap_offset {
+            writeln!(out, "gap-offset = {:?}", offset.value)?;
+        }
+        match contact.adjust.as_ref().map(|a| a.value) {
+            None => {}
+            Some(Adjust::Near) => writeln!(out, "adjust = true")?,
+            Some(Adjust::Within(distance)) => writeln!(out, "adjust = {distance:?}")?,
+        }
     }
     for step in &deck.steps {
         writeln!(out, "\n[[step]]\nname = {}", text(&step.name.value))?;
-        match step.cuts {
-            None => writeln!(out, "increments = {}", step.increments)?,
-            Some(cuts) => {
-                let start = 1.0 / step.increments as f64;
-                let min = start * 0.5f64.powi(cuts as i32);
-                writeln!(
-                    out,
-                    "increments = {{ start = {start:?}, min = {min:?}, max = {start:?} }}"
-                )?;
-            }
+        let Increments { start, min, max } = step.increments;
+        match min {
+            None => writeln!(out, "increments = {}", step.increments.count())?,
+            Some(min) => writeln!(
+                out,
+                "increments = {{ start = {start:?}, min = {min:?}, max = {max:?} }}"
+            )?,
         }
         for (key, list) in lists(&step.conditions) {
             writeln!(out, "{key} = [{}]", list.join(", "))?;
@@ -166,6 +191,7 @@ fn tail(deck: &Deck, out: &mut String) -> fmt::Result {
             "{{ penalty = {{ normal = {:?}, tangent = {:?} }} }}",
             n.value, t.value
         ),
+        Method::Penetration(part) => format!("{{ penetration = {:?} }}", part.value),
     };
     let nesting = if deck.solver.outside {
         "outside"

@@ -2,8 +2,10 @@
 
 use super::finding::At;
 use super::units::Units;
+use crate::driver::Increments;
 use crate::mesh::{CellKind, Integration};
 use std::ops::Range;
+use std::path::PathBuf;
 
 /// The modelling hypothesis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,6 +48,14 @@ impl Grid {
         match self {
             Self::Range(_, cells) => *cells,
             Self::Lines(lines) => lines.len().saturating_sub(1),
+        }
+    }
+
+    /// The least coordinate; NaN without lines.
+    pub fn first(&self) -> f64 {
+        match self {
+            Self::Range([a, _], _) => *a,
+            Self::Lines(lines) => lines.first().copied().unwrap_or(f64::NAN),
         }
     }
 
@@ -106,6 +116,8 @@ pub struct MaterialEntry {
     pub kinematic: Option<At<f64>>,
     /// Quadrature, if given.
     pub quadrature: Option<At<Integration>>,
+    /// Kinds of the cells that have it; known when the mesh is.
+    pub kinds: Vec<CellKind>,
 }
 
 /// Surface of a tool.
@@ -115,6 +127,10 @@ pub enum Shape {
     Plane(Vec<f64>, Vec<f64>),
     /// Centre, radius and whether the tool is hollow; with the name that it was given by.
     Ball(Vec<f64>, f64, bool, &'static str),
+    /// In space: point and direction of the axis, radius and whether the tool is hollow.
+    Cylinder(Vec<f64>, Vec<f64>, f64, bool),
+    /// In the plane: points with the tool on the right.
+    Polyline(Vec<[f64; 2]>),
 }
 
 /// `[[tool]]`.
@@ -126,6 +142,15 @@ pub struct ToolEntry {
     pub shape: At<Shape>,
 }
 
+/// Up to which gap or penetration nodes touch where they are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Adjust {
+    /// Up to a twentieth of the shortest side of the surface's cells.
+    Near,
+    /// Up to a distance.
+    Within(f64),
+}
+
 /// `[[contact]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactEntry {
@@ -135,6 +160,10 @@ pub struct ContactEntry {
     pub against: At<String>,
     /// Coefficient of Coulomb friction.
     pub friction: At<f64>,
+    /// Distance from the tool at which the surface touches.
+    pub gap_offset: Option<At<f64>>,
+    /// Whether nodes near the tool touch where they are.
+    pub adjust: Option<At<Adjust>>,
 }
 
 /// A condition of a step.
@@ -172,10 +201,8 @@ pub enum Action {
 pub struct StepEntry {
     /// Name.
     pub name: At<String>,
-    /// Equal increments.
-    pub increments: usize,
-    /// Times an increment may be halved, if the deck says so.
-    pub cuts: Option<usize>,
+    /// Increments.
+    pub increments: Increments,
     /// Conditions.
     pub conditions: Vec<ConditionEntry>,
     /// Place of the step.
@@ -193,6 +220,9 @@ pub enum Method {
     GaussSeidel,
     /// Springs, normal and tangential.
     Penalty(At<f64>, At<f64>),
+    /// Springs such that a pressure of three times the yield stress penetrates by this part of the
+    /// shortest side of the cells in contact.
+    Penetration(At<f64>),
 }
 
 /// `[solver]`.
@@ -254,6 +284,8 @@ pub struct Deck {
     pub analysis: Analysis,
     /// Thickness of plane strain.
     pub thickness: At<f64>,
+    /// Path of the mesh file, if there is one.
+    pub mesh_file: Option<At<PathBuf>>,
     /// Blocks.
     pub blocks: Vec<BlockEntry>,
     /// Groups.

@@ -29,11 +29,70 @@ pub enum Severity {
     Warning,
 }
 
+/// What a finding is about: the section of `docs/errors.md` with its cause and remedy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Class {
+    /// The file is no TOML.
+    Syntax,
+    /// A key that does not exist, or one that is missing.
+    Keys,
+    /// A value of the wrong type or out of its range.
+    Values,
+    /// A name that does not exist, or that is given twice.
+    Names,
+    /// A group that is empty or cannot be made.
+    Groups,
+    /// A mesh that cannot be read or made.
+    Meshes,
+    /// A body without material, or free to move.
+    Bodies,
+    /// Conditions of a step that contradict each other.
+    Steps,
+    /// What this version cannot do.
+    Unavailable,
+    /// What can be run, but perhaps is not what was meant.
+    Warnings,
+}
+
+impl Class {
+    /// All of them.
+    pub const ALL: [Self; 10] = [
+        Self::Syntax,
+        Self::Keys,
+        Self::Values,
+        Self::Names,
+        Self::Groups,
+        Self::Meshes,
+        Self::Bodies,
+        Self::Steps,
+        Self::Unavailable,
+        Self::Warnings,
+    ];
+
+    /// Name of the section.
+    pub fn name(self) -> &'static str {
+        [
+            "syntax",
+            "keys",
+            "values",
+            "names",
+            "groups",
+            "meshes",
+            "bodies",
+            "steps",
+            "unavailable",
+            "warnings",
+        ][self as usize]
+    }
+}
+
 /// One finding.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
     /// Error or warning.
     pub severity: Severity,
+    /// What it is about.
+    pub class: Class,
     /// What was found and what was expected.
     pub message: String,
     /// What stands at the place.
@@ -42,6 +101,13 @@ pub struct Finding {
     pub span: Range<usize>,
     /// What to do, if there is more to say.
     pub help: Option<String>,
+}
+
+impl Finding {
+    /// Says what it is about; by default an error is about a value.
+    pub(super) fn about(&mut self, class: Class) {
+        self.class = class;
+    }
 }
 
 /// All findings of a deck, in the order in which they were made.
@@ -57,8 +123,8 @@ impl Findings {
         span: &Range<usize>,
         message: impl Into<String>,
         label: impl Into<String>,
-    ) {
-        self.add(Severity::Error, span, message.into(), label.into(), None);
+    ) -> &mut Finding {
+        self.add(Severity::Error, span, message.into(), label.into(), None)
     }
 
     /// Adds an error with an advice.
@@ -68,9 +134,9 @@ impl Findings {
         message: impl Into<String>,
         label: impl Into<String>,
         help: impl Into<String>,
-    ) {
+    ) -> &mut Finding {
         let help = Some(help.into());
-        self.add(Severity::Error, span, message.into(), label.into(), help);
+        self.add(Severity::Error, span, message.into(), label.into(), help)
     }
 
     /// Adds a warning.
@@ -90,17 +156,28 @@ impl Findings {
         message: String,
         label: String,
         help: Option<String>,
-    ) {
-        let finding = Finding {
-            severity,
-            message,
-            label,
-            span: span.clone(),
-            help,
+    ) -> &mut Finding {
+        let same = |f: &Finding| {
+            f.severity == severity && f.span == *span && f.message == message && f.label == label
         };
-        if !self.list.contains(&finding) {
-            self.list.push(finding);
-        }
+        let at = match self.list.iter().position(same) {
+            Some(at) => at,
+            None => {
+                self.list.push(Finding {
+                    severity,
+                    class: match severity {
+                        Severity::Error => Class::Values,
+                        Severity::Warning => Class::Warnings,
+                    },
+                    message,
+                    label,
+                    span: span.clone(),
+                    help,
+                });
+                self.list.len() - 1
+            }
+        };
+        &mut self.list[at]
     }
 
     /// All of them.
@@ -178,8 +255,10 @@ impl Diagnostic for Shown<'_> {
     }
 
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        let help = self.finding.help.as_ref()?;
-        Some(Box::new(help))
+        let class = self.finding.class.name();
+        let help = self.finding.help.as_ref();
+        let help = help.map_or_else(String::new, |help| format!("{help}; "));
+        Some(Box::new(format!("{help}see docs/errors.md#{class}")))
     }
 
     fn source_code(&self) -> Option<&dyn miette::SourceCode> {

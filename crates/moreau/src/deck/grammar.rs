@@ -7,27 +7,31 @@ mod step;
 mod tool;
 
 use super::entries::{Analysis, Deck};
-use super::finding::{At, Findings};
+use super::finding::{At, Class, Findings};
 use super::reader::{self, Log, Table};
 use super::units::Units;
+use std::path::Path;
 use toml::de::DeTable;
 
-/// Reads a deck. What was not understood is left out, and noted.
-pub(super) fn read(text: &str) -> (Deck, Findings) {
+/// Reads a deck whose paths are relative to a folder. What was not understood is left out, and
+/// noted.
+pub(super) fn read(text: &str, folder: &Path) -> (Deck, Findings) {
     let (document, errors) = DeTable::parse_recoverable(text);
     let log = Log::default();
     for error in errors {
         let span = error.span().unwrap_or(0..0);
         let message = format!("not TOML: {}", error.message().replace('\n', ", "));
-        log.borrow_mut().error(&span, message, "here");
+        log.borrow_mut()
+            .error(&span, message, "here")
+            .about(Class::Syntax);
     }
     let root = Table::new(document.get_ref(), 0..0, "the deck", &log);
-    let deck = deck(&root);
+    let deck = deck(&root, folder);
     root.finish();
     (deck, log.into_inner())
 }
 
-fn deck(root: &Table<'_>) -> Deck {
+fn deck(root: &Table<'_>, folder: &Path) -> Deck {
     let log = root.log();
     let title = root
         .get("title")
@@ -53,7 +57,7 @@ fn deck(root: &Table<'_>) -> Deck {
         );
     }
     let before = log.borrow().errors();
-    let (blocks, groups) = mesh::read(root, dimension);
+    let mesh = mesh::read(root, dimension, folder);
     let mesh_understood = log.borrow().errors() == before;
     let materials = root
         .tables("material", "[[material]]")
@@ -80,8 +84,9 @@ fn deck(root: &Table<'_>) -> Deck {
         units: units.unwrap_or(Units::MmNMpa),
         analysis,
         thickness: thickness.unwrap_or(At::new(1.0, 0..0)),
-        blocks,
-        groups,
+        mesh_file: mesh.file,
+        blocks: mesh.blocks,
+        groups: mesh.groups,
         mesh_understood,
         materials,
         tools,
@@ -97,19 +102,24 @@ fn deck(root: &Table<'_>) -> Deck {
 }
 
 fn missing(root: &Table<'_>, what: &str, keys: &str) {
-    root.log().borrow_mut().error(
-        &root.span,
-        format!("the deck has no {what}, expected at least one with {keys}"),
-        format!("{what} is missing"),
-    );
+    root.log()
+        .borrow_mut()
+        .error(
+            &root.span,
+            format!("the deck has no {what}, expected at least one with {keys}"),
+            format!("{what} is missing"),
+        )
+        .about(Class::Keys);
 }
 
 /// Notes that something of the grammar is not available yet.
 fn not_yet(log: &Log, span: &std::ops::Range<usize>, what: &str, instead: &str) {
-    log.borrow_mut().error_with(
-        span,
-        format!("{what}: not available yet"),
-        "not available yet",
-        instead,
-    );
+    log.borrow_mut()
+        .error_with(
+            span,
+            format!("{what}: not available yet"),
+            "not available yet",
+            instead,
+        )
+        .about(Class::Unavailable);
 }

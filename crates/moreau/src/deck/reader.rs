@@ -1,6 +1,6 @@
 //! Reading tables and values of a deck, noting what is not as expected; it knows no key.
 
-use super::finding::{At, Findings, did_you_mean, one_of};
+use super::finding::{At, Class, Findings, did_you_mean, one_of};
 use std::cell::RefCell;
 use std::ops::Range;
 use toml::Spanned;
@@ -54,14 +54,17 @@ impl<'a> Table<'a> {
     pub(super) fn need(&self, key: &'static str, expected: &str) -> Option<Value<'a>> {
         let value = self.get(key);
         if value.is_none() {
-            self.log.borrow_mut().error(
-                &self.span,
-                format!(
-                    "{} has no key \"{key}\", expected {key} = {expected}",
-                    self.name
-                ),
-                format!("\"{key}\" is missing here"),
-            );
+            self.log
+                .borrow_mut()
+                .error(
+                    &self.span,
+                    format!(
+                        "{} has no key \"{key}\", expected {key} = {expected}",
+                        self.name
+                    ),
+                    format!("\"{key}\" is missing here"),
+                )
+                .about(Class::Keys);
         }
         value
     }
@@ -83,12 +86,15 @@ impl<'a> Table<'a> {
         for (key, _) in self.entries() {
             if !known.contains(&key.value.as_str()) {
                 let near = did_you_mean(&key.value, known.iter().copied());
-                self.log.borrow_mut().error_with(
-                    &key.span,
-                    format!("unknown key \"{}\" in {}{near}", key.value, self.name),
-                    "not a key here",
-                    format!("{} has the keys {}", self.name, known.join(", ")),
-                );
+                self.log
+                    .borrow_mut()
+                    .error_with(
+                        &key.span,
+                        format!("unknown key \"{}\" in {}{near}", key.value, self.name),
+                        "not a key here",
+                        format!("{} has the keys {}", self.name, known.join(", ")),
+                    )
+                    .about(Class::Keys);
             }
         }
     }

@@ -126,13 +126,13 @@ fn suggestion(
         }
         _ if flips => format!(
             "contact statuses do not settle: in step \"{name}\" use increments = {}",
-            2 * step.increments
+            2 * step.increments.count()
         ),
         _ => format!(
             "in step \"{name}\" allow smaller increments: increments = {{ start = {:?}, min = 1e-7, \
              max = {:?} }}",
-            0.5 / step.increments as f64,
-            1.0 / step.increments as f64
+            0.5 * step.increments.start,
+            step.increments.start
         ),
     }
 }

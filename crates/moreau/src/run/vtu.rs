@@ -6,7 +6,7 @@ use super::files::{Stream, read_text, write_file};
 use super::view::{NodalField, View};
 use crate::driver::{ContactRecord, Driver};
 use crate::laws::Status;
-use crate::mesh::{CellKind, Facet, FacetKind};
+use crate::mesh::{CellKind, Facet, FacetKind, Mesh};
 use flate2::{Compression, read::ZlibDecoder, write::ZlibEncoder};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -228,6 +228,46 @@ where
     body(driver).point_data
 }
 
+/// A mesh without results: its groups as arrays of 0 and 1, of cells for groups of cells and of
+/// points for the others.
+pub(crate) fn vtu_of_mesh<const D: usize>(mesh: &Mesh<D>) -> Vec<u8> {
+    let (mut point_data, mut cell_data) = (Vec::new(), Vec::new());
+    let array = |name: &str, members: &[usize], count: usize| {
+        let mut values = vec![0.0; count];
+        members.iter().for_each(|&m| values[m] = 1.0);
+        Array {
+            name: String::from(name),
+            components: 1,
+            values,
+        }
+    };
+    for name in mesh.group_names() {
+        match mesh.cell_group(name) {
+            Ok(cells) => cell_data.push(array(name, cells, mesh.cell_count())),
+            Err(_) => {
+                let nodes = mesh.node_group(name).unwrap_or_default();
+                point_data.push(array(name, &nodes, mesh.nodes().len()));
+            }
+        }
+    }
+    Grid {
+        points: mesh.nodes().iter().map(|x| three(x)).collect(),
+        cells: cells(mesh),
+        point_data,
+        cell_data,
+    }
+    .bytes()
+}
+
+/// Nodes and VTK type of all cells.
+fn cells<const D: usize>(mesh: &Mesh<D>) -> Vec<(Vec<i64>, u8)> {
+    let cell = |c: usize| {
+        let nodes = mesh.cell_nodes(c).iter().map(|&n| n as i64).collect();
+        (nodes, cell_type(mesh.kind(c)))
+    };
+    (0..mesh.cell_count()).map(cell).collect()
+}
+
 fn body<const D: usize>(driver: &Driver<D>) -> Grid
 where
     Driver<D>: View,
@@ -240,13 +280,9 @@ where
         values: driver.nodal(field),
     };
     let displacement = nodes.flat_map(|n| three(driver.displacement(n).as_slice()));
-    let cell = |c: usize| {
-        let nodes = mesh.cell_nodes(c).iter().map(|&n| n as i64).collect();
-        (nodes, cell_type(mesh.kind(c)))
-    };
     Grid {
         points: mesh.nodes().iter().map(|x| three(x)).collect(),
-        cells: (0..mesh.cell_count()).map(cell).collect(),
+        cells: cells(mesh),
         point_data: vec![
             Array {
                 name: "displacement".into(),
@@ -357,6 +393,10 @@ impl Grid {
         let mut add = |head: &mut String, name: &str, kind: &str, components, bytes: &[u8]| {
             let offset = data.len();
             // Writing to a string does not fail.
+            let name = name
+                .replace('&', "&amp;")
+                .replace('<', "&lt;")
+                .replace('"', "&quot;");
             let _ = writeln!(
                 head,
                 "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \

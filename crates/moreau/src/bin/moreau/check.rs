@@ -1,7 +1,7 @@
 //! `moreau check`: what a deck was understood to say; nothing is solved.
 
-use super::{INPUT_ERROR, read, report};
-use moreau::deck::{Action, Deck, Method, Problem, Setup, Shape, open};
+use super::{INPUT_ERROR, folder, read, report};
+use moreau::deck::{Action, Deck, Method, Problem, Setup, Shape, open_in};
 use std::path::Path;
 
 /// Checks a deck; the exit status.
@@ -9,7 +9,7 @@ pub(crate) fn check(path: &Path) -> u8 {
     let Some(text) = read(path) else {
         return INPUT_ERROR;
     };
-    let (deck, problem, findings) = open(&text);
+    let (deck, problem, findings) = open_in(&text, folder(path));
     report(&findings, path, &text);
     match problem {
         None => INPUT_ERROR,
@@ -50,11 +50,21 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
         mesh.cell_count(),
         D * mesh.nodes().len()
     );
-    for (block, volume) in deck.blocks.iter().zip(&setup.volumes) {
+    if let Some(file) = &deck.mesh_file {
+        println!("           from {}", file.value.display());
+    }
+    for body in &setup.bodies {
+        let cells: Vec<String> = body.cells.iter().map(|(k, n)| format!("{n} {k}")).collect();
         println!(
-            "body       {}: {}, volume {volume:.6e} {length}³",
-            block.name.value, block.element.value
+            "body       {}: {}, volume {:.6e} {length}³",
+            body.name,
+            cells.join(", "),
+            body.volume
         );
+        for (step, supports) in deck.steps.iter().zip(&body.supports) {
+            let held = supports.join("; ");
+            println!("           held in step {} by {held}", step.name.value);
+        }
     }
     for group in &setup.groups {
         let unit = if group.kind == "cells" { "³" } else { "²" };
@@ -96,17 +106,36 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
                 let inside = if *hollow { ", hollow" } else { "" };
                 format!("{key} around {center:?}, radius {radius} {length}{inside}")
             }
+            Shape::Cylinder(center, axis, radius, hollow) => {
+                let inside = if *hollow { ", hollow" } else { "" };
+                format!(
+                    "cylinder around {center:?} along {axis:?}, radius {radius} {length}{inside}"
+                )
+            }
+            Shape::Polyline(points) => format!("polyline {points:?}"),
         };
         println!("tool       {}: {shape}", tool.name.value);
     }
     for (k, contact) in deck.contacts.iter().enumerate() {
         let points = setup.driver.contacts().iter().filter(|c| c.contact == k);
         println!(
-            "contact    {} against {}, friction {}, {} points",
+            "contact    {} against {}, friction {}, {} points{}{}",
             contact.surface.value,
             contact.against.value,
             contact.friction.value,
-            points.count()
+            points.count(),
+            contact
+                .gap_offset
+                .as_ref()
+                .map_or(String::new(), |o| format!(
+                    ", touching at {} {length}",
+                    o.value
+                )),
+            if contact.adjust.is_some() {
+                ", adjusted"
+            } else {
+                ""
+            }
         );
     }
     let method = match &deck.solver.method {
@@ -115,6 +144,7 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
         Method::Uzawa => "exact, Uzawa".to_owned(),
         Method::GaussSeidel => "exact, Gauss-Seidel".to_owned(),
         Method::Penalty(n, t) => format!("penalty, {} and {}", n.value, t.value),
+        Method::Penetration(part) => format!("penalty, penetration {} of a cell", part.value),
     };
     println!("solver     {method}");
 }
@@ -124,8 +154,13 @@ fn conditions(deck: &Deck) {
     let (length, force, stress) = (deck.units.length(), deck.units.force(), deck.units.stress());
     for step in &deck.steps {
         println!(
-            "step       {}: {} increments",
-            step.name.value, step.increments
+            "step       {}: {} increments{}",
+            step.name.value,
+            step.increments.count(),
+            match step.increments.min {
+                Some(min) => format!(", of {min} to {} of the step", step.increments.max),
+                None => String::new(),
+            }
         );
         for condition in &step.conditions {
             let what = match &condition.action {

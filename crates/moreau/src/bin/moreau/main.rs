@@ -4,6 +4,7 @@
 
 mod bench;
 mod check;
+mod convert;
 mod plot;
 mod progress;
 mod run;
@@ -62,6 +63,10 @@ enum Command {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
+    /// Converts a mesh file: .msh or .inp to .vtu or .msh.
+    Convert(convert::Convert),
+    /// Prints the JSON schema of decks, for editors.
+    Schema,
     /// Draws a run again: history, contact line, deformed body, report.
     Plot {
         /// Directory of the results.
@@ -125,6 +130,11 @@ fn main() -> ExitCode {
             };
             plot::plot(&directory, &drawing)
         }
+        Command::Convert(convert) => convert.run(),
+        Command::Schema => {
+            print!("{}", moreau::deck::SCHEMA);
+            0
+        }
     };
     ExitCode::from(status)
 }
@@ -138,6 +148,11 @@ fn read(path: &Path) -> Option<String> {
             None
         }
     }
+}
+
+/// The folder of a deck, to which the paths in it are relative.
+fn folder(deck: &Path) -> &Path {
+    deck.parent().unwrap_or(Path::new(""))
 }
 
 /// Prints findings to stderr, and how many there are.

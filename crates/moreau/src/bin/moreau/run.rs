@@ -2,8 +2,8 @@
 //! status that says so.
 
 use super::progress::Progress;
-use super::{INPUT_ERROR, Manner, NOT_CONVERGED, UNEXPECTED, read, report};
-use moreau::deck::{Deck, Problem, open};
+use super::{INPUT_ERROR, Manner, NOT_CONVERGED, UNEXPECTED, folder, read, report};
+use moreau::deck::{Deck, Problem, open_in};
 use moreau::run::{Outcome, RunError, RunStatus, Watch};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -38,7 +38,7 @@ pub(crate) fn resume(directory: &Path, manner: &Manner) -> u8 {
 /// The problem of a deck; findings are printed.
 pub(crate) fn problem(path: &Path) -> Option<(Deck, Problem)> {
     let text = read(path)?;
-    let (deck, problem, findings) = open(&text);
+    let (deck, problem, findings) = open_in(&text, folder(path));
     report(&findings, path, &text);
     Some((deck, problem?))
 }

@@ -46,7 +46,7 @@ pub(super) fn stages<const D: usize>(deck: &Deck, groups: &Groups<D>) -> Vec<Sta
 }
 
 /// Directions in which a condition prescribes displacements.
-fn directions(action: &Action) -> Vec<usize> {
+pub(super) fn directions(action: &Action) -> Vec<usize> {
     match action {
         Action::Fix(axes) => axes.clone(),
         Action::Move(components) => components.iter().map(|(axis, _)| *axis).collect(),

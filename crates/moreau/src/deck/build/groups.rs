@@ -1,16 +1,19 @@
 //! The groups of a deck on its mesh: parts by limits and by nearness, and what they measure.
 
-use super::GroupFacts;
-use crate::deck::entries::{BlockEntry, Deck, GroupEntry, Part};
-use crate::deck::finding::{Findings, did_you_mean};
+use super::conditions::directions;
+use super::{Body, GroupFacts};
+use crate::deck::entries::{BlockEntry, Deck, GroupEntry, Part, StepEntry};
+use crate::deck::finding::{Class, Findings, did_you_mean};
 use crate::driver::Analysis;
-use crate::mesh::{Facet, Mesh};
-use std::collections::BTreeMap;
+use crate::mesh::{CellKind, Facet, Mesh};
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 /// Limits are inclusive within this part of the size of the model.
 const INCLUSIVE: f64 = 1e-9;
-/// Ending of the hidden group of the nodes of a part whose limits cut facets or cells.
-const NODES: &str = "~nodes";
+/// Mark in the names of hidden groups: the nodes of a part whose limits cut facets or cells, the
+/// cells of a material with one rule among several.
+pub(super) const HIDDEN: &str = "~~";
 
 /// A mesh with all groups of the deck.
 pub(super) struct Groups<const D: usize> {
@@ -40,23 +43,27 @@ impl<const D: usize> Groups<D> {
     fn add(&mut self, entry: &GroupEntry, findings: &mut Findings) -> Option<()> {
         let (name, on) = (&entry.name.value, &entry.on.value);
         if self.has(name) {
-            findings.error(
-                &entry.name.span,
-                format!("the group \"{name}\" exists already: the names of groups must differ"),
-                "used twice",
-            );
+            findings
+                .error(
+                    &entry.name.span,
+                    format!("the group \"{name}\" exists already: the names of groups must differ"),
+                    "used twice",
+                )
+                .about(Class::Names);
             return None;
         }
         if !self.has(on) {
             if !self.broken.contains(on) {
-                findings.error(
-                    &entry.on.span,
-                    format!(
-                        "no group \"{on}\" before this one{}",
-                        did_you_mean(on, self.names())
-                    ),
-                    "not a group",
-                );
+                findings
+                    .error(
+                        &entry.on.span,
+                        format!(
+                            "no group \"{on}\" before this one{}",
+                            did_you_mean(on, self.names())
+                        ),
+                        "not a group",
+                    )
+                    .about(Class::Names);
             }
             return None;
         }
@@ -88,14 +95,19 @@ impl<const D: usize> Groups<D> {
                         &entry.part.span,
                         format!("the group \"{name}\" is empty: no node of \"{on}\" lies within these limits"),
                         "of this group",
-                    );
+                    ).about(Class::Groups);
                     return None;
                 }
                 self.add_box(entry, nodes, inside, findings)
             }
         };
         added
-            .map_err(|error| findings.error(&entry.name.span, error.to_string(), "of this group"))
+            .map_err(|error| {
+                let span = &entry.name.span;
+                findings
+                    .error(span, error.to_string(), "of this group")
+                    .about(Class::Groups);
+            })
             .ok()
     }
 
@@ -130,7 +142,7 @@ impl<const D: usize> Groups<D> {
         }
         let covered = mesh.node_group(name)?;
         if covered != nodes {
-            let hidden = format!("{name}{NODES}");
+            let hidden = format!("{name}{HIDDEN}");
             findings.warning(
                 &entry.part.span,
                 format!(
@@ -160,7 +172,7 @@ impl<const D: usize> Groups<D> {
 
     /// Names of all groups.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
-        self.mesh.group_names().filter(|n| !n.ends_with(NODES))
+        self.mesh.group_names().filter(|n| !n.contains(HIDDEN))
     }
 
     /// The group that holds the nodes of a group.
@@ -168,12 +180,82 @@ impl<const D: usize> Groups<D> {
         self.nodes.get(name).map_or(name, String::as_str)
     }
 
-    /// The block of a cell.
-    pub(super) fn block_of<'d>(&self, deck: &'d Deck, cell: usize) -> Option<&'d BlockEntry> {
-        deck.blocks.iter().find(|b| {
+    /// Name of the smallest group with these cells, which are sorted.
+    fn holder(&self, cells: &[usize]) -> Option<&str> {
+        let holds = |group: &[usize]| cells.iter().all(|c| group.binary_search(c).is_ok());
+        self.names()
+            .filter_map(|name| Some((name, self.mesh.cell_group(name).ok()?)))
+            .filter(|(_, group)| group.len() >= cells.len() && holds(group))
+            .min_by_key(|(_, group)| group.len())
+            .map(|(name, _)| name)
+    }
+
+    /// Name of the body of a cell, and where the deck asks for it.
+    pub(super) fn origin(&self, deck: &Deck, cell: usize) -> (String, Range<usize>) {
+        let own = |b: &&BlockEntry| {
             let cells = self.mesh.cell_group(&b.name.value);
-            cells.is_ok_and(|cells| cells.contains(&cell))
-        })
+            cells.is_ok_and(|cells| cells.binary_search(&cell).is_ok())
+        };
+        if let Some(block) = deck.blocks.iter().find(own) {
+            return (block.name.value.clone(), block.name.span.clone());
+        }
+        let bodies = self.mesh.bodies();
+        let body = bodies.iter().position(|b| b.binary_search(&cell).is_ok());
+        let name = body.map_or_else(String::new, |k| self.body_name(k, &bodies[k]));
+        let span = deck.mesh_file.as_ref().map_or(0..0, |f| f.span.clone());
+        (name, span)
+    }
+
+    fn body_name(&self, index: usize, cells: &[usize]) -> String {
+        let name = self.holder(cells).map(str::to_owned);
+        name.unwrap_or_else(|| (index + 1).to_string())
+    }
+
+    /// Kinds of the cells of a group; none if it holds no cells.
+    pub(super) fn kinds(&self, name: &str) -> Vec<CellKind> {
+        let cells = self.mesh.cell_group(name).unwrap_or_default();
+        let kinds: BTreeSet<CellKind> = cells.iter().map(|&c| self.mesh.kind(c)).collect();
+        kinds.into_iter().collect()
+    }
+
+    /// The bodies, and what holds them.
+    pub(super) fn bodies<H: Analysis<D>>(&self, deck: &Deck, hypothesis: &H) -> Vec<Body> {
+        let bodies = self.mesh.bodies();
+        let body = |(k, cells): (usize, &Vec<usize>)| {
+            let mut count: BTreeMap<CellKind, usize> = BTreeMap::new();
+            let mut own = vec![false; self.mesh.nodes().len()];
+            for &cell in cells {
+                *count.entry(self.mesh.kind(cell)).or_default() += 1;
+                for &node in self.mesh.cell_nodes(cell) {
+                    own[node] = true;
+                }
+            }
+            let touches = |name: &str| {
+                let nodes = self.mesh.node_group(self.nodes_of(name));
+                nodes.is_ok_and(|nodes| nodes.iter().any(|&n| own[n]))
+            };
+            let contacts = deck.contacts.iter().filter(|c| touches(&c.surface.value));
+            let contacts: Vec<String> = contacts
+                .map(|c| format!("contact with {}", c.against.value))
+                .collect();
+            let supports = |step: &StepEntry| {
+                let held = step.conditions.iter().filter_map(|c| {
+                    let axes = directions(&c.action);
+                    let letters: Vec<&str> = axes.iter().map(|&i| ["x", "y", "z"][i]).collect();
+                    let on = &c.on.value;
+                    (!axes.is_empty() && touches(on))
+                        .then(|| format!("{on} along {}", letters.join(", ")))
+                });
+                held.chain(contacts.iter().cloned()).collect()
+            };
+            Body {
+                name: self.body_name(k, cells),
+                cells: count.into_iter().collect(),
+                volume: self.mesh.measure(cells, hypothesis),
+                supports: deck.steps.iter().map(supports).collect(),
+            }
+        };
+        bodies.iter().enumerate().map(body).collect()
     }
 
     /// What the groups measure.

@@ -2,7 +2,7 @@
 
 use super::groups::Groups;
 use crate::deck::entries::{Action, Deck};
-use crate::deck::finding::{At, Findings, did_you_mean};
+use crate::deck::finding::{At, Class, Findings, did_you_mean};
 use std::collections::BTreeSet;
 
 /// What a group must hold.
@@ -32,12 +32,14 @@ pub(super) fn check<const D: usize>(
         );
         let is_facets = groups.is_some_and(|g| g.mesh.facet_group(&contact.against.value).is_ok());
         if is_facets && !deck.tool_names.contains(&contact.against.value) {
-            findings.error_with(
-                &contact.against.span,
-                "contact between two deformable bodies: not available yet",
-                "not available yet",
-                "give the name of a [[tool]]",
-            );
+            findings
+                .error_with(
+                    &contact.against.span,
+                    "contact between two deformable bodies: not available yet",
+                    "not available yet",
+                    "give the name of a [[tool]]",
+                )
+                .about(Class::Unavailable);
         } else {
             tool(&contact.against, deck, &mut used, findings);
         }
@@ -65,6 +67,7 @@ pub(super) fn check<const D: usize>(
             findings.warning(&entry.name.span, message, "not used");
         }
     }
+    idle_names(deck, groups, &used, findings);
     for entry in &deck.tools {
         let touched = deck
             .contacts
@@ -76,6 +79,34 @@ pub(super) fn check<const D: usize>(
         }
     }
     twice(deck, groups, findings);
+}
+
+/// Groups of the mesh file that nothing uses, in one warning.
+fn idle_names<const D: usize>(
+    deck: &Deck,
+    groups: Option<&Groups<D>>,
+    used: &BTreeSet<String>,
+    findings: &mut Findings,
+) {
+    let (Some(file), Some(groups), 0) = (&deck.mesh_file, groups, findings.errors()) else {
+        return;
+    };
+    let of_deck = |name: &str| {
+        let of_block = deck.blocks.iter().any(|b| {
+            let rest = name.strip_prefix(b.name.value.as_str());
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+        });
+        of_block || deck.groups.iter().any(|g| g.name.value == name)
+    };
+    let idle: Vec<String> = groups
+        .names()
+        .filter(|name| !used.contains(*name) && !of_deck(name))
+        .map(|name| format!("\"{name}\""))
+        .collect();
+    if !idle.is_empty() {
+        let message = format!("nothing uses these groups of the mesh: {}", idle.join(", "));
+        findings.warning(&file.span, message, "has groups that are not used");
+    }
 }
 
 fn group<const D: usize>(
@@ -98,7 +129,9 @@ fn group<const D: usize>(
     if !groups.has(&name.value) {
         let near = did_you_mean(&name.value, groups.names().filter(|n| fits(n)));
         let message = format!("no group \"{}\"{near}", name.value);
-        findings.error(&name.span, message, "not a group");
+        findings
+            .error(&name.span, message, "not a group")
+            .about(Class::Names);
     } else if !fits(&name.value) {
         let what = match needed {
             Needed::Cells => "a group of cells (a body)",
@@ -110,11 +143,13 @@ fn group<const D: usize>(
             false => "nodes",
         };
         let near = did_you_mean(&name.value, groups.names().filter(|n| fits(n)));
-        findings.error(
-            &name.span,
-            format!("\"{}\" holds {found}, expected {what}{near}", name.value),
-            format!("holds {found}"),
-        );
+        findings
+            .error(
+                &name.span,
+                format!("\"{}\" holds {found}, expected {what}{near}", name.value),
+                format!("holds {found}"),
+            )
+            .about(Class::Names);
     }
 }
 
@@ -123,7 +158,9 @@ fn tool(name: &At<String>, deck: &Deck, used: &mut BTreeSet<String>, findings: &
     if !deck.tool_names.contains(&name.value) {
         let near = did_you_mean(&name.value, deck.tool_names.iter().map(String::as_str));
         let message = format!("no tool \"{}\"{near}", name.value);
-        findings.error(&name.span, message, "not a tool");
+        findings
+            .error(&name.span, message, "not a tool")
+            .about(Class::Names);
     }
 }
 
@@ -133,31 +170,41 @@ fn twice<const D: usize>(deck: &Deck, groups: Option<&Groups<D>>, findings: &mut
         let name = &tool.name.value;
         if deck.tools[..k].iter().any(|t| t.name.value == *name) {
             let message = format!("a tool named \"{name}\" exists already: names must differ");
-            findings.error(&tool.name.span, message, "used twice");
+            findings
+                .error(&tool.name.span, message, "used twice")
+                .about(Class::Names);
         } else if groups.is_some_and(|g| g.has(name)) {
             let message = format!("a group is named \"{name}\" as well: names must differ");
-            findings.error(&tool.name.span, message, "used twice");
+            findings
+                .error(&tool.name.span, message, "used twice")
+                .about(Class::Names);
         }
     }
     for (k, step) in deck.steps.iter().enumerate() {
         let name = &step.name.value;
         if deck.steps[..k].iter().any(|s| s.name.value == *name) {
             let message = format!("a step named \"{name}\" exists already: names must differ");
-            findings.error(&step.name.span, message, "used twice");
+            findings
+                .error(&step.name.span, message, "used twice")
+                .about(Class::Names);
         }
     }
     for (k, block) in deck.blocks.iter().enumerate() {
         let name = &block.name.value;
         if deck.blocks[..k].iter().any(|b| b.name.value == *name) {
             let message = format!("a block named \"{name}\" exists already: names must differ");
-            findings.error(&block.name.span, message, "used twice");
+            findings
+                .error(&block.name.span, message, "used twice")
+                .about(Class::Names);
         }
     }
     for (k, material) in deck.materials.iter().enumerate() {
         let name = &material.on.value;
         if deck.materials[..k].iter().any(|m| m.on.value == *name) {
             let message = format!("\"{name}\" has a material already, expected one for each body");
-            findings.error(&material.on.span, message, "given twice");
+            findings
+                .error(&material.on.span, message, "given twice")
+                .about(Class::Names);
         }
     }
 }

@@ -1,12 +1,13 @@
 //! Laws, tools and frictions of a deck, and the model they make; their ranges are checked by the
 //! libraries.
 
-use crate::contact::{Ball, ContactError, Plane};
-use crate::deck::entries::{Deck, MaterialEntry, Shape};
+use super::groups::HIDDEN;
+use crate::contact::{Ball, ContactError, Cylinder, Obstacle, Plane, Polyline};
+use crate::deck::entries::{Adjust, Deck, MaterialEntry, Shape};
 use crate::deck::finding::Findings;
 use crate::driver::{Analysis, Model, ModelError};
 use crate::laws::{Coulomb, Elastic, LawError, VonMises};
-use crate::mesh::{CellKind, Integration, Mesh};
+use crate::mesh::{CellKind, Integration, Mesh, MeshError};
 use std::ops::Range;
 
 /// A bulk law.
@@ -22,12 +23,6 @@ pub(super) struct Parts {
     frictions: Vec<Coulomb>,
 }
 
-/// A rigid surface.
-enum Surface<const D: usize> {
-    Plane(Plane<D>),
-    Ball(Ball<D>),
-}
-
 /// The laws; `None` if some are none.
 pub(super) fn parts(deck: &Deck, findings: &mut Findings) -> Option<Parts> {
     let mut laws = Vec::new();
@@ -39,7 +34,7 @@ pub(super) fn parts(deck: &Deck, findings: &mut Findings) -> Option<Parts> {
                 findings.error(&span, error.to_string(), "out of range");
             }
         }
-        locking(deck, material, findings);
+        locking(material, findings);
     }
     let mut frictions = Vec::new();
     for contact in &deck.contacts {
@@ -63,10 +58,10 @@ pub(super) fn parts(deck: &Deck, findings: &mut Findings) -> Option<Parts> {
     }
     for tool in &deck.tools {
         let checked = match deck.analysis.dimension() {
-            2 => surface::<2>(&tool.shape.value).map(|_| ()),
-            _ => surface::<3>(&tool.shape.value).map(|_| ()),
+            2 => profile(&tool.shape.value).and_then(Result::err),
+            _ => surface(&tool.shape.value).and_then(Result::err),
         };
-        if let Err(error) = checked {
+        if let Some(error) = checked {
             findings.error(&tool.shape.span, error.to_string(), "out of range");
         }
     }
@@ -102,7 +97,7 @@ fn culprit(material: &MaterialEntry, error: &LawError) -> Range<usize> {
 }
 
 /// The rule that does not lock for an element, or the one that the deck asks for.
-pub(in crate::deck) fn quadrature(kind: CellKind, material: &MaterialEntry) -> Integration {
+fn quadrature(kind: CellKind, material: &MaterialEntry) -> Integration {
     match &material.quadrature {
         Some(rule) => rule.value,
         None if matches!(kind, CellKind::Tri6 | CellKind::Quad8 | CellKind::Quad9) => {
@@ -112,29 +107,24 @@ pub(in crate::deck) fn quadrature(kind: CellKind, material: &MaterialEntry) -> I
     }
 }
 
-/// Elements in which a body gets its material: those of the block it is, or is a part of.
-pub(in crate::deck) fn kinds<'a>(
-    deck: &'a Deck,
-    material: &'a MaterialEntry,
-) -> impl Iterator<Item = CellKind> + 'a {
-    let mut name = &material.on.value;
-    // A group is a part of one before it: the walk ends.
-    for group in deck.groups.iter().rev() {
-        if group.name.value == *name {
-            name = &group.on.value;
+/// The rules of the cells of a material, each with the kinds that have it.
+pub(in crate::deck) fn quadratures(material: &MaterialEntry) -> Vec<(Integration, Vec<CellKind>)> {
+    let mut rules: Vec<(Integration, Vec<CellKind>)> = Vec::new();
+    for &kind in &material.kinds {
+        let rule = quadrature(kind, material);
+        match rules.iter_mut().find(|(r, _)| *r == rule) {
+            Some((_, kinds)) => kinds.push(kind),
+            None => rules.push((rule, vec![kind])),
         }
     }
-    deck.blocks
-        .iter()
-        .filter(move |b| b.name.value == *name)
-        .map(|b| b.element.value)
+    rules
 }
 
-fn locking(deck: &Deck, material: &MaterialEntry, findings: &mut Findings) {
+fn locking(material: &MaterialEntry, findings: &mut Findings) {
     let Some(yield_stress) = &material.yield_stress else {
         return;
     };
-    for kind in kinds(deck, material) {
+    for &kind in &material.kinds {
         let quadratic = matches!(kind, CellKind::Tri6 | CellKind::Quad8 | CellKind::Quad9);
         let full = quadrature(kind, material) == Integration::Full;
         if full && !quadratic {
@@ -150,54 +140,179 @@ fn locking(deck: &Deck, material: &MaterialEntry, findings: &mut Findings) {
     }
 }
 
-fn surface<const D: usize>(shape: &Shape) -> Result<Surface<D>, ContactError> {
-    let fixed = |v: &[f64]| std::array::from_fn(|i| v.get(i).copied().unwrap_or(0.0));
-    Ok(match shape {
-        Shape::Plane(point, normal) => Surface::Plane(Plane::new(fixed(point), fixed(normal))?),
-        Shape::Ball(center, radius, hollow, _) => {
-            let ball = Ball::new(fixed(center), *radius)?;
-            Surface::Ball(if *hollow { ball.hollow() } else { ball })
+/// A rigid surface, if the shape is one of the dimension.
+pub(super) type Surface<const D: usize> =
+    fn(&Shape) -> Option<Result<Box<dyn Obstacle<D>>, ContactError>>;
+
+fn fixed<const D: usize>(v: &[f64]) -> [f64; D] {
+    std::array::from_fn(|i| v.get(i).copied().unwrap_or(0.0))
+}
+
+fn boxed<const D: usize, O: Obstacle<D> + 'static>(obstacle: O) -> Box<dyn Obstacle<D>> {
+    Box::new(obstacle)
+}
+
+/// Planes and balls, in any dimension.
+fn simple<const D: usize>(shape: &Shape) -> Option<Result<Box<dyn Obstacle<D>>, ContactError>> {
+    match shape {
+        Shape::Plane(point, normal) => {
+            Some(Plane::new(fixed::<D>(point), fixed(normal)).map(boxed))
         }
-    })
+        Shape::Ball(center, radius, hollow, _) => {
+            let ball = Ball::new(fixed::<D>(center), *radius);
+            Some(ball.map(|b| boxed(if *hollow { b.hollow() } else { b })))
+        }
+        _ => None,
+    }
+}
+
+/// A surface in the plane.
+pub(super) fn profile(shape: &Shape) -> Option<Result<Box<dyn Obstacle<2>>, ContactError>> {
+    match shape {
+        Shape::Polyline(points) => Some(Polyline::new(points).map(boxed)),
+        other => simple(other),
+    }
+}
+
+/// A surface in space.
+pub(super) fn surface(shape: &Shape) -> Option<Result<Box<dyn Obstacle<3>>, ContactError>> {
+    match shape {
+        Shape::Cylinder(center, axis, radius, hollow) => {
+            let cylinder = Cylinder::new(fixed(center), fixed(axis), *radius);
+            Some(cylinder.map(|c| boxed(if *hollow { c.hollow() } else { c })))
+        }
+        other => simple(other),
+    }
+}
+
+/// Shortest side between the corners of a surface's facets; infinite without facets.
+pub(super) fn shortest_side<const D: usize>(mesh: &Mesh<D>, surface: &str) -> f64 {
+    let mut least = f64::INFINITY;
+    for &facet in mesh.facet_group(surface).unwrap_or_default() {
+        let corners: Vec<[f64; D]> = mesh
+            .facet_nodes(facet)
+            .take(mesh.facet_kind(facet).corner_count())
+            .map(|node| mesh.nodes()[node])
+            .collect();
+        for (k, a) in corners.iter().enumerate() {
+            let b = &corners[(k + 1) % corners.len()];
+            let squared: f64 = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
+            least = least.min(squared.sqrt());
+        }
+    }
+    least
+}
+
+/// Stiffness of a spring for every contact node \[force / length\], such that no node penetrates by
+/// more than the part ε of the shortest side h of the cells in contact while the pressure stays
+/// below p: k = p A / (ε h), with A the largest share of a node in the surface. The pressure p is
+/// three times the largest yield stress, which a flat punch just does not reach (2.97, Prandtl), or
+/// Young's modulus where a material does not yield.
+pub(super) fn stiffness<const D: usize, H: Analysis<D>>(
+    deck: &Deck,
+    mesh: &Mesh<D>,
+    hypothesis: &H,
+    part: f64,
+) -> f64 {
+    let pressure = deck.materials.iter().map(|m| match &m.yield_stress {
+        Some(yield_stress) => 3.0 * yield_stress.value,
+        None => m.young.value,
+    });
+    let (mut area, mut side) = (0.0f64, f64::INFINITY);
+    for contact in &deck.contacts {
+        let facets = mesh.facet_group(&contact.surface.value).unwrap_or_default();
+        for share in mesh.facet_shares(facets, hypothesis) {
+            area = area.max(share.area);
+        }
+        side = side.min(shortest_side(mesh, &contact.surface.value));
+    }
+    match area > 0.0 {
+        true => pressure.fold(0.0, f64::max) * area / (part * side),
+        false => 1.0, // Nothing touches.
+    }
+}
+
+/// The group of a material with its rule; where its cells have several, a hidden group for each.
+fn by_rule<const D: usize>(
+    mesh: &mut Mesh<D>,
+    material: &MaterialEntry,
+) -> Result<Vec<(String, Integration)>, MeshError> {
+    let on = &material.on.value;
+    let mut rules = quadratures(material);
+    if rules.len() < 2 {
+        return Ok(rules
+            .pop()
+            .map(|(rule, _)| (on.clone(), rule))
+            .into_iter()
+            .collect());
+    }
+    let mut pieces = Vec::new();
+    for (k, (rule, kinds)) in rules.into_iter().enumerate() {
+        let of_kind = |c: &&usize| kinds.contains(&mesh.kind(**c));
+        let cells = mesh
+            .cell_group(on)?
+            .iter()
+            .filter(of_kind)
+            .copied()
+            .collect();
+        let name = format!("{on}{HIDDEN}{k}");
+        mesh.add_cell_group(&name, cells)?;
+        pieces.push((name, rule));
+    }
+    Ok(pieces)
 }
 
 /// The model.
 pub(super) fn assemble<const D: usize, H: Analysis<D>>(
     deck: &Deck,
-    mesh: Mesh<D>,
+    mut mesh: Mesh<D>,
     hypothesis: H,
     parts: &Parts,
+    surface: Surface<D>,
     findings: &mut Findings,
 ) -> Option<Model<D, H>> {
     let mut note = |span: &Range<usize>, error: ModelError| {
         findings.error(span, error.to_string(), "here");
     };
-    let mut model = Model::new(mesh, hypothesis);
+    let mut pieces = Vec::new();
     for (entry, law) in deck.materials.iter().zip(&parts.laws) {
-        let kind = model
-            .mesh()
-            .cell_group(&entry.on.value)
-            .ok()
-            .and_then(|cells| Some(model.mesh().kind(*cells.first()?)))?;
-        let rule = quadrature(kind, entry);
-        let name = &entry.on.value;
-        let added = match *law {
-            Law::Elastic(law) => model.material(name, law, rule),
-            Law::VonMises(law) => model.material(name, law, rule),
+        for (name, rule) in by_rule(&mut mesh, entry)
+            .map_err(|e| note(&entry.on.span, e.into()))
+            .ok()?
+        {
+            pieces.push((entry, *law, name, rule));
+        }
+    }
+    let mut model = Model::new(mesh, hypothesis);
+    for (entry, law, name, rule) in pieces {
+        let added = match law {
+            Law::Elastic(law) => model.material(&name, law, rule),
+            Law::VonMises(law) => model.material(&name, law, rule),
         };
         model = added.map_err(|e| note(&entry.on.span, e)).ok()?;
     }
     for tool in &deck.tools {
         let name = &tool.name.value;
-        let added = match surface(&tool.shape.value).ok()? {
-            Surface::Plane(plane) => model.tool(name, plane),
-            Surface::Ball(ball) => model.tool(name, ball),
-        };
+        let added = model.tool(name, surface(&tool.shape.value)?.ok()?);
         model = added.map_err(|e| note(&tool.name.span, e)).ok()?;
     }
     for (entry, law) in deck.contacts.iter().zip(&parts.frictions) {
         let added = model.contact(&entry.surface.value, &entry.against.value, *law);
         model = added.map_err(|e| note(&entry.surface.span, e)).ok()?;
+        if let Some(offset) = &entry.gap_offset {
+            let offset_by = model.gap_offset(offset.value);
+            model = offset_by.map_err(|e| note(&offset.span, e)).ok()?;
+        }
+        if let Some(adjust) = &entry.adjust {
+            let within = match adjust.value {
+                Adjust::Near => 0.05 * shortest_side(model.mesh(), &entry.surface.value),
+                Adjust::Within(distance) => distance,
+            };
+            model = model
+                .adjust(within)
+                .map_err(|e| note(&adjust.span, e))
+                .ok()?;
+        }
     }
     Some(model)
 }

@@ -43,6 +43,7 @@ pub(super) fn read(table: Table<'_>) -> Option<MaterialEntry> {
         isotropic,
         kinematic,
         quadrature,
+        kinds: Vec::new(),
     })
 }
 

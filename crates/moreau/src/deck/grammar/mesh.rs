@@ -2,9 +2,10 @@
 
 use super::not_yet;
 use crate::deck::entries::{BlockEntry, Grid, GroupEntry, Part};
-use crate::deck::finding::At;
+use crate::deck::finding::{At, Class};
 use crate::deck::reader::{self, Table, Value};
 use crate::mesh::CellKind;
+use std::path::{Path, PathBuf};
 
 /// Most cells of all blocks together that a deck may ask for.
 const MOST_CELLS: f64 = 2e6;
@@ -13,19 +14,25 @@ const PLANE: [&str; 5] = ["tri3", "tri6", "quad4", "quad8", "quad9"];
 const SOLID: [&str; 5] = ["tet4", "hex8", "tet10", "hex20", "hex27"];
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-pub(super) fn read(root: &Table<'_>, dimension: usize) -> (Vec<BlockEntry>, Vec<GroupEntry>) {
+/// What a deck says of its mesh.
+#[derive(Default)]
+pub(super) struct MeshEntries {
+    /// Path of the file.
+    pub(super) file: Option<At<PathBuf>>,
+    pub(super) blocks: Vec<BlockEntry>,
+    pub(super) groups: Vec<GroupEntry>,
+}
+
+pub(super) fn read(root: &Table<'_>, dimension: usize, folder: &Path) -> MeshEntries {
     let log = root.log();
-    let Some(value) = root.need("mesh", "{ block = [ … ] }, or [[mesh.block]]") else {
-        return Default::default();
+    let Some(value) = root.need("mesh", "{ file = \"…\" }, or [[mesh.block]]") else {
+        return MeshEntries::default();
     };
     let Some(mesh) = reader::table(value, "mesh", "[mesh]", log) else {
-        return Default::default();
+        return MeshEntries::default();
     };
     let file = mesh.get("file");
-    if let Some(file) = file {
-        let instead = "write structured blocks as [[mesh.block]]";
-        not_yet(log, &file.span(), "mesh files", instead);
-    }
+    let path = file.and_then(|v| reader::text(v, "file", log));
     let given = mesh.get("block").is_some();
     let blocks: Vec<BlockEntry> = mesh
         .tables("block", "[[mesh.block]]")
@@ -40,8 +47,8 @@ pub(super) fn read(root: &Table<'_>, dimension: usize) -> (Vec<BlockEntry>, Vec<
     if !given && file.is_none() {
         log.borrow_mut().error(
             &mesh.span,
-            "the mesh has no [[mesh.block]], expected at least one",
-            "[[mesh.block]] is missing",
+            "the mesh has neither a file nor a [[mesh.block]], expected at least one of them",
+            "file = \"…\" or [[mesh.block]] is missing",
         );
     }
     let cells = |b: &BlockEntry| {
@@ -52,14 +59,20 @@ pub(super) fn read(root: &Table<'_>, dimension: usize) -> (Vec<BlockEntry>, Vec<
     };
     let total: f64 = blocks.iter().map(cells).sum();
     if total > MOST_CELLS {
-        log.borrow_mut().error(
-            &mesh.span,
-            format!("the blocks have {total:.0} cells, expected at most {MOST_CELLS:.0}"),
-            "too many cells",
-        );
+        log.borrow_mut()
+            .error(
+                &mesh.span,
+                format!("the blocks have {total:.0} cells, expected at most {MOST_CELLS:.0}"),
+                "too many cells",
+            )
+            .about(Class::Meshes);
     }
     mesh.finish();
-    (blocks, groups)
+    MeshEntries {
+        file: path.map(|path| At::new(folder.join(path.value), path.span)),
+        blocks,
+        groups,
+    }
 }
 
 fn block(table: Table<'_>, dimension: usize) -> Option<BlockEntry> {

@@ -1,6 +1,5 @@
 //! `[solver]`, `[output]` and `[expect]`: how to solve, what to write, what to expect.
 
-use super::not_yet;
 use crate::deck::entries::{Expectation, Method, SolverEntry, Vtu};
 use crate::deck::reader::{self, Table};
 
@@ -57,9 +56,13 @@ fn method(table: &Table<'_>) -> Option<Method> {
     }
     let inner = reader::table(value, "contact", "contact", log)?;
     if let Some(value) = inner.get("penetration") {
-        let instead = "use contact = \"exact\", which lets nothing penetrate";
-        not_yet(log, &value.span(), "contact = { penetration = … }", instead);
-        return None;
+        inner.finish();
+        let part = reader::number(value, "penetration", log)?;
+        if !(part.value > 0.0 && part.value < 1.0) {
+            let expected = "a part of the size of a cell, between 0 and 1";
+            return reader::wrong(value, "penetration", expected, log);
+        }
+        return Some(Method::Penetration(part));
     }
     let springs = inner.need("penalty", "{ normal = …, tangent = … }");
     let method = springs.and_then(|v| {

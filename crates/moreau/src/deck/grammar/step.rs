@@ -4,6 +4,7 @@ use super::not_yet;
 use crate::deck::entries::{Action, ConditionEntry, StepEntry};
 use crate::deck::finding::At;
 use crate::deck::reader::{self, Table, Value};
+use crate::driver::Increments;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// Most increments of a step.
@@ -33,24 +34,21 @@ pub(super) fn read(table: Table<'_>, dimension: usize) -> Option<StepEntry> {
     let span = table.span.clone();
     table.finish();
     // A stand-in for what was refused, so that the conditions are still checked.
-    let (increments, cuts) = increments.unwrap_or((1, None));
+    let increments = increments.unwrap_or(Increments::equal(1));
     Some(StepEntry {
         name: name?,
         increments,
-        cuts,
         conditions,
         span,
     })
 }
 
-/// The number of increments, and how often they may be halved.
-fn increments_of(value: Value<'_>, table: &Table<'_>) -> Option<(usize, Option<usize>)> {
+/// A number of equal increments, or their lengths.
+fn increments_of(value: Value<'_>, table: &Table<'_>) -> Option<Increments> {
     let log = table.log();
     if !value.get_ref().is_table() {
-        return Some((
-            reader::integer(value, "increments", 1..=MOST, log)?.value,
-            None,
-        ));
+        let count = reader::integer(value, "increments", 1..=MOST, log)?;
+        return Some(Increments::equal(count.value));
     }
     let inner = reader::table(value, "increments", "increments", log)?;
     let (start, min, max) = (
@@ -64,18 +62,11 @@ fn increments_of(value: Value<'_>, table: &Table<'_>) -> Option<(usize, Option<u
         let expected = "0 < min ≤ start ≤ max ≤ 1, parts of the step, start at least 1e-5";
         return reader::wrong(value, "increments", expected, log);
     }
-    if max > start {
-        log.borrow_mut().warning(
-            &value.span(),
-            format!(
-                "increments do not grow beyond start = {start} yet: they are cut down to min \
-                 where needed and grow back to start"
-            ),
-            "max is not used",
-        );
-    }
-    let cuts = (start / min).log2().ceil().clamp(0.0, 40.0) as usize;
-    Some((((1.0 / start).ceil() as usize).clamp(1, MOST), Some(cuts)))
+    Some(Increments {
+        start,
+        min: Some(min),
+        max,
+    })
 }
 
 fn condition(on: Option<At<String>>, action: Action, table: &Table<'_>) -> Option<ConditionEntry> {

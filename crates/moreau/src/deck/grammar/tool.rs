@@ -1,7 +1,7 @@
 //! `[[tool]]` and `[[contact]]`: surfaces and pairs as they are given.
 
 use super::not_yet;
-use crate::deck::entries::{Analysis, ContactEntry, Shape, ToolEntry};
+use crate::deck::entries::{Adjust, Analysis, ContactEntry, Shape, ToolEntry};
 use crate::deck::finding::At;
 use crate::deck::reader::{self, Table};
 
@@ -40,17 +40,36 @@ fn shape(table: &Table<'_>, analysis: Analysis) -> Option<At<Shape>> {
         log.borrow_mut().error(
             &table.span,
             format!(
-                "a [[tool]] has {} surfaces, expected one of plane, cylinder, sphere",
+                "a [[tool]] has {} surfaces, expected one of plane, cylinder, sphere, polyline",
                 given.len()
             ),
             "one surface a tool",
         );
         return None;
     };
+    let sided = key == "cylinder" || key == "sphere";
+    if let Some(inside) = inside.filter(|i| i.value && !sided) {
+        log.borrow_mut().error(
+            &inside.span,
+            format!("a {key} has no inside"),
+            match key {
+                "plane" => "turn the normal round instead",
+                _ => "reverse the order of the points instead",
+            },
+        );
+    }
     if key == "polyline" {
-        let instead = "use plane, cylinder or sphere";
-        not_yet(log, &value.span(), "tools of polylines", instead);
-        return None;
+        if dimension == 3 {
+            return reader::wrong(value, key, "a tool of a plane analysis", log);
+        }
+        let points: Option<Vec<[f64; 2]>> = reader::items(value, key, "[[x, y], …]", log)?
+            .into_iter()
+            .map(|v| {
+                let point = reader::vector(v, "a point", 2, log)?;
+                Some([point.value[0], point.value[1]])
+            })
+            .collect();
+        return Some(At::new(Shape::Polyline(points?), value.span()));
     }
     let inner = reader::table(value, key, key, log)?;
     let vector = |key: &'static str| {
@@ -59,21 +78,12 @@ fn shape(table: &Table<'_>, analysis: Analysis) -> Option<At<Shape>> {
     };
     let shape = if key == "plane" {
         let (point, normal) = (vector("point"), vector("normal"));
-        if let Some(inside) = inside.filter(|i| i.value) {
-            log.borrow_mut().error(
-                &inside.span,
-                "a plane has no inside",
-                "turn the normal round instead",
-            );
-        }
         Shape::Plane(point?.value, normal?.value)
+    } else if key == "cylinder" && dimension == 3 {
+        let (center, axis, radius) = (vector("center"), vector("axis"), inner.number("radius"));
+        Shape::Cylinder(center?.value, axis?.value, radius?.value, hollow)
     } else {
         let (center, radius) = (vector("center"), inner.number("radius"));
-        if key == "cylinder" && dimension == 3 {
-            let instead = "use a sphere or a plane";
-            not_yet(log, &value.span(), "cylinders in a solid analysis", instead);
-            return None;
-        }
         if key == "sphere" && dimension == 2 {
             let on_axis = center.as_ref().is_some_and(|c| c.value[0] == 0.0);
             if analysis != Analysis::Axisymmetric || !on_axis {
@@ -97,25 +107,40 @@ pub(super) fn read_contacts(root: &Table<'_>) -> Vec<ContactEntry> {
     root.tables("contact", "[[contact]]")
         .into_iter()
         .filter_map(|table| {
-            let log = table.log();
             let surface = table.text("surface");
             let against = table.text("against");
             let friction = friction(&table);
-            for key in ["gap-offset", "adjust"] {
-                if let Some(value) = table.get(key) {
-                    let instead = "let the geometry touch, or move the tool in a first step";
-                    not_yet(log, &value.span(), &format!("{key} of a contact"), instead);
-                }
-            }
+            let gap_offset = table.number_if("gap-offset");
+            let adjust = adjust(&table);
             table.finish();
             Some(ContactEntry {
                 surface: surface?,
                 against: against?,
                 // A stand-in for what was refused, so that the names are still looked up.
                 friction: friction.unwrap_or(At::new(1.0, 0..0)),
+                gap_offset,
+                adjust,
             })
         })
         .collect()
+}
+
+/// `adjust = true`, or a distance.
+fn adjust(table: &Table<'_>) -> Option<At<Adjust>> {
+    let log = table.log();
+    let value = table.get("adjust")?;
+    let adjust = match value.get_ref().as_bool() {
+        Some(false) => return None,
+        Some(true) => Adjust::Near,
+        None => {
+            let within = reader::number(value, "adjust", log)?.value;
+            if within < 0.0 {
+                return reader::wrong(value, "adjust", "true, or a distance ≥ 0", log);
+            }
+            Adjust::Within(within)
+        }
+    };
+    Some(At::new(adjust, value.span()))
 }
 
 fn friction(table: &Table<'_>) -> Option<At<f64>> {

@@ -1,0 +1,86 @@
+//! Meshes written for Gmsh and read back.
+
+use moreau_mesh::{CellKind, Mesh, block2, block3, read_gmsh, uniform, write_gmsh};
+
+fn again<const D: usize>(mesh: &Mesh<D>) -> Mesh<D> {
+    read_gmsh(write_gmsh(mesh).as_bytes()).expect("readable")
+}
+
+/// What Gmsh itself wrote comes back as it was: nodes, cells and groups, to the last bit.
+#[test]
+fn meshes_of_gmsh_come_back() {
+    for file in [
+        &include_bytes!("../data/tri6.4b.msh")[..],
+        include_bytes!("../data/quad8.2b.msh"),
+        include_bytes!("../data/quad9.4a.msh"),
+        include_bytes!("../data/mixed.4a.msh"),
+        include_bytes!("../data/periodic.4a.msh"),
+    ] {
+        let mesh: Mesh<2> = read_gmsh(file).expect("readable");
+        assert_eq!(again(&mesh), mesh);
+    }
+    for file in [
+        &include_bytes!("../data/tet4.4b.msh")[..],
+        include_bytes!("../data/hex8.2a.msh"),
+    ] {
+        let mesh: Mesh<3> = read_gmsh(file).expect("readable");
+        assert_eq!(again(&mesh), mesh);
+    }
+}
+
+#[test]
+fn blocks_come_back_with_their_groups() {
+    let (x, y) = (uniform(0.0, 1.0 / 3.0, 3), uniform(-1e-7, 2e9, 2));
+    for kind in [
+        CellKind::Tri3,
+        CellKind::Tri6,
+        CellKind::Quad4,
+        CellKind::Quad8,
+        CellKind::Quad9,
+    ] {
+        let mut mesh = block2("b", kind, &x, &y).expect("valid");
+        mesh.add_node_group("two nodes", vec![3, 1]).expect("new");
+        let read = again(&mesh);
+        assert_eq!(read.nodes(), mesh.nodes());
+        assert!(read.group_names().eq(mesh.group_names()));
+        for name in mesh.group_names() {
+            assert_eq!(
+                read.node_group(name),
+                mesh.node_group(name),
+                "{kind} {name}"
+            );
+            assert_eq!(
+                read.facet_group(name).is_ok(),
+                mesh.facet_group(name).is_ok()
+            );
+        }
+    }
+    let z = uniform(0.0, 1.0, 2);
+    for kind in [CellKind::Tet4, CellKind::Hex8] {
+        let mesh = block3("b", kind, &x, &z, &z).expect("valid");
+        let read = again(&mesh);
+        assert_eq!(read.cell_count(), mesh.cell_count());
+        for name in mesh.group_names() {
+            assert_eq!(
+                read.node_group(name),
+                mesh.node_group(name),
+                "{kind} {name}"
+            );
+        }
+    }
+}
+
+/// Cells of no group are not lost: they are in one of their own.
+#[test]
+fn cells_without_a_group_are_kept() {
+    let nodes = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+    let cells = vec![
+        (CellKind::Tri3, vec![0, 1, 2]),
+        (CellKind::Tri3, vec![1, 3, 2]),
+    ];
+    let mut mesh = Mesh::<2>::new(nodes, cells).expect("valid");
+    mesh.add_cell_group("first", vec![0]).expect("new");
+    let read = again(&mesh);
+    assert_eq!(read.cell_count(), 2);
+    assert_eq!(read.cell_group("ungrouped"), Ok(&[1][..]));
+}

@@ -1,0 +1,60 @@
+//! `moreau convert`: a mesh file in another format; the mesh stays what it is.
+
+use super::INPUT_ERROR;
+use moreau::files::{FileError, read_mesh, write_mesh};
+use moreau::mesh::{Mesh, ReadError};
+use std::path::{Path, PathBuf};
+
+/// Files to read and to write.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Convert {
+    /// The mesh: .msh (Gmsh 2.2 or 4.1) or .inp (Abaqus, CalculiX).
+    input: PathBuf,
+    /// The file to write: .vtu (for ParaView) or .msh (Gmsh 2.2).
+    output: PathBuf,
+}
+
+impl Convert {
+    /// Converts; the exit status.
+    pub(crate) fn run(&self) -> u8 {
+        // Of the dimension of its cells: in space, unless there are none.
+        let done = match read_mesh::<3>(&self.input) {
+            Ok(mesh) => written(&self.output, &mesh),
+            Err(error) if is_plane(&error) => {
+                read_mesh::<2>(&self.input).and_then(|mesh| written(&self.output, &mesh))
+            }
+            Err(error) => Err(error),
+        };
+        match done {
+            Ok(what) => {
+                println!("{}: {what}", self.output.display());
+                0
+            }
+            Err(error) => {
+                eprintln!("{error}");
+                INPUT_ERROR
+            }
+        }
+    }
+}
+
+/// Whether a file that is no mesh in space may be one in the plane.
+fn is_plane(error: &FileError) -> bool {
+    matches!(
+        error,
+        FileError::Mesh {
+            source: ReadError::NoCells { .. } | ReadError::UnsupportedElement { .. },
+            ..
+        }
+    )
+}
+
+fn written<const D: usize>(path: &Path, mesh: &Mesh<D>) -> Result<String, FileError> {
+    write_mesh(path, mesh)?;
+    Ok(format!(
+        "{} nodes, {} cells, {} groups",
+        mesh.nodes().len(),
+        mesh.cell_count(),
+        mesh.group_names().count()
+    ))
+}
