@@ -23,11 +23,17 @@
 //! ```
 
 mod dense;
+mod discrete;
 mod error;
 mod obstacle;
 mod problem;
 mod solvers;
+mod sparse;
 
+pub use discrete::{
+    Admm, Auto, BlockMatrix, GlobalProblem, GlobalSolution, LocalProblem, LocalSolution,
+    LocalSolver, Newton, NewtonMap, ProximalNewton, Reason, Residual, TrescaFixedPoint, Unsolved,
+};
 pub use error::ContactError;
 pub use obstacle::{Ball, Obstacle, Plane, frame};
 pub use problem::{Certificate, ContactProblem, Delassus};
