@@ -44,14 +44,14 @@ impl<const D: usize> LocalSolver<D> for Auto {
             relative: self.tolerance,
             iterations,
         };
-        let newton = |map| ProximalNewton {
+        let newton = |map, iterations| ProximalNewton {
             map,
-            tolerance: cap(1_000),
+            tolerance: cap(iterations),
         };
         let (alart, jean, natural) = (
-            newton(NewtonMap::AlartCurnier),
-            newton(NewtonMap::JeanMoreau),
-            newton(NewtonMap::Natural),
+            newton(NewtonMap::AlartCurnier, 3_000),
+            newton(NewtonMap::JeanMoreau, 500),
+            newton(NewtonMap::Natural, 500),
         );
         let admm = Admm {
             tolerance: cap(3_000),

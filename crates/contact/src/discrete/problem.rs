@@ -204,9 +204,15 @@ pub(super) struct Norms {
     pub(super) scaled_loads: f64,
 }
 
-/// A ratio of norms; zero over zero is zero.
+/// A ratio of norms; zero over zero is zero, and what has overflowed solves nothing.
 pub(super) fn over(norm: f64, scale: f64) -> f64 {
-    if norm == 0.0 { 0.0 } else { norm / scale }
+    if norm == 0.0 && scale.is_finite() {
+        0.0
+    } else if norm.is_finite() && scale.is_finite() {
+        norm / scale
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// Largest singular value.

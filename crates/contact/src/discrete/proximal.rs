@@ -61,9 +61,9 @@ impl<const D: usize> LocalSolver<D> for Newton {
 /// The proximal point method: a sequence of problems whose contacts are softened about the forces
 /// found last, each solved by Newton's method and, where that fails, by sweeps of Gauss–Seidel.
 ///
-/// The added compliance α |W_ii| makes the operator regular whatever the rank of W; it follows the
+/// The added compliance α |W_ii| makes the operator regular whatever the rank of W. It follows the
 /// residual, so that the convergence remains faster than linear, and grows where Newton's method
-/// fails, until sweeps contract.
+/// fails. Where forces that W hardly sees have far to go, the centre runs ahead of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProximalNewton {
     /// The equation that Newton's method solves.
@@ -78,7 +78,7 @@ impl Default for ProximalNewton {
             map: NewtonMap::default(),
             tolerance: Tolerance {
                 relative: TOLERANCE,
-                iterations: 2_000,
+                iterations: 5_000,
             },
         }
     }
@@ -90,14 +90,25 @@ const SOFTNESS: f64 = 5.0;
 /// Bounds of α; below the least, rounding of W spoils the forces that W does not see.
 const ALPHA: [f64; 2] = [1e-10, 10.0];
 
-/// Newton steps of one softened problem.
-const STEPS: usize = 20;
+/// Newton steps of one softened problem, and how many of them make the next one less soft.
+const STEPS: usize = 30;
+const EASY: usize = 8;
+
+/// Factors on α after a failure and after an easy problem.
+const SOFTER: f64 = 4.0;
+const HARDER: f64 = 0.5;
 
 /// Sweeps where Newton's method fails.
 const SWEEPS: usize = 50;
 
-/// Softened problems in a row that may leave the residual where it is.
-const PATIENCE: usize = 30;
+/// Residual below which the centre may run ahead, by how much more at each problem that leaves the
+/// residual about the same, and how far at most.
+const NEAR: f64 = 1e-3;
+const STRIDE: f64 = 1.5;
+const LONGEST: f64 = 10.0;
+
+/// Softened problems over which the residual must fall by a tenth.
+const PATIENCE: usize = 300;
 
 impl<const D: usize> LocalSolver<D> for ProximalNewton {
     fn solve(
@@ -105,25 +116,25 @@ impl<const D: usize> LocalSolver<D> for ProximalNewton {
         problem: &LocalProblem<D>,
         guess: Option<&[Local<D>]>,
     ) -> Result<LocalSolution<D>, Unsolved<D>> {
+        const NAME: &str = "proximal Newton";
         let Tolerance {
             relative,
             iterations: limit,
         } = self.tolerance;
-        let from = start(problem, guess);
-        let mut now = LocalSolution::at(problem, from, 0, "proximal Newton");
+        let mut now = LocalSolution::at(problem, start(problem, guess), 0, NAME);
         let mut best = now.clone();
-        let (mut iterations, mut idle) = (0, 0);
-        let mut growth = 1.0;
+        let mut centre = now.force.clone();
+        let (mut iterations, mut idle, mut milestone) = (0, 0, best.residual.scaled);
+        let (mut factor, mut stride) = (1.0, 1.0);
         while best.residual.scaled > relative && iterations < limit && idle < PATIENCE {
             let size = now.residual.scaled;
-            let alpha = (growth * SOFTNESS * size).clamp(ALPHA[0], ALPHA[1]);
             let softened = Proximal {
                 problem,
-                alpha,
-                centre: &now.force,
+                alpha: (factor * SOFTNESS * size).clamp(ALPHA[0], ALPHA[1]),
+                centre: &centre,
             };
-            let target = (0.1 * size).min(1.0).max(0.3 * relative);
-            let mut run = newton(&softened, self.map, &now.force, target, STEPS);
+            let target = (0.1 * size).clamp(0.3 * relative, 1.0);
+            let mut run = newton(&softened, self.map, &centre, target, STEPS);
             iterations += run.iterations.max(1);
             let reached = run.residual <= target;
             if !reached {
@@ -132,19 +143,32 @@ impl<const D: usize> LocalSolver<D> for ProximalNewton {
                         break;
                     }
                 }
+                factor = (SOFTER * factor).min(1.0 / f64::EPSILON);
+            } else if run.iterations <= EASY {
+                factor = (HARDER * factor).max(1.0);
             }
-            now = LocalSolution::at(problem, run.force, iterations, "proximal Newton");
-            growth = if reached {
-                (0.2 * growth).max(1.0)
+            let next = LocalSolution::at(problem, run.force, iterations, NAME);
+            let change = next.residual.scaled / size;
+            stride = if reached && size < NEAR && (0.5..2.0).contains(&change) {
+                (STRIDE * stride).min(LONGEST)
             } else {
-                (4.0 * growth).min(1e8)
+                1.0
             };
-            idle += 1;
-            if now.residual.scaled < 0.9 * best.residual.scaled {
-                idle = 0;
+            // What is worse is kept only as the exact answer of a softened problem.
+            if reached || change < 1.0 {
+                let ahead = |(r, before): (&Local<D>, &Local<D>)| r + (r - before) * (stride - 1.0);
+                centre = next.force.iter().zip(&now.force).map(ahead).collect();
+                now = next;
+            } else {
+                centre.clone_from(&now.force);
             }
             if now.residual.scaled < best.residual.scaled {
                 best = now.clone();
+            }
+            idle += 1;
+            if best.residual.scaled < 0.9 * milestone {
+                milestone = best.residual.scaled;
+                idle = 0;
             }
         }
         best.iterations = iterations;
