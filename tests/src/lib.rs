@@ -5,5 +5,6 @@ pub mod cases;
 pub mod outcome;
 pub mod paper;
 pub mod problems;
+pub mod siconos;
 
 pub use outcome::{Case, Check, Figure, Kind, Options, Outcome, Table};

@@ -42,6 +42,17 @@ pub enum ContactError {
         /// Component at which the factorisation broke down.
         component: usize,
     },
+    /// A contact at which no force moves anything, so that no force can close it.
+    #[error(
+        "the Delassus operator has a normal compliance of {compliance} at contact {contact}, \
+         expected a positive one"
+    )]
+    Rigid {
+        /// The contact.
+        contact: usize,
+        /// Its normal compliance \[mm/N\].
+        compliance: f64,
+    },
     /// The Newton matrix of the contact problem is singular: no contact holds the body.
     #[error("the contact problem is singular: no closed contact holds the body")]
     Singular,

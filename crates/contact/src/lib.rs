@@ -23,12 +23,18 @@
 //! ```
 
 mod dense;
+mod discrete;
 mod error;
 mod obstacle;
 mod polyline;
 mod problem;
 mod solvers;
+mod sparse;
 
+pub use discrete::{
+    Admm, Auto, BlockMatrix, GlobalProblem, GlobalSolution, LocalProblem, LocalSolution,
+    LocalSolver, Newton, NewtonMap, ProximalNewton, Reason, Residual, TrescaFixedPoint, Unsolved,
+};
 pub use error::ContactError;
 pub use obstacle::{Ball, Cylinder, Obstacle, Plane, frame};
 pub use polyline::Polyline;

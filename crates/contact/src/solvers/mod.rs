@@ -1,6 +1,6 @@
 //! The methods that solve a contact problem, one file each, behind one trait.
 
-mod anderson;
+pub(crate) mod anderson;
 mod gauss_seidel;
 mod penalty;
 mod semismooth;

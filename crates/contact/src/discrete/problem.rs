@@ -1,0 +1,222 @@
+//! The discrete frictional contact problem in its local form and how far a point is from solving it;
+//! not the bodies, see [`GlobalProblem`](crate::GlobalProblem).
+
+use super::BlockMatrix;
+use crate::ContactError;
+use moreau_laws::{Coulomb, Local, Status};
+use nalgebra::{Matrix3, SMatrix};
+
+/// The discrete frictional contact problem in local form: find r and u with
+///
+/// ```text
+/// u = W r + q,      (−u, r) extremal for [38] at every contact,
+/// ```
+///
+/// r the contact forces \[N\] (or impulses), u the gaps and slips \[mm\] (or relative velocities),
+/// W the Delassus operator \[mm/N\]: positive semi-definite, of any rank, symmetric up to rounding.
+/// Where W is rank deficient the forces need not be unique.
+#[derive(Debug, Clone)]
+pub struct LocalProblem<const D: usize> {
+    operator: BlockMatrix<D>,
+    free: Vec<Local<D>>,
+    friction: Vec<Coulomb>,
+    /// W_ii of every contact.
+    own: Vec<SMatrix<f64, D, D>>,
+    /// |W_ii|₂ of every contact.
+    compliance: Vec<f64>,
+}
+
+/// Distances of a point (r, u) to the contact law, dimensionless, by the natural map of \[90′\].
+///
+/// F_ρ(r, u) = r − proj(r − ρ ũ, K_μ), Euclidean norms over all contacts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Residual {
+    /// |F_ρ| / max(|r|, |ρ q|) with ρ = 1/|W_ii|₂ of each contact: the same in all units.
+    pub scaled: f64,
+    /// |F_1| / max(|q|, |r|, |u|), the measure of the program Siconos: adds forces to displacements,
+    /// so that it depends on the units.
+    pub unscaled: f64,
+}
+
+impl<const D: usize> LocalProblem<D> {
+    /// A problem from W, q and the law of every contact.
+    ///
+    /// # Errors
+    /// [`ContactError::Dimension`] if sizes disagree, [`ContactError::NotFinite`] for NaN or ∞,
+    /// [`ContactError::Rigid`] where a diagonal block of W has no normal compliance.
+    pub fn new(
+        operator: BlockMatrix<D>,
+        free: Vec<Local<D>>,
+        friction: Vec<Coulomb>,
+    ) -> Result<Self, ContactError> {
+        let contacts = friction.len();
+        for (what, found) in [
+            ("Delassus operator", operator.contacts()),
+            ("free displacements", free.len()),
+        ] {
+            if found != contacts {
+                return Err(ContactError::Dimension {
+                    what,
+                    found,
+                    expected: contacts,
+                });
+            }
+        }
+        for (what, finite) in [
+            ("Delassus operator", operator.is_finite()),
+            (
+                "free displacements",
+                free.iter().flatten().all(|v| v.is_finite()),
+            ),
+        ] {
+            if !finite {
+                return Err(ContactError::NotFinite { what });
+            }
+        }
+        let own: Vec<_> = (0..contacts).map(|i| operator.diagonal(i)).collect();
+        if let Some(contact) = own.iter().position(|own| own[(0, 0)] <= 0.0) {
+            return Err(ContactError::Rigid {
+                contact,
+                compliance: own[contact][(0, 0)],
+            });
+        }
+        let compliance = own.iter().map(spectral_norm).collect();
+        Ok(Self {
+            own,
+            operator,
+            free,
+            friction,
+            compliance,
+        })
+    }
+
+    /// Number of contacts.
+    pub fn contacts(&self) -> usize {
+        self.friction.len()
+    }
+
+    /// The Delassus operator W.
+    pub fn operator(&self) -> &BlockMatrix<D> {
+        &self.operator
+    }
+
+    /// Displacements q without contact forces.
+    pub fn free(&self) -> &[Local<D>] {
+        &self.free
+    }
+
+    /// The friction law of every contact.
+    pub fn friction(&self) -> &[Coulomb] {
+        &self.friction
+    }
+
+    /// W_ii of contact i.
+    #[inline]
+    pub(super) fn own(&self, i: usize) -> &SMatrix<f64, D, D> {
+        &self.own[i]
+    }
+
+    /// |W_ii|₂ of contact i, the unit of everything that would otherwise need one.
+    #[inline]
+    pub fn compliance(&self, i: usize) -> f64 {
+        self.compliance[i]
+    }
+
+    /// u = W r + q.
+    pub fn displacement(&self, r: &[Local<D>]) -> Vec<Local<D>> {
+        (0..self.contacts())
+            .map(|i| self.operator.row_times(i, r) + self.free[i])
+            .collect()
+    }
+
+    /// Natural-map residual of forces r at u = W r + q.
+    pub fn residual(&self, r: &[Local<D>], u: &[Local<D>]) -> Residual {
+        let norms = self.norms(r, u);
+        Residual {
+            scaled: over(norms.scaled, norms.forces.max(norms.scaled_loads)),
+            unscaled: over(
+                norms.unscaled,
+                norms.forces.max(norms.displacements).max(norms.loads),
+            ),
+        }
+    }
+
+    /// The norms of which residuals are made.
+    pub(super) fn norms(&self, r: &[Local<D>], u: &[Local<D>]) -> Norms {
+        let mut squares = Norms::default();
+        for (i, law) in self.friction.iter().enumerate() {
+            let rho = 1.0 / self.compliance[i];
+            squares.scaled += law.natural_map(&u[i], &r[i], rho).norm_squared();
+            squares.unscaled += law.natural_map(&u[i], &r[i], 1.0).norm_squared();
+            squares.forces += r[i].norm_squared();
+            squares.displacements += u[i].norm_squared();
+            squares.loads += self.free[i].norm_squared();
+            squares.scaled_loads += (self.free[i] * rho).norm_squared();
+        }
+        Norms {
+            scaled: squares.scaled.sqrt(),
+            unscaled: squares.unscaled.sqrt(),
+            forces: squares.forces.sqrt(),
+            displacements: squares.displacements.sqrt(),
+            loads: squares.loads.sqrt(),
+            scaled_loads: squares.scaled_loads.sqrt(),
+        }
+    }
+
+    /// Status of every contact at (r, u), \[35\].
+    pub fn statuses(&self, r: &[Local<D>], u: &[Local<D>]) -> Vec<Status> {
+        (0..self.contacts())
+            .map(|i| self.friction[i].status(&u[i], &r[i], 1.0 / self.compliance[i]))
+            .collect()
+    }
+
+    /// Largest ratio μ/μ_c over the contacts with its contact, μ_c = W_nn/|W_nt| of the diagonal
+    /// block; `None` without contacts.
+    ///
+    /// A single plane contact has exactly one solution for μ < μ_c. From μ_c on it may have several,
+    /// or wedge (A. Klarbring, *Ingenieur-Archiv* 60 (1990) 529-541); in space and for several
+    /// contacts the ratio is an indicator, not a bound.
+    pub fn criticality(&self) -> Option<(usize, f64)> {
+        let ratio = |i: usize| {
+            let own = self.own(i);
+            let coupling = (1..D).fold(0.0, |norm: f64, k| norm.hypot(own[(0, k)]));
+            (i, self.friction[i].friction() * coupling / own[(0, 0)])
+        };
+        let worst = (0..self.contacts()).map(ratio);
+        worst.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// Euclidean norms over all contacts.
+#[derive(Debug, Default, Clone, Copy)]
+pub(super) struct Norms {
+    /// |F_ρ| with ρ = 1/|W_ii|₂.
+    pub(super) scaled: f64,
+    /// |F_1|.
+    pub(super) unscaled: f64,
+    /// |r|.
+    pub(super) forces: f64,
+    /// |u|.
+    pub(super) displacements: f64,
+    /// |q|.
+    pub(super) loads: f64,
+    /// |ρ q|.
+    pub(super) scaled_loads: f64,
+}
+
+/// A ratio of norms; zero over zero is zero, and what has overflowed solves nothing.
+pub(super) fn over(norm: f64, scale: f64) -> f64 {
+    if norm == 0.0 && scale.is_finite() {
+        0.0
+    } else if norm.is_finite() && scale.is_finite() {
+        norm / scale
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// Largest singular value.
+fn spectral_norm<const D: usize>(block: &SMatrix<f64, D, D>) -> f64 {
+    let entry = |i, j| if i < D && j < D { block[(i, j)] } else { 0.0 };
+    Matrix3::from_fn(entry).singular_values().max()
+}
