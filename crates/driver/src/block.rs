@@ -1,7 +1,7 @@
 //! Blocks of cells of one element, one hypothesis and one law: forces and stiffness of their
 //! cells; not their assembly.
 
-use moreau_laws::{BulkLaw, IncrementalPotential};
+use moreau_laws::BulkLaw;
 use moreau_mandel::{Sym2, Sym4};
 use moreau_mesh::{Element, Hypothesis, Integration, Mesh};
 use nalgebra::{SMatrix, SVector};
@@ -78,8 +78,8 @@ pub trait Block<const D: usize>: Send + Sync {
     ) -> bool;
 
     /// ∫ ΔV(Δε) + σ₀ : Δε dΩ, the bulk part of ΔΦ \[74\] when total forces are
-    /// applied instead of increments \[N·mm\].
-    fn potential(&self, d_u: &[f64]) -> f64;
+    /// applied instead of increments \[N·mm\]; `None` of a law without a potential.
+    fn potential(&self, d_u: &[f64]) -> Option<f64>;
 
     /// Energies of the candidate that the last evaluation left.
     fn energy(&self) -> BlockEnergy;
@@ -254,7 +254,7 @@ impl<E, H, L, const D: usize, const N: usize> Block<D> for SolidBlock<E, H, L, D
 where
     E: Element<D, N>,
     H: Hypothesis<D>,
-    L: IncrementalPotential,
+    L: BulkLaw,
 {
     fn cells(&self) -> &[usize] {
         &self.cells
@@ -337,7 +337,7 @@ where
         flows
     }
 
-    fn potential(&self, d_u: &[f64]) -> f64 {
+    fn potential(&self, d_u: &[f64]) -> Option<f64> {
         let per_cell = self.shapes.len();
         let mut sum = 0.0;
         for (k, nodes) in self.nodes.iter().enumerate() {
@@ -353,10 +353,10 @@ where
                 let (_, d_eps) = view.strain::<H>(g, d_u);
                 // ΔV leaves out the linear part σ₀·Δε, [48]: it is what equilibrium held before.
                 let linear = self.law.stress(&old[g]).dot(&d_eps);
-                sum += points[g].weight * (self.law.potential(&old[g], &d_eps) + linear);
+                sum += points[g].weight * (self.law.potential(&old[g], &d_eps)? + linear);
             }
         }
-        sum
+        Some(sum)
     }
 
     fn energy(&self) -> BlockEnergy {

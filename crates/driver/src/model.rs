@@ -4,7 +4,7 @@ use crate::ModelError;
 use crate::block::{Block, SolidBlock};
 use crate::interface::{ContactPoint, Tool};
 use moreau_contact::Obstacle;
-use moreau_laws::{Friction, IncrementalPotential};
+use moreau_laws::{BulkLaw, Friction};
 use moreau_mesh::{
     Axisymmetric, CellKind, Facet, Hex8, Hypothesis, Integration, Mesh, PlaneStrain, Quad4, Quad8,
     Quad9, Share, Solid, Tet4, Tri3, Tri6,
@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 /// A hypothesis together with the elements that it can be used with.
 pub trait Analysis<const D: usize>: Hypothesis<D> {
     /// A block of cells of one kind; `None` if the hypothesis has no such cells.
-    fn block<L: IncrementalPotential>(
+    fn block<L: BulkLaw>(
         &self,
         mesh: &Mesh<D>,
         kind: CellKind,
@@ -24,7 +24,7 @@ pub trait Analysis<const D: usize>: Hypothesis<D> {
     ) -> Option<Box<dyn Block<D>>>;
 }
 
-fn plane<H: Hypothesis<2>, L: IncrementalPotential>(
+fn plane<H: Hypothesis<2>, L: BulkLaw>(
     hypothesis: &H,
     mesh: &Mesh<2>,
     kind: CellKind,
@@ -53,7 +53,7 @@ fn plane<H: Hypothesis<2>, L: IncrementalPotential>(
 }
 
 impl Analysis<2> for PlaneStrain {
-    fn block<L: IncrementalPotential>(
+    fn block<L: BulkLaw>(
         &self,
         mesh: &Mesh<2>,
         kind: CellKind,
@@ -66,7 +66,7 @@ impl Analysis<2> for PlaneStrain {
 }
 
 impl Analysis<2> for Axisymmetric {
-    fn block<L: IncrementalPotential>(
+    fn block<L: BulkLaw>(
         &self,
         mesh: &Mesh<2>,
         kind: CellKind,
@@ -79,7 +79,7 @@ impl Analysis<2> for Axisymmetric {
 }
 
 impl Analysis<3> for Solid {
-    fn block<L: IncrementalPotential>(
+    fn block<L: BulkLaw>(
         &self,
         mesh: &Mesh<3>,
         kind: CellKind,
@@ -156,7 +156,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     ///
     /// # Errors
     /// An unknown group; [`ModelError::TwoMaterials`].
-    pub fn material<L: IncrementalPotential>(
+    pub fn material<L: BulkLaw>(
         mut self,
         group: &str,
         law: L,
