@@ -2,7 +2,7 @@
 //! of their material; not their assembly.
 
 use crate::cells::{Cells, MAX_POINTS};
-use moreau_laws::{BulkLaw, IncrementalPotential, Numbers};
+use moreau_laws::{BulkLaw, Numbers};
 use moreau_mandel::{Sym2, Sym4};
 use rayon::prelude::*;
 
@@ -76,8 +76,8 @@ pub trait Block<const D: usize>: Send + Sync {
     ) -> bool;
 
     /// ∫ ΔV(Δε) + σ₀ : Δε dΩ, the bulk part of ΔΦ \[74\] when total forces are
-    /// applied instead of increments \[N·mm\].
-    fn potential(&self, d_u: &[f64]) -> f64;
+    /// applied instead of increments \[N·mm\]; `None` of a law without a potential.
+    fn potential(&self, d_u: &[f64]) -> Option<f64>;
 
     /// Energies of the candidate that the last evaluation left.
     fn energy(&self) -> BlockEnergy;
@@ -180,7 +180,7 @@ impl<L: BulkLaw, const D: usize> Panel<'_, L, D> {
     }
 }
 
-impl<L: IncrementalPotential, const D: usize> Block<D> for SolidBlock<L, D> {
+impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
     fn cells(&self) -> &[usize] {
         &self.members
     }
@@ -250,7 +250,7 @@ impl<L: IncrementalPotential, const D: usize> Block<D> for SolidBlock<L, D> {
         flows
     }
 
-    fn potential(&self, d_u: &[f64]) -> f64 {
+    fn potential(&self, d_u: &[f64]) -> Option<f64> {
         let count = self.cells.points_per_cell();
         let mut d_eps = [Sym2::zeros(); MAX_POINTS];
         let mut sum = 0.0;
@@ -261,10 +261,10 @@ impl<L: IncrementalPotential, const D: usize> Block<D> for SolidBlock<L, D> {
                 let old = &self.old[point];
                 // ΔV leaves out the linear part σ₀·Δε, [48]: it is what equilibrium held before.
                 let linear = self.law.stress(old).dot(d_eps);
-                sum += self.cells.weight(point) * (self.law.potential(old, d_eps) + linear);
+                sum += self.cells.weight(point) * (self.law.potential(old, d_eps)? + linear);
             }
         }
-        sum
+        Some(sum)
     }
 
     fn energy(&self) -> BlockEnergy {

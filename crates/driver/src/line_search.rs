@@ -203,7 +203,8 @@ mod tests {
 
     /// ΔΦ, \[74\], without contact.
     fn potential(driver: &Driver<2>, end: &Loading<2>, d_u: &[f64]) -> f64 {
-        let stored: f64 = driver.blocks.iter().map(|b| b.potential(d_u)).sum();
+        let potentials = driver.blocks.iter().map(|b| b.potential(d_u));
+        let stored: f64 = potentials.sum::<Option<f64>>().expect("a potential");
         stored - end.force.iter().zip(d_u).map(|(f, u)| f * u).sum::<f64>()
     }
 

@@ -5,7 +5,7 @@ use crate::block::{Block, SolidBlock};
 use crate::cells::{Cells, ElementCells};
 use crate::interface::{ContactPoint, Tool, tool_index};
 use moreau_contact::Obstacle;
-use moreau_laws::{Friction, IncrementalPotential};
+use moreau_laws::{BulkLaw, Friction};
 use moreau_mesh::{
     Axisymmetric, CellKind, Coupling, Element, Facet, Hex8, Hypothesis, Integration, Mesh, Pairing,
     PlaneStrain, Quad4, Quad8, Quad9, Share, Solid, Tet4, Tri3, Tri6, nearest,
@@ -180,7 +180,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     ///
     /// # Errors
     /// An unknown group; [`ModelError::TwoMaterials`].
-    pub fn material<L: IncrementalPotential>(
+    pub fn material<L: BulkLaw>(
         mut self,
         group: &str,
         law: L,

@@ -20,7 +20,8 @@ impl Numbers for Sym2 {
 pub struct Response<S> {
     /// Stress at the end of the step, σ₁ \[MPa\].
     pub stress: Sym2,
-    /// Consistent tangent ∂σ₁/∂Δε \[MPa\], 6×6.
+    /// Consistent tangent ∂σ₁/∂Δε \[MPa\], 6×6; where the flow is not associated its symmetric
+    /// part, with which a symmetric solver still converges, but linearly.
     pub tangent: Sym4,
     /// State at the end of the step.
     pub state: S,
@@ -52,14 +53,14 @@ pub trait BulkLaw: 'static + Clone + Send + Sync {
 
     /// Equivalent plastic strain p of a state, \[60\]; never decreases along a path.
     fn equivalent_plastic_strain(&self, state: &Self::State) -> f64;
-}
 
-/// A bulk law deriving from an incremental potential: ∂ΔV/∂Δε = Δσ = σ₁ − σ₀, \[65\].
-pub trait IncrementalPotential: BulkLaw {
-    /// ΔV(Δε) \[N·mm/mm³\]; convex, continuously differentiable, zero with its gradient at Δε = 0
-    /// when the state at the start is admissible.
+    /// ΔV(Δε) \[N·mm/mm³\], with ∂ΔV/∂Δε = Δσ = σ₁ − σ₀, \[65\]; convex, continuously
+    /// differentiable, zero with its gradient at Δε = 0 when the state at the start is admissible.
+    /// `None` of a law without one, whose flow is not associated.
     ///
     /// It is the work done beyond σ₀ : Δε, stored and dissipated, \[48\]:
     /// ΔV = ψ₁ − ψ₀ + D − σ₀ : Δε with the stored energy ψ and the dissipation D of the step.
-    fn potential(&self, old: &Self::State, d_eps: &Sym2) -> f64;
+    fn potential(&self, _old: &Self::State, _d_eps: &Sym2) -> Option<f64> {
+        None
+    }
 }

@@ -1,5 +1,5 @@
-//! Drucker–Prager plasticity with a dilatancy of its own, as a bipotential; not an integrated bulk
-//! law.
+//! Drucker–Prager plasticity with a dilatancy of its own, as a bipotential; integrated over a
+//! step in `elastic_drucker_prager`.
 
 use crate::coulomb::Coulomb;
 use crate::duality::{Bipotential, at_most, restricted};
@@ -46,6 +46,28 @@ impl DruckerPrager {
         })
     }
 
+    /// The friction k_f.
+    pub fn friction(&self) -> f64 {
+        self.cone.friction()
+    }
+
+    /// The dilatancy k_t.
+    pub fn dilatancy(&self) -> f64 {
+        self.dilatancy
+    }
+
+    /// The mean stress c₀ of the apex \[MPa\].
+    pub fn apex(&self) -> f64 {
+        self.apex
+    }
+
+    /// c₀ e_v + (k_f − k_t)(c₀ − σ_m) ‖e‖ of a strain rate at a mean stress σ_m, the value of the
+    /// bipotential within its domain.
+    pub(crate) fn power(&self, mean: f64, rate: &Sym2) -> f64 {
+        let above = self.cone.friction() - self.dilatancy;
+        self.apex * trace(rate) + above * (self.apex - mean) * deviator(rate).norm()
+    }
+
     /// The natural map of the equivalent contact, \[90′\], with ρ > 0 \[MPa\]: zero exactly when
     /// (ε̇, σ) obeys the law, whatever ρ.
     pub fn natural_map(&self, rate: &Sym2, stress: &Sym2, rho: f64) -> Local<7> {
@@ -68,8 +90,7 @@ impl Bipotential<Sym2> for DruckerPrager {
         let t = self.force(y);
         let admissible = self.cone.admits(&t, y.norm() + self.apex)
             && at_most(self.dilatancy * e, e_v, x.norm());
-        let b = self.apex * e_v + (self.cone.friction() - self.dilatancy) * t[0] * e;
-        restricted(admissible, b)
+        restricted(admissible, self.power(self.apex - t[0], x))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Isotropic linear elasticity, \[58\]-\[59\]; not a law with memory: its state is its strain.
 
-use crate::bulk::{BulkLaw, IncrementalPotential, Response};
+use crate::bulk::{BulkLaw, Response};
 use crate::error::{LawError, positive};
 use moreau_mandel::{Sym2, Sym4, deviator, deviatoric_projector, identity, trace};
 
@@ -110,12 +110,10 @@ impl BulkLaw for Elastic {
     fn equivalent_plastic_strain(&self, _state: &Sym2) -> f64 {
         0.0
     }
-}
 
-impl IncrementalPotential for Elastic {
     /// ΔV = ½ Δε·S·Δε, \[58\].
     #[inline]
-    fn potential(&self, _old: &Sym2, d_eps: &Sym2) -> f64 {
-        self.energy(d_eps)
+    fn potential(&self, _old: &Sym2, d_eps: &Sym2) -> Option<f64> {
+        Some(self.energy(d_eps))
     }
 }

@@ -40,6 +40,22 @@ pub enum LawError {
         /// The friction k_f that bounds it.
         friction: f64,
     },
+    /// A table of hardening that is none.
+    #[error("row {row} of the hardening table {problem}")]
+    Table {
+        /// The row, counted from 1.
+        row: usize,
+        /// What is wrong with it.
+        problem: &'static str,
+    },
+    /// More terms of kinematic hardening with recall than a state has room for.
+    #[error("{found} terms of kinematic hardening with recall, at most {most} are remembered")]
+    TooManyTerms {
+        /// Terms given.
+        found: usize,
+        /// Terms that a state holds.
+        most: usize,
+    },
     /// A damage outside [0, 1[.
     #[error("the damage must lie in [0, 1[, got {damage}")]
     DamageOutOfRange {

@@ -35,7 +35,8 @@
 //! | law | type | kind |
 //! |---|---|---|
 //! | isotropic elasticity | [`Elastic`] | bulk |
-//! | von Mises, linear hardening | [`VonMises`], [`VonMisesDissipation`] | bulk; superpotential |
+//! | von Mises, isotropic and kinematic hardening | [`VonMises`], [`VonMisesDissipation`] | bulk; superpotential |
+//! | its isotropic hardening | [`Isotropic`] | stored energy |
 //! | elastic, perfectly plastic bar | [`Uniaxial`] | superpotential |
 //! | unilateral contact | [`Signorini`] | superpotential |
 //! | contact with Tresca friction | [`Tresca`] | superpotential |
@@ -43,7 +44,8 @@
 //! | contact with friction limited by a shear | [`LimitedCoulomb`] | neither |
 //! | any of these, as a structure sees it | [`Friction`] | as an equation |
 //! | its penalty regularisation | [`RegularisedCoulomb`] | response |
-//! | soils | [`DruckerPrager`], [`CamClay`] | bipotential |
+//! | soils | [`ElasticDruckerPrager`] | bulk |
+//! | their plastic part | [`DruckerPrager`], [`CamClay`] | bipotential |
 //! | non-linear kinematic hardening | [`ArmstrongFrederick`] | bipotential |
 //! | damage | [`Lemaitre`] | bipotential |
 //!
@@ -59,8 +61,10 @@ mod coulomb;
 mod drucker_prager;
 mod duality;
 mod elastic;
+mod elastic_drucker_prager;
 mod error;
 mod friction;
+mod isotropic;
 mod lemaitre;
 mod limited;
 mod local;
@@ -72,14 +76,16 @@ mod von_mises;
 
 pub use anisotropic::AnisotropicCoulomb;
 pub use armstrong_frederick::{ArmstrongFrederick, Generalised};
-pub use bulk::{BulkLaw, IncrementalPotential, Numbers, Response};
+pub use bulk::{BulkLaw, Numbers, Response};
 pub use cam_clay::CamClay;
 pub use coulomb::Coulomb;
 pub use drucker_prager::DruckerPrager;
 pub use duality::{Bipotential, Superpotential};
 pub use elastic::Elastic;
+pub use elastic_drucker_prager::{DruckerPragerState, ElasticDruckerPrager};
 pub use error::LawError;
 pub use friction::Friction;
+pub use isotropic::Isotropic;
 pub use lemaitre::{Damaging, Lemaitre};
 pub use limited::LimitedCoulomb;
 pub use local::{Local, Status};
@@ -87,4 +93,4 @@ pub use regularised::{RegularisedCoulomb, RegularisedResponse};
 pub use signorini::Signorini;
 pub use tresca::Tresca;
 pub use uniaxial::{Uniaxial, UniaxialResponse};
-pub use von_mises::{VonMises, VonMisesDissipation, VonMisesState};
+pub use von_mises::{RECALLED_TERMS, VonMises, VonMisesDissipation, VonMisesState};

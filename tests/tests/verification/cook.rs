@@ -6,7 +6,7 @@
 
 use crate::close;
 use moreau::driver::{Axis, Driver, Model, Settings, Step};
-use moreau::laws::{Elastic, IncrementalPotential, VonMises};
+use moreau::laws::{BulkLaw, Elastic, VonMises};
 use moreau::mesh::{CellKind, Integration, PlaneStrain};
 use verification::problems::Fallible;
 use verification::problems::shapes::cook;
@@ -18,7 +18,7 @@ use Integration::{Full, Reduced};
 fn deflection(
     (kind, rule): (CellKind, Integration),
     n: usize,
-    law: impl IncrementalPotential,
+    law: impl BulkLaw,
     (force, steps): (f64, usize),
     y: f64,
 ) -> Fallible<f64> {

@@ -5,7 +5,7 @@
 
 use crate::close;
 use moreau::driver::{Axis, Driver, Model, Settings, Step};
-use moreau::laws::{Elastic, IncrementalPotential, VonMises};
+use moreau::laws::{BulkLaw, Elastic, VonMises};
 use moreau::mandel::Sym2;
 use moreau::mesh::{Axisymmetric, CellKind, Integration};
 use nalgebra::Vector2;
@@ -31,7 +31,7 @@ fn growth(c: f64) -> f64 {
     YIELD * c.powi(3) * (1.0 - NU) / (E * B * B)
 }
 
-fn sphere(law: impl IncrementalPotential) -> Fallible<Driver<2>> {
+fn sphere(law: impl BulkLaw) -> Fallible<Driver<2>> {
     let mesh = quarter_ring(CellKind::Quad8, (A, B), (12, 6))?;
     let model = Model::new(mesh, Axisymmetric).material("body", law, Integration::Reduced)?;
     Ok(Driver::new(model, Settings::default())?)

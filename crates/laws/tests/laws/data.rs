@@ -55,10 +55,58 @@ fn hardening_and_friction() {
     let von_mises = |x: f64| VonMises::new(1.0, 0.3, 1.0).map(|law| (law, x));
     refuses_negative(|x| von_mises(x).and_then(|(law, x)| law.with_isotropic(x)));
     refuses_negative(|x| von_mises(x).and_then(|(law, x)| law.with_kinematic(x)));
+    refuses_negative(|x| von_mises(x).and_then(|(law, x)| law.with_recall(x, 1.0)));
+    refuses_negative(|x| von_mises(x).and_then(|(law, x)| law.with_recall(1.0, x)));
+    refuses_negative(|x| Isotropic::voce(x, 1.0));
+    refuses_negative(|x| Isotropic::voce(1.0, x));
+    refuses_negative(|x| Isotropic::swift(x, 0.1, 0.2));
+    refuses_not_positive(|x| Isotropic::swift(1.0, x, 0.2));
+    refuses_negative(|x| Isotropic::swift(1.0, 0.1, x));
+    refuses_negative(|x| LimitedCoulomb::new(x, 1.0));
+    refuses_negative(|x| LimitedCoulomb::new(0.3, x));
     refuses_negative(Tresca::new);
     refuses_negative(Coulomb::new);
     refuses_negative(|x| RegularisedCoulomb::new(x, 1.0, 1.0));
     refuses_negative(|x| DruckerPrager::new(x, 0.0, 1.0));
+}
+
+#[test]
+fn tables_and_terms() -> Result<(), LawError> {
+    let tables: [(&[[f64; 2]], &str); 5] = [
+        (&[], "row 1 of the hardening table is missing"),
+        (
+            &[[0.1, 300.0]],
+            "row 1 of the hardening table does not start at no plastic strain",
+        ),
+        (
+            &[[0.0, 300.0], [0.1, 310.0], [0.1, 320.0]],
+            "row 3 of the hardening table does not have more plastic strain than the one before",
+        ),
+        (
+            &[[0.0, 300.0], [0.1, 290.0]],
+            "row 2 of the hardening table softens: its stress is below the one before",
+        ),
+        (
+            &[[0.0, 300.0], [0.1, f64::NAN]],
+            "row 2 of the hardening table is not finite",
+        ),
+    ];
+    for (points, message) in tables {
+        let error = Isotropic::table(points).expect_err(message);
+        assert_eq!(error.to_string(), message);
+    }
+    let mut law = VonMises::new(1.0, 0.3, 1.0)?;
+    for _ in 0..RECALLED_TERMS {
+        // Terms without recall need no room.
+        law = law.with_recall(1.0, 2.0)?.with_kinematic(1.0)?;
+    }
+    assert_eq!(law.recalled(), [(1.0, 2.0); RECALLED_TERMS]);
+    assert_eq!(law.kinematic_modulus(), RECALLED_TERMS as f64);
+    assert!(matches!(
+        law.with_recall(1.0, 2.0),
+        Err(LawError::TooManyTerms { .. })
+    ));
+    Ok(())
 }
 
 #[test]
@@ -110,7 +158,7 @@ fn getters_return_what_was_given() -> Result<(), LawError> {
     );
     assert_eq!(law.yield_stress(), 300.0);
     assert_eq!(
-        (law.isotropic_modulus(), law.kinematic_modulus()),
+        (law.isotropic().modulus(7.0), law.kinematic_modulus()),
         (1e3, 2e3)
     );
 

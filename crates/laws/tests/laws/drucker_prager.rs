@@ -1,10 +1,13 @@
 //! Non-associated Drucker–Prager plasticity; not associated only: k_t runs from 0 to k_f.
 
 use crate::contract::{Samples, check, for_all};
-use crate::samples::{any_deviator, spherical, unit_deviator};
-use moreau_laws::{Bipotential, DruckerPrager, LawError};
-use moreau_mandel::{Sym2, deviator, trace};
+use crate::samples::{any_deviator, spherical, unit_deviator, vector};
+use moreau_laws::{
+    Bipotential, BulkLaw, DruckerPrager, DruckerPragerState, ElasticDruckerPrager, LawError,
+};
+use moreau_mandel::{Sym2, Sym4, deviator, trace};
 use proptest::prelude::*;
+use std::cell::Cell;
 
 const FRICTION: f64 = 0.7;
 const APEX: f64 = 1.3;
@@ -109,5 +112,156 @@ fn natural_map_of_the_equivalent_contact() -> Result<(), LawError> {
             },
         );
     }
+    Ok(())
+}
+
+const YOUNG: f64 = 50.0;
+
+fn soil(dilatancy: f64) -> Result<ElasticDruckerPrager, LawError> {
+    ElasticDruckerPrager::new(YOUNG, 0.3, DruckerPrager::new(FRICTION, dilatancy, APEX)?)
+}
+
+/// Steps from states on paths that reach the cone and its apex.
+fn path() -> BoxedStrategy<(Vec<Sym2>, Sym2)> {
+    let step = (vector::<6>(0.1), -0.1..0.1f64).prop_map(|(e, mean)| e + spherical(mean));
+    (prop::collection::vec(step.clone(), 0..3), step).boxed()
+}
+
+fn after(law: &ElasticDruckerPrager, path: &[Sym2]) -> DruckerPragerState {
+    let virgin = DruckerPragerState::default();
+    path.iter()
+        .fold(virgin, |state, d| law.respond(&state, d).state)
+}
+
+/// Every increment is extremal for the bipotential, on the cone and at the apex, and both are met.
+#[test]
+fn increments_are_extremal() -> Result<(), LawError> {
+    for dilatancy in [0.0, 0.25, FRICTION] {
+        let law = soil(dilatancy)?;
+        let (cone, apex) = (Cell::new(0), Cell::new(0));
+        for_all(&path(), |(path, d_eps)| {
+            let old = after(&law, &path);
+            let response = law.respond(&old, &d_eps);
+            let new = response.state;
+            let flow = new.plastic_strain - old.plastic_strain;
+            let strain = new.elastic_strain - old.elastic_strain + flow;
+            prop_assert!((strain - d_eps).norm() <= 1e-15);
+            if new.p == old.p {
+                return Ok(());
+            }
+            let n = deviator(&response.stress).norm();
+            let counter = if n > 1e-12 * YOUNG { &cone } else { &apex };
+            counter.set(counter.get() + 1);
+            let power = response.stress.dot(&flow);
+            let dissipation = law.dissipation(&old, &new);
+            prop_assert!((dissipation - power).abs() <= 1e-14 * YOUNG);
+            prop_assert!(dissipation >= 0.0);
+            // Both ends are known to rounding of the strains: the domain is thick by that.
+            let overstress = n - FRICTION * (APEX - trace(&response.stress) / 3.0);
+            prop_assert!(overstress.abs() <= 1e-14 * YOUNG);
+            let dilation = trace(&flow) - dilatancy * deviator(&flow).norm();
+            prop_assert!(dilation >= -1e-15);
+            let b = law.plastic().b(
+                &(flow + spherical(1e-15)),
+                &(response.stress - spherical(1e-13)),
+            );
+            prop_assert!((b - power).abs() <= 1e-11, "gap {:e}", b - power);
+            Ok(())
+        });
+        assert!(cone.get() > 50 && apex.get() > 20, "{cone:?} {apex:?}");
+    }
+    Ok(())
+}
+
+/// The positive semi-definite part of the symmetric part of ∂σ₁/∂Δε, by differences.
+#[test]
+fn tangent_of_soils() -> Result<(), LawError> {
+    for dilatancy in [0.0, 0.25, FRICTION] {
+        let law = soil(dilatancy)?;
+        for_all(&path(), |(path, d_eps)| {
+            let old = after(&law, &path);
+            let response = law.respond(&old, &d_eps);
+            let h = 1e-6;
+            let branch = |d_eps: &Sym2| {
+                let new = law.respond(&old, d_eps).state;
+                (
+                    new.p > old.p,
+                    deviator(&law.stress(&new)).norm() > 1e-12 * YOUNG,
+                )
+            };
+            let mut difference = Sym4::zeros();
+            for k in 0..6 {
+                let moved = |eps: f64| {
+                    let mut moved = d_eps;
+                    moved[k] += eps;
+                    moved
+                };
+                let stress = |eps: f64| law.respond(&old, &moved(eps)).stress;
+                for eps in [-1e-3, 1e-3] {
+                    prop_assume!(branch(&moved(eps)) == branch(&d_eps));
+                }
+                let column = (stress(h) - stress(-h)) / (2.0 * h);
+                difference.set_column(k, &column);
+            }
+            let symmetric = 0.5 * (difference + difference.transpose());
+            let eigen = symmetric.symmetric_eigen();
+            let kept = eigen.eigenvalues.map(|e| e.max(0.0));
+            let basis = eigen.eigenvectors;
+            let expected = basis * Sym4::from_diagonal(&kept) * basis.transpose();
+            let error = (response.tangent - expected).norm() / YOUNG;
+            prop_assert!(error <= 1e-7, "relative error {error:e}");
+            if dilatancy == FRICTION {
+                prop_assert!((difference - symmetric).norm() <= 1e-7 * YOUNG);
+            }
+            Ok(())
+        });
+    }
+    Ok(())
+}
+
+/// Strength in tension, compression and shear does not depend on the dilatancy; the dilation does.
+#[test]
+fn strengths_of_soils() -> Result<(), LawError> {
+    let (tension, compression) = (
+        FRICTION * APEX / ((2.0f64 / 3.0).sqrt() + FRICTION / 3.0),
+        -FRICTION * APEX / ((2.0f64 / 3.0).sqrt() - FRICTION / 3.0),
+    );
+    for dilatancy in [0.0, 0.25, FRICTION] {
+        let law = soil(dilatancy)?;
+        for strength in [tension, compression] {
+            // Proportional in stress up to yield, and then along the flow.
+            let mut state = DruckerPragerState::default();
+            let axial = Sym2::from([1.0, -0.3, -0.3, 0.0, 0.0, 0.0]) / YOUNG;
+            let n = strength.signum() * Sym2::from([2.0, -1.0, -1.0, 0.0, 0.0, 0.0]) / 6f64.sqrt();
+            let flow = n + dilatancy / 3.0 * spherical(1.0);
+            for d_eps in [strength * axial, 0.01 * flow, 0.02 * flow] {
+                state = law.respond(&state, &d_eps).state;
+                let stress = law.stress(&state);
+                let expected = Sym2::from([strength, 0.0, 0.0, 0.0, 0.0, 0.0]);
+                assert!((stress - expected).norm() <= 1e-13 * YOUNG, "{stress}");
+            }
+            let dilation = trace(&state.plastic_strain);
+            assert!((dilation - dilatancy * 0.03).abs() <= 1e-14);
+        }
+        let shear = law.respond(
+            &DruckerPragerState::default(),
+            &Sym2::from([0.0, 0.0, 0.0, 0.0, 0.0, 1.0]),
+        );
+        // Dilation is held: the pressure rises with it.
+        let mean = trace(&shear.stress) / 3.0;
+        assert!((deviator(&shear.stress).norm() - FRICTION * (APEX - mean)).abs() <= 1e-12 * YOUNG);
+        assert!((mean < -1e-3) == (dilatancy > 0.0));
+    }
+    Ok(())
+}
+
+#[test]
+fn soils_without_friction_are_refused() -> Result<(), LawError> {
+    let refused = ElasticDruckerPrager::new(YOUNG, 0.3, DruckerPrager::new(0.0, 0.0, APEX)?);
+    assert!(matches!(refused, Err(LawError::NotPositive { .. })));
+    let mut d_eps = Sym2::zeros();
+    d_eps[3] = f64::NAN;
+    let response = soil(0.1)?.respond(&DruckerPragerState::default(), &d_eps);
+    assert!(response.stress.iter().any(|c| c.is_nan()));
     Ok(())
 }

@@ -9,6 +9,7 @@ mod coulomb;
 mod data;
 mod drucker_prager;
 mod friction;
+mod hardening;
 mod lemaitre;
 mod material_point;
 mod natural_map;

@@ -19,14 +19,14 @@ fn perfect() -> Result<VonMises, LawError> {
 }
 
 /// A point driven in steps, its strain and its state.
-struct Point {
-    law: VonMises,
-    state: VonMisesState,
-    strain: Sym2,
+pub(crate) struct Point {
+    pub(crate) law: VonMises,
+    pub(crate) state: VonMisesState,
+    pub(crate) strain: Sym2,
 }
 
 impl Point {
-    fn new(law: VonMises) -> Self {
+    pub(crate) fn new(law: VonMises) -> Self {
         Self {
             law,
             state: VonMisesState::default(),
@@ -35,7 +35,7 @@ impl Point {
     }
 
     /// One step to a strain; what must hold in every step is checked here.
-    fn strain_to(&mut self, strain: Sym2) {
+    pub(crate) fn strain_to(&mut self, strain: Sym2) {
         let new = self.law.respond(&self.state, &(strain - self.strain)).state;
         assert!(self.law.yield_function(&new) <= 1e-12 * YIELD);
         assert!(trace(&new.plastic_strain).abs() <= 1e-15);
@@ -66,12 +66,12 @@ impl Point {
     }
 
     /// One step of uniaxial stress.
-    fn pull_to(&mut self, eps: f64) -> f64 {
+    pub(crate) fn pull_to(&mut self, eps: f64) -> f64 {
         self.drive_to([Some(eps), None, None, Some(0.0), Some(0.0), Some(0.0)]);
         self.stress()[0]
     }
 
-    fn stress(&self) -> Sym2 {
+    pub(crate) fn stress(&self) -> Sym2 {
         self.law.stress(&self.state)
     }
 }
@@ -84,7 +84,7 @@ fn uniaxial_strain() -> Result<(), LawError> {
     assert_relative_eq!(eps_y, 1.857_142_857e-3, max_relative = 1e-9);
     let along = |eps: f64| Sym2::from([eps, 0.0, 0.0, 0.0, 0.0, 0.0]);
     for steps in [1, 2, 3, 7, 100] {
-        let mut point = Point::new(law);
+        let mut point = Point::new(law.clone());
         point.strain_to(along(eps_y));
         assert_relative_eq!(point.stress()[0], 525.0, max_relative = 1e-12);
         assert!(point.state.p <= 1e-15);
@@ -284,7 +284,7 @@ fn change_of_axes() -> Result<(), LawError> {
         let r = rotation(&q);
         let steps = prop::collection::vec(vector::<6>(3.0 * STRAIN), 1..6);
         for_all(&steps, |steps| {
-            let (mut point, mut turned) = (Point::new(law), Point::new(law));
+            let (mut point, mut turned) = (Point::new(law.clone()), Point::new(law.clone()));
             for d_eps in steps {
                 point.strain_to(point.strain + d_eps);
                 turned.strain_to(r * point.strain);

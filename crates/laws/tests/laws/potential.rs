@@ -3,8 +3,10 @@
 use crate::contract::for_all;
 use crate::samples::{rotation_matrix, unit_deviator, vector};
 use approx::assert_relative_eq;
-use moreau_laws::{BulkLaw, Elastic, IncrementalPotential, LawError, Superpotential, Uniaxial};
-use moreau_laws::{VonMises, VonMisesDissipation, VonMisesState};
+use moreau_laws::{BulkLaw, Elastic, Isotropic, LawError, Superpotential, Uniaxial};
+use moreau_laws::{
+    DruckerPrager, ElasticDruckerPrager, VonMises, VonMisesDissipation, VonMisesState,
+};
 use moreau_mandel::{Sym2, deviator, equivalent_strain, identity, rotation, trace, von_mises};
 use proptest::prelude::*;
 
@@ -17,14 +19,35 @@ const STRAIN: f64 = YIELD / YOUNG;
 const ENERGY: f64 = 1e-11 * YIELD * STRAIN;
 
 /// Perfect, isotropic, kinematic and combined hardening.
-fn von_mises_laws() -> Result<[VonMises; 4], LawError> {
+fn von_mises_laws() -> Result<Vec<VonMises>, LawError> {
     let perfect = VonMises::new(YOUNG, POISSON, YIELD)?;
-    Ok([
-        perfect,
-        perfect.with_isotropic(5e3)?,
-        perfect.with_kinematic(20e3)?,
-        perfect.with_isotropic(2e3)?.with_kinematic(70e3)?,
+    let table = [[0.0, YIELD], [2e-3, 340.0], [6e-3, 340.0], [0.02, 420.0]];
+    Ok(vec![
+        perfect.clone(),
+        perfect.clone().with_isotropic(5e3)?,
+        perfect.clone().with_kinematic(20e3)?,
+        perfect.clone().with_isotropic(2e3)?.with_kinematic(70e3)?,
+        perfect
+            .clone()
+            .with_hardening(Isotropic::voce(150.0, 200.0)?),
+        perfect
+            .clone()
+            .with_hardening(Isotropic::swift(700.0, 0.01, 0.2)?)
+            .with_kinematic(3e3)?,
+        perfect.with_hardening(Isotropic::table(&table)?),
     ])
+}
+
+/// Strains at which the table above bends: no derivative to compare with.
+fn bends(law: &VonMises, p: f64) -> bool {
+    let modulus = |p: f64| law.isotropic().modulus(p.max(0.0));
+    let near = 2e-3 * STRAIN;
+    (modulus(p + near) - modulus(p - near)).abs() > 1e3
+}
+
+/// ΔV of a law that has one.
+fn potential<L: BulkLaw>(law: &L, old: &L::State, d_eps: &Sym2) -> f64 {
+    law.potential(old, d_eps).expect("a potential")
 }
 
 /// The state after a path of steps from the virgin state.
@@ -43,12 +66,12 @@ fn step() -> BoxedStrategy<Sym2> {
 }
 
 /// What every bulk law deriving from a potential must show.
-fn contract<L: IncrementalPotential>(law: &L) {
+fn contract<L: BulkLaw>(law: &L) {
     for_all(&(path(), step(), step()), |(path, d_eps, other)| {
         let old = after(law, &path);
         let (stress_0, response) = (law.stress(&old), law.respond(&old, &d_eps));
         let new = response.state;
-        let potential = |d_eps: &Sym2| law.potential(&old, d_eps);
+        let potential = |d_eps: &Sym2| potential(law, &old, d_eps);
         prop_assert_eq!(law.stress(&new), response.stress);
 
         // [65], the gradient: the potential is C¹, so the kink of the tangent costs only E h.
@@ -93,7 +116,10 @@ fn contract<L: IncrementalPotential>(law: &L) {
         prop_assert!((rest.stress - response.stress).norm() <= 1e-12 * YIELD);
         let flow = law.equivalent_plastic_strain(&rest.state) - law.equivalent_plastic_strain(&new);
         prop_assert!(flow.abs() <= 1e-14 * STRAIN);
-        prop_assert!(law.potential(&new, &Sym2::zeros()).abs() <= ENERGY);
+        prop_assert!(
+            law.potential(&new, &Sym2::zeros())
+                .is_some_and(|v| v.abs() <= ENERGY)
+        );
         Ok(())
     });
 
@@ -105,7 +131,7 @@ fn contract<L: IncrementalPotential>(law: &L) {
         let a = law.respond(&old, &d_eps);
         let b = law.respond(&turned, &(r * d_eps));
         prop_assert!((r * a.stress - b.stress).norm() <= 1e-11 * (YIELD + a.stress.norm()));
-        let energies = law.potential(&old, &d_eps) - law.potential(&turned, &(r * d_eps));
+        let energies = potential(law, &old, &d_eps) - potential(law, &turned, &(r * d_eps));
         prop_assert!(energies.abs() <= 100.0 * ENERGY);
         Ok(())
     });
@@ -116,7 +142,7 @@ fn contract<L: IncrementalPotential>(law: &L) {
         let response = law.respond(&L::State::default(), &d_eps);
         assert!(response.stress.iter().any(|c| c.is_nan()), "component {i}");
         assert!(
-            law.potential(&L::State::default(), &d_eps).is_nan(),
+            potential(law, &L::State::default(), &d_eps).is_nan(),
             "component {i}"
         );
     }
@@ -134,6 +160,16 @@ fn elasticity_obeys_the_contract() -> Result<(), LawError> {
 fn von_mises_obeys_the_contract() -> Result<(), LawError> {
     for law in von_mises_laws()? {
         contract(&law);
+    }
+    Ok(())
+}
+
+/// Drucker–Prager with associated flow, of strength and stiffness like the others.
+#[test]
+fn associated_soils_obey_the_contract() -> Result<(), LawError> {
+    for friction in [0.1, 0.6] {
+        let plastic = DruckerPrager::new(friction, friction, YIELD)?;
+        contract(&ElasticDruckerPrager::new(YOUNG, POISSON, plastic)?);
     }
     Ok(())
 }
@@ -159,7 +195,7 @@ fn admissible_states() -> Result<(), LawError> {
             let dissipation = law.dissipation(&old, &new);
             prop_assert!((dissipation - rigid.v(&deviator(&d_e_p))).abs() <= ENERGY);
             let power = (law.stress(&new) - law.back_stress(&new)).dot(&d_e_p)
-                - law.isotropic_modulus() * new.p * (new.p - old.p);
+                - law.isotropic().stress(new.p) * (new.p - old.p);
             prop_assert!((dissipation - power).abs() <= 10.0 * ENERGY);
             Ok(())
         });
@@ -171,7 +207,7 @@ fn admissible_states() -> Result<(), LawError> {
 #[test]
 fn potential_is_the_infimum() -> Result<(), LawError> {
     for law in von_mises_laws()? {
-        let (h, h_k) = (law.isotropic_modulus(), law.kinematic_modulus());
+        let (hardening, h_k) = (law.isotropic(), law.kinematic_modulus());
         let g = law.elastic().shear_modulus();
         let bracket = |old: &VonMisesState, d_eps: &Sym2, d_e_p: &Sym2| {
             let d_p = equivalent_strain(d_e_p);
@@ -179,7 +215,8 @@ fn potential_is_the_infimum() -> Result<(), LawError> {
             0.5 * law.elastic().bulk_modulus() * trace(d_eps).powi(2)
                 + g * (deviator(d_eps) - d_e_p).norm_squared()
                 + YIELD * d_p
-                + h * (old.p * d_p + 0.5 * d_p * d_p)
+                + hardening.energy(old.p + d_p)
+                - hardening.energy(old.p)
                 + h_k / 3.0 * ((plastic + d_e_p).norm_squared() - plastic.norm_squared())
                 - law.stress(old).dot(d_e_p)
         };
@@ -187,7 +224,7 @@ fn potential_is_the_infimum() -> Result<(), LawError> {
             let old = after(&law, &path);
             let new = law.respond(&old, &d_eps).state;
             let (value, reached) = (
-                law.potential(&old, &d_eps),
+                potential(&law, &old, &d_eps),
                 new.plastic_strain - old.plastic_strain,
             );
             let size = 1.0 + value.abs() / (YIELD * STRAIN);
@@ -209,16 +246,17 @@ fn potentials_are_conjugate() -> Result<(), LawError> {
         for_all(&(path(), step(), step()), |(path, d_eps, other)| {
             let old = after(&law, &path);
             let d_sigma = law.respond(&old, &d_eps).stress - law.stress(&old);
-            let value = law.potential(&old, &d_eps);
+            let value = potential(&law, &old, &d_eps);
+            let complementary = |d| law.complementary(&old, d).expect("a potential");
             let size = 1.0 + value.abs() / (YIELD * STRAIN);
-            let gap = value + law.complementary(&old, &d_sigma) - d_sigma.dot(&d_eps);
+            let gap = value + complementary(&d_sigma) - d_sigma.dot(&d_eps);
             prop_assert!(gap.abs() <= 10.0 * ENERGY * size, "gap {gap:e}");
 
             let off = law.respond(&old, &other).stress - law.stress(&old);
-            let gap = value + law.complementary(&old, &off) - off.dot(&d_eps);
+            let gap = value + complementary(&off) - off.dot(&d_eps);
             prop_assert!(gap >= -10.0 * ENERGY * size, "gap {gap:e}");
             let far = 10.0 * YOUNG * deviator(&other);
-            let gap = value + law.complementary(&old, &far) - far.dot(&d_eps);
+            let gap = value + complementary(&far) - far.dot(&d_eps);
             prop_assert!(gap >= -10.0 * ENERGY * size, "gap {gap:e}");
             Ok(())
         });
@@ -226,14 +264,14 @@ fn potentials_are_conjugate() -> Result<(), LawError> {
     let perfect = VonMises::new(YOUNG, POISSON, YIELD)?;
     let beyond = Sym2::from([1.001 * YIELD, 0.0, 0.0, 0.0, 0.0, 0.0]);
     let virgin = VonMisesState::default();
-    assert_eq!(perfect.complementary(&virgin, &beyond), f64::INFINITY);
+    assert_eq!(perfect.complementary(&virgin, &beyond), Some(f64::INFINITY));
     Ok(())
 }
 
 /// A state, and a strain increment whose elastic trial has `share` of the equivalent stress at
 /// which the state yields, in the direction n.
 fn aimed(law: &VonMises, old: &VonMisesState, n: &Sym2, share: f64, dilation: f64) -> Sym2 {
-    let limit = YIELD + law.isotropic_modulus() * old.p;
+    let limit = YIELD + law.isotropic().stress(old.p);
     let trial = law.back_stress(old) + share * (2.0f64 / 3.0).sqrt() * limit * n;
     (trial - deviator(&law.stress(old))) / (2.0 * law.elastic().shear_modulus())
         + dilation * identity()
@@ -259,6 +297,7 @@ fn consistent_tangent() -> Result<(), LawError> {
             let d_eps = aimed(&law, &old, &n, share, dilation);
             let response = law.respond(&old, &d_eps);
             prop_assert_eq!(share > 1.0, response.state.p > old.p);
+            prop_assume!(!bends(&law, response.state.p));
 
             let h = 1e-4 * STRAIN;
             let stress = |eps: f64| law.respond(&old, &(d_eps + eps * d)).stress;
@@ -288,6 +327,7 @@ fn consistent_tangent_at_the_yield_surface() -> Result<(), LawError> {
 
                 let d_eps = aimed(&law, &old, &n, 1.0 + 1e-9, 0.0);
                 let tangent = law.respond(&old, &d_eps).tangent;
+                prop_assume!(!bends(&law, old.p));
                 let outwards = n + 0.5 * side;
                 let h = 1e-5 * STRAIN;
                 let stress = |eps: f64| law.respond(&old, &(d_eps + eps * outwards)).stress;
@@ -327,7 +367,10 @@ fn elastic_limit() -> Result<(), LawError> {
     let virgin = VonMisesState::default();
     for_all(&vector::<6>(0.2 * STRAIN), |d_eps| {
         prop_assert!(von_mises(&law.elastic().stress(&d_eps)) < YIELD);
-        prop_assert_eq!(law.potential(&virgin, &d_eps), law.elastic().energy(&d_eps));
+        prop_assert_eq!(
+            law.potential(&virgin, &d_eps),
+            Some(law.elastic().energy(&d_eps))
+        );
         prop_assert_eq!(
             law.respond(&virgin, &d_eps).stress,
             law.elastic().stress(&d_eps)

@@ -11,7 +11,7 @@ use crate::mesh::{CellKind, Integration, Mesh, MeshError};
 use std::ops::Range;
 
 /// A bulk law.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 enum Law {
     Elastic(Elastic),
     VonMises(VonMises),
@@ -280,7 +280,7 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
             .map_err(|e| note(&entry.on.span, e.into()))
             .ok()?
         {
-            pieces.push((entry, *law, name, rule));
+            pieces.push((entry, law.clone(), name, rule));
         }
     }
     let mut model = Model::new(mesh, hypothesis);

@@ -1,0 +1,189 @@
+//! An elastic body with Drucker–Prager plasticity, integrated over a step; its plastic part is the
+//! bipotential of `drucker_prager`.
+
+use crate::bulk::{BulkLaw, Numbers, Response};
+use crate::drucker_prager::DruckerPrager;
+use crate::elastic::Elastic;
+use crate::error::{LawError, positive};
+use moreau_mandel::{Sym2, Sym4, deviator, deviatoric_projector, identity, trace};
+use nalgebra::{Matrix2, Vector2};
+
+/// What a Drucker–Prager material remembers.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DruckerPragerState {
+    /// Elastic strain εᵉ.
+    pub elastic_strain: Sym2,
+    /// Plastic strain εᵖ, with its dilation.
+    pub plastic_strain: Sym2,
+    /// Accumulated plastic strain p = ∫ √(2/3) ‖ε̇ᵖ‖, which grows at the apex too.
+    pub p: f64,
+}
+
+impl Numbers for DruckerPragerState {
+    fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        self.elastic_strain.visit(each);
+        self.plastic_strain.visit(each);
+        each(&mut self.p);
+    }
+}
+
+/// Isotropic elasticity with the plastic flow of [`DruckerPrager`]: perfectly plastic, in general not
+/// associated.
+///
+/// Backward Euler in closed form. On the cone the trial stress returns by λ = ‖Δeᵖ‖,
+///
+/// λ = (‖s_trial‖ − k_f (c₀ − σ_m,trial)) / (2G + K_c k_f k_t),
+///
+/// s = s_trial − 2G λ n and σ_m = σ_m,trial − K_c k_t λ; where that would turn s around, it returns
+/// to the apex s = 0, σ_m = c₀. Either way (Δεᵖ, σ₁) is extremal for the bipotential.
+///
+/// With k_t < k_f there is no potential and ∂σ₁/∂Δε is not symmetric. The tangent of the response is
+/// the positive semi-definite part of its symmetric part, so that a symmetric solver still converges,
+/// but linearly.
+///
+/// Source: M. Hjiaj, J. Fortin and G. de Saxcé, *International Journal of Engineering Science* 41
+/// (2003) 1109-1143.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ElasticDruckerPrager {
+    elastic: Elastic,
+    plastic: DruckerPrager,
+}
+
+impl ElasticDruckerPrager {
+    /// From E \[MPa\], ν and the plastic law.
+    ///
+    /// # Errors
+    /// Those of [`Elastic::new`]; `NotPositive` without friction, which would leave a line of pressures.
+    pub fn new(young: f64, poisson: f64, plastic: DruckerPrager) -> Result<Self, LawError> {
+        positive("friction of the material", plastic.friction())?;
+        Ok(Self {
+            elastic: Elastic::new(young, poisson)?,
+            plastic,
+        })
+    }
+
+    /// The elastic part of the law.
+    pub fn elastic(&self) -> &Elastic {
+        &self.elastic
+    }
+
+    /// The plastic part of the law.
+    pub fn plastic(&self) -> &DruckerPrager {
+        &self.plastic
+    }
+
+    /// Tangent on the cone, with λ and the norm of the trial deviator.
+    fn tangent_on_cone(&self, n: &Sym2, lambda: f64, norm: f64) -> Sym4 {
+        let (k, g) = (self.elastic.bulk_modulus(), self.elastic.shear_modulus());
+        let (k_f, k_t) = (self.plastic.friction(), self.plastic.dilatancy());
+        // Along n and along the unit pressure d: the elastic stiffness less what flows, a⊗b.
+        let (a, b) = (
+            Vector2::new(2.0 * g, 3f64.sqrt() * k * k_t),
+            Vector2::new(2.0 * g, 3f64.sqrt() * k * k_f),
+        );
+        let flow = a * b.transpose() / (2.0 * g + k * k_f * k_t);
+        let block = Matrix2::from_diagonal(&Vector2::new(2.0 * g, 3.0 * k))
+            - 0.5 * (flow + flow.transpose());
+        let [[nn, nd], [_, dd]] = positive_part(&block);
+        let d = identity() / 3f64.sqrt();
+        // Across n the deviator turns with the trial.
+        let across = 2.0 * g * (1.0 - 2.0 * g * lambda / norm);
+        across * (deviatoric_projector() - n * n.transpose())
+            + nn * n * n.transpose()
+            + nd * (n * d.transpose() + d * n.transpose())
+            + dd * d * d.transpose()
+    }
+}
+
+/// The positive semi-definite part of a symmetric matrix that has a positive eigenvalue.
+fn positive_part(m: &Matrix2<f64>) -> [[f64; 2]; 2] {
+    let [a, b, c] = [m[(0, 0)], m[(0, 1)], m[(1, 1)]];
+    let (mean, radius) = (0.5 * (a + c), (0.5 * (a - c)).hypot(b));
+    if mean >= radius {
+        return [[a, b], [b, c]];
+    }
+    // λ e⊗e of the larger eigenvalue alone, from Cayley and Hamilton.
+    let weight = 0.5 * (mean + radius) / radius;
+    [
+        [weight * (a - mean + radius), weight * b],
+        [weight * b, weight * (c - mean + radius)],
+    ]
+}
+
+impl BulkLaw for ElasticDruckerPrager {
+    type State = DruckerPragerState;
+
+    #[inline]
+    fn respond(&self, old: &DruckerPragerState, d_eps: &Sym2) -> Response<DruckerPragerState> {
+        let (k, g) = (self.elastic.bulk_modulus(), self.elastic.shear_modulus());
+        let (k_f, k_t) = (self.plastic.friction(), self.plastic.dilatancy());
+        let apex = self.plastic.apex();
+        let mut state = *old;
+        let trial = old.elastic_strain + d_eps;
+        let s = 2.0 * g * deviator(&trial);
+        let (norm, mean) = (s.norm(), k * trace(&trial));
+        let f = norm - k_f * (apex - mean);
+        if f <= 0.0 {
+            state.elastic_strain = trial;
+            return Response {
+                stress: self.stress(&state),
+                tangent: self.elastic.tangent(),
+                state,
+            };
+        }
+        let lambda = f / (2.0 * g + k * k_f * k_t);
+        let (flow, tangent) = if norm < 2.0 * g * lambda {
+            (trial - apex / (3.0 * k) * identity(), Sym4::zeros())
+        } else {
+            let n = s / norm;
+            (
+                lambda * (n + k_t / 3.0 * identity()),
+                self.tangent_on_cone(&n, lambda, norm),
+            )
+        };
+        state.elastic_strain = trial - flow;
+        state.plastic_strain += flow;
+        state.p += (2.0f64 / 3.0).sqrt() * flow.norm();
+        Response {
+            stress: self.stress(&state),
+            tangent,
+            state,
+        }
+    }
+
+    #[inline]
+    fn stress(&self, state: &DruckerPragerState) -> Sym2 {
+        self.elastic.stress(&state.elastic_strain)
+    }
+
+    fn elastic_tangent(&self) -> Sym4 {
+        self.elastic.tangent()
+    }
+
+    fn stored_energy(&self, state: &DruckerPragerState) -> f64 {
+        self.elastic.energy(&state.elastic_strain)
+    }
+
+    /// σ₁ : Δεᵖ = c₀ Δe_v + (k_f − k_t)(c₀ − σ_m) ‖Δe‖, the bipotential at the law.
+    fn dissipation(&self, old: &DruckerPragerState, new: &DruckerPragerState) -> f64 {
+        let flow = new.plastic_strain - old.plastic_strain;
+        let mean = trace(&self.stress(new)) / 3.0;
+        self.plastic.power(mean, &flow)
+    }
+
+    fn equivalent_plastic_strain(&self, state: &DruckerPragerState) -> f64 {
+        state.p
+    }
+
+    /// ψ₁ − ψ₀ + c₀ Δe_v − σ₀ : Δε of associated flow, k_t = k_f; else `None`.
+    fn potential(&self, old: &DruckerPragerState, d_eps: &Sym2) -> Option<f64> {
+        if self.plastic.dilatancy() < self.plastic.friction() {
+            return None;
+        }
+        let new = self.respond(old, d_eps).state;
+        let flow = new.plastic_strain - old.plastic_strain;
+        // ψ₁ − ψ₀ − σ₀ : Δεᵉ is the energy of Δεᵉ, free of the rounding of the difference.
+        let elastic = self.elastic.energy(&(d_eps - flow)) - self.stress(old).dot(&flow);
+        Some(elastic + self.plastic.apex() * trace(&flow))
+    }
+}
