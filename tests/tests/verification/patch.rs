@@ -147,8 +147,11 @@ fn patch_stays_uniform_in_plastic_flow() -> Fallible {
     let p = 2.0 / 3.0 * STRAIN - 300.0 / (3.0 * law.elastic().shear_modulus());
     for (kind, rule) in plane_kinds() {
         for steps in [1, 10] {
-            let model = Model::new(plane_patch(kind)?, PlaneStrain::default())
-                .material("patch", law.clone(), rule)?;
+            let model = Model::new(plane_patch(kind)?, PlaneStrain::default()).material(
+                "patch",
+                law.clone(),
+                rule,
+            )?;
             let mut driver = Driver::new(model, Settings::default())?;
             let outline = driver.mesh().node_group("patch.outline")?;
             for step in 1..=steps {
@@ -167,8 +170,11 @@ fn patch_stays_uniform_in_plastic_flow() -> Fallible {
     }
     let g = SMatrix::<f64, 3, 3>::new(STRAIN, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     for kind in [CellKind::Hex8, CellKind::Tet4] {
-        let model =
-            Model::new(solid_patch(kind)?, Solid).material("patch", law.clone(), Integration::Full)?;
+        let model = Model::new(solid_patch(kind)?, Solid).material(
+            "patch",
+            law.clone(),
+            Integration::Full,
+        )?;
         let mut driver = Driver::new(model, Settings::default())?;
         let outline = driver.mesh().node_group("patch.outline")?;
         for step in 1..=4 {

@@ -1,7 +1,9 @@
 //! A deck written out again with every default spelt; not a copy of the file.
 
 use super::build::quadratures;
-use super::entries::{Action, Adjust, ConditionEntry, Deck, Grid, Method, Part, Shape, Vtu};
+use super::entries::{
+    Action, Adjust, ConditionEntry, Deck, Grid, Hardening, Method, Part, Shape, Vtu,
+};
 use crate::driver::Increments;
 use crate::mesh::Integration;
 use std::fmt::{self, Write};
@@ -77,15 +79,16 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
         writeln!(out, "young = {:?}", material.young.value)?;
         writeln!(out, "poisson = {:?}", material.poisson.value)?;
         if let Some(yield_stress) = &material.yield_stress {
-            let value = |m: &Option<super::At<f64>>| m.as_ref().map_or(0.0, |m| m.value);
             writeln!(out, "yield-stress = {:?}", yield_stress.value)?;
-            let linear = value(&material.isotropic);
-            writeln!(out, "hardening = {{ linear = {linear:?} }}")?;
-            let modulus = value(&material.kinematic);
-            writeln!(
-                out,
-                "kinematic = [{{ modulus = {modulus:?}, recall = 0.0 }}]"
-            )?;
+            let none = Hardening::Linear(0.0);
+            let hardening = material.isotropic.as_ref().map_or(&none, |h| &h.value);
+            writeln!(out, "hardening = {hardening}")?;
+            let terms = material.kinematic.iter().map(|[modulus, recall]| {
+                let (modulus, recall) = (modulus.value, recall.value);
+                format!("{{ modulus = {modulus:?}, recall = {recall:?} }}")
+            });
+            let terms: Vec<String> = terms.collect();
+            writeln!(out, "kinematic = [{}]", terms.join(", "))?;
         }
         let quadrature = deck.quadrature(material);
         if quadrature != BY_ELEMENT {
@@ -122,7 +125,7 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
             text(&contact.surface.value)
         )?;
         writeln!(out, "against = {}", text(&contact.against.value))?;
-        writeln!(out, "friction = {:?}", contact.friction.value)?;
+        writeln!(out, "friction = {}", contact.friction)?;
         if let Some(offset) = &contact.gap_offset {
             writeln!(out, "gap-offset = {:?}", offset.value)?;
         }

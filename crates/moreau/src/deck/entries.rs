@@ -4,6 +4,7 @@ use super::finding::At;
 use super::units::Units;
 use crate::driver::Increments;
 use crate::mesh::{CellKind, Integration};
+use std::fmt;
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -99,6 +100,33 @@ pub struct GroupEntry {
     pub part: At<Part>,
 }
 
+/// Isotropic hardening; shown as it is written in a deck.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Hardening {
+    /// Modulus.
+    Linear(f64),
+    /// Saturation and rate.
+    Voce([f64; 2]),
+    /// Strength, offset and exponent.
+    Swift([f64; 3]),
+    /// Plastic strain and stress.
+    Table(Vec<At<[f64; 2]>>),
+}
+
+impl fmt::Display for Hardening {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Linear(modulus) => write!(f, "{{ linear = {modulus:?} }}"),
+            Self::Voce(given) => write!(f, "{{ voce = {given:?} }}"),
+            Self::Swift(given) => write!(f, "{{ swift = {given:?} }}"),
+            Self::Table(rows) => {
+                let rows: Vec<[f64; 2]> = rows.iter().map(|row| row.value).collect();
+                write!(f, "{{ table = {rows:?} }}")
+            }
+        }
+    }
+}
+
 /// `[[material]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialEntry {
@@ -110,10 +138,10 @@ pub struct MaterialEntry {
     pub poisson: At<f64>,
     /// Initial yield stress; none: elastic.
     pub yield_stress: Option<At<f64>>,
-    /// Modulus of linear isotropic hardening.
-    pub isotropic: Option<At<f64>>,
-    /// Modulus of linear kinematic hardening.
-    pub kinematic: Option<At<f64>>,
+    /// Isotropic hardening.
+    pub isotropic: Option<At<Hardening>>,
+    /// Modulus and recall of each term of kinematic hardening.
+    pub kinematic: Vec<[At<f64>; 2]>,
     /// Quadrature, if given.
     pub quadrature: Option<At<Integration>>,
     /// Kinds of the cells that have it; known when the mesh is.
@@ -151,6 +179,33 @@ pub enum Adjust {
     Within(f64),
 }
 
+/// Friction of a contact; shown as it is written in a deck.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FrictionEntry {
+    /// Coefficient of Coulomb friction.
+    Coulomb(At<f64>),
+    /// Limit of the shear.
+    Tresca(At<f64>),
+    /// Coefficient, and the limit of the shear.
+    Limited(At<f64>, At<f64>),
+}
+
+impl fmt::Display for FrictionEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Coulomb(mu) => write!(f, "{:?}", mu.value),
+            Self::Tresca(limit) => write!(f, "{{ tresca = {:?} }}", limit.value),
+            Self::Limited(mu, limit) => {
+                write!(
+                    f,
+                    "{{ coulomb = {:?}, tau-max = {:?} }}",
+                    mu.value, limit.value
+                )
+            }
+        }
+    }
+}
+
 /// `[[contact]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactEntry {
@@ -158,8 +213,8 @@ pub struct ContactEntry {
     pub surface: At<String>,
     /// Tool.
     pub against: At<String>,
-    /// Coefficient of Coulomb friction.
-    pub friction: At<f64>,
+    /// Friction.
+    pub friction: FrictionEntry,
     /// Distance from the tool at which the surface touches.
     pub gap_offset: Option<At<f64>>,
     /// Whether nodes near the tool touch where they are.

@@ -81,13 +81,14 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
         let plastic = match &m.yield_stress {
             None => "elastic".to_owned(),
             Some(y) => {
-                let modulus =
-                    |m: &Option<moreau::deck::At<f64>>| m.as_ref().map_or(0.0, |m| m.value);
+                let hardening = match &m.isotropic {
+                    Some(h) => h.value.to_string(),
+                    None => "none".to_owned(),
+                };
                 format!(
-                    "yield stress {} {stress}, hardening {} isotropic and {} kinematic",
+                    "yield stress {} {stress}, isotropic hardening {hardening}, {} kinematic terms",
                     y.value,
-                    modulus(&m.isotropic),
-                    modulus(&m.kinematic)
+                    m.kinematic.len()
                 )
             }
         };
@@ -122,7 +123,7 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
             "contact    {} against {}, friction {}, {} points{}{}",
             contact.surface.value,
             contact.against.value,
-            contact.friction.value,
+            contact.friction,
             points.count(),
             contact
                 .gap_offset

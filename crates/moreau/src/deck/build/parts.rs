@@ -3,10 +3,12 @@
 
 use super::groups::HIDDEN;
 use crate::contact::{Ball, ContactError, Cylinder, Obstacle, Plane, Polyline};
-use crate::deck::entries::{Adjust, Deck, MaterialEntry, Shape};
-use crate::deck::finding::Findings;
+use crate::deck::entries::{Adjust, Deck, FrictionEntry, Hardening, MaterialEntry, Shape};
+use crate::deck::finding::{At, Findings};
 use crate::driver::{Analysis, Model, ModelError};
-use crate::laws::{Coulomb, Elastic, LawError, VonMises};
+use crate::laws::{
+    Coulomb, Elastic, Friction, Isotropic, LawError, LimitedCoulomb, Tresca, VonMises,
+};
 use crate::mesh::{CellKind, Integration, Mesh, MeshError};
 use std::ops::Range;
 
@@ -20,7 +22,7 @@ enum Law {
 /// What a model needs beside its mesh.
 pub(super) struct Parts {
     laws: Vec<Law>,
-    frictions: Vec<Coulomb>,
+    frictions: Vec<Friction>,
 }
 
 /// The laws; `None` if some are none.
@@ -29,31 +31,34 @@ pub(super) fn parts(deck: &Deck, findings: &mut Findings) -> Option<Parts> {
     for material in &deck.materials {
         match law(material) {
             Ok(law) => laws.push(law),
-            Err(error) => {
-                let span = culprit(material, &error);
-                findings.error(&span, error.to_string(), "out of range");
+            Err((span, problem)) => {
+                findings.error(&span, problem, "out of range");
             }
         }
         locking(material, findings);
     }
     let mut frictions = Vec::new();
     for contact in &deck.contacts {
-        match Coulomb::new(contact.friction.value) {
-            Ok(law) => frictions.push(law),
-            Err(error) => {
-                let span = &contact.friction.span;
-                findings.error(span, error.to_string(), "out of range");
+        match friction(&contact.friction) {
+            Ok(law) => {
+                if !law.resists_slip() {
+                    let (FrictionEntry::Coulomb(given)
+                    | FrictionEntry::Tresca(given)
+                    | FrictionEntry::Limited(given, _)) = &contact.friction;
+                    findings.warning(
+                        &given.span,
+                        format!(
+                            "the contact of \"{}\" is frictionless",
+                            contact.surface.value
+                        ),
+                        "friction 0",
+                    );
+                }
+                frictions.push(law);
             }
-        }
-        if contact.friction.value == 0.0 {
-            findings.warning(
-                &contact.friction.span,
-                format!(
-                    "the contact of \"{}\" is frictionless",
-                    contact.surface.value
-                ),
-                "friction 0",
-            );
+            Err((span, error)) => {
+                findings.error(&span, error.to_string(), "out of range");
+            }
         }
     }
     for tool in &deck.tools {
@@ -68,32 +73,106 @@ pub(super) fn parts(deck: &Deck, findings: &mut Findings) -> Option<Parts> {
     (findings.errors() == 0).then_some(Parts { laws, frictions })
 }
 
-fn law(material: &MaterialEntry) -> Result<Law, LawError> {
-    let (young, poisson) = (material.young.value, material.poisson.value);
-    let Some(yield_stress) = &material.yield_stress else {
-        return Ok(Law::Elastic(Elastic::new(young, poisson)?));
+/// A friction law; or what is wrong with it, and where.
+fn friction(entry: &FrictionEntry) -> Result<Friction, (Range<usize>, LawError)> {
+    let at = |given: &At<f64>| {
+        let span = given.span.clone();
+        move |error| (span, error)
     };
-    let value = |m: &Option<crate::deck::At<f64>>| m.as_ref().map_or(0.0, |m| m.value);
-    let law = VonMises::new(young, poisson, yield_stress.value)?
-        .with_isotropic(value(&material.isotropic))?
-        .with_kinematic(value(&material.kinematic))?;
+    Ok(match entry {
+        FrictionEntry::Coulomb(mu) => Coulomb::new(mu.value).map_err(at(mu))?.into(),
+        FrictionEntry::Tresca(limit) => Tresca::new(limit.value).map_err(at(limit))?.into(),
+        FrictionEntry::Limited(mu, limit) => LimitedCoulomb::new(mu.value, limit.value)
+            .map_err(|error| match error {
+                LawError::NegativeFriction { .. } => at(mu)(error),
+                _ => at(limit)(error),
+            })?
+            .into(),
+    })
+}
+
+/// A bulk law; or what is wrong with it, and where.
+fn law(material: &MaterialEntry) -> Result<Law, (Range<usize>, String)> {
+    let (young, poisson) = (material.young.value, material.poisson.value);
+    let moduli = |error: LawError| {
+        let at = match (&error, &material.yield_stress) {
+            (LawError::PoissonOutOfRange { .. }, _) => &material.poisson,
+            (LawError::NotPositive { name, .. }, Some(at)) if name.contains("yield") => at,
+            _ => &material.young,
+        };
+        (at.span.clone(), error.to_string())
+    };
+    let Some(yield_stress) = &material.yield_stress else {
+        return Ok(Law::Elastic(Elastic::new(young, poisson).map_err(moduli)?));
+    };
+    let mut law = VonMises::new(young, poisson, yield_stress.value).map_err(moduli)?;
+    if let Some(given) = &material.isotropic {
+        law = law.with_hardening(hardening(given, yield_stress)?);
+    }
+    for [modulus, recall] in &material.kinematic {
+        law = law
+            .with_recall(modulus.value, recall.value)
+            .map_err(|error| {
+                let at = match &error {
+                    LawError::Negative { name, .. } if name.contains("recall") => recall,
+                    _ => modulus,
+                };
+                (at.span.clone(), error.to_string())
+            })?;
+    }
     Ok(Law::VonMises(law))
 }
 
-/// Place of the value that a law complains about.
-fn culprit(material: &MaterialEntry, error: &LawError) -> Range<usize> {
-    let at = match error {
-        LawError::PoissonOutOfRange { .. } => Some(&material.poisson),
-        LawError::NotPositive { name, .. } if name.contains("yield") => {
-            material.yield_stress.as_ref()
-        }
-        LawError::Negative { name, .. } if name.contains("kinematic") => {
-            material.kinematic.as_ref()
-        }
-        LawError::Negative { .. } => material.isotropic.as_ref(),
-        _ => None,
+/// Relative difference of a yield stress and that at which a curve starts: what is rounded off in a
+/// deck, not another material.
+const SAME_YIELD: f64 = 0.01;
+
+/// Isotropic hardening, which must start at the yield stress; or what is wrong with it, and where.
+fn hardening(
+    given: &At<Hardening>,
+    yield_stress: &At<f64>,
+) -> Result<Isotropic, (Range<usize>, String)> {
+    let wrong = |error: LawError| (given.span.clone(), error.to_string());
+    let start = |stress: f64, span: &Range<usize>| match (stress / yield_stress.value - 1.0).abs() {
+        difference if difference <= SAME_YIELD => Ok(()),
+        _ => Err((
+            span.clone(),
+            format!(
+                "hardening starts at a stress of {stress:.6}, but yield-stress is {}",
+                yield_stress.value
+            ),
+        )),
     };
-    at.unwrap_or(&material.young).span.clone()
+    match &given.value {
+        Hardening::Linear(modulus) => Isotropic::linear(*modulus).map_err(wrong),
+        Hardening::Voce([saturation, rate]) => Isotropic::voce(*saturation, *rate).map_err(wrong),
+        Hardening::Swift([strength, offset, exponent]) => {
+            let law = Isotropic::swift(*strength, *offset, *exponent).map_err(wrong)?;
+            law.initial().map_or(Ok(()), |s| start(s, &given.span))?;
+            Ok(law)
+        }
+        Hardening::Table(rows) => {
+            let mut points: Vec<[f64; 2]> = rows.iter().map(|row| row.value).collect();
+            let mut added = 0;
+            match points.first() {
+                // The yield stress is the point that a table without one starts at.
+                Some(&[p, _]) if p > 0.0 => {
+                    points.insert(0, [0.0, yield_stress.value]);
+                    added = 1;
+                }
+                Some(&[_, stress]) => start(stress, &rows[0].span)?,
+                None => {}
+            }
+            Isotropic::table(&points).map_err(|error| match error {
+                LawError::Table { row, problem } if row > added && row - added <= rows.len() => {
+                    let row = row - added;
+                    let error = LawError::Table { row, problem };
+                    (rows[row - 1].span.clone(), error.to_string())
+                }
+                error => wrong(error),
+            })
+        }
+    }
 }
 
 /// The rule that does not lock for an element, or the one that the deck asks for.

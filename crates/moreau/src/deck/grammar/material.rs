@@ -1,9 +1,9 @@
 //! `[[material]]`: moduli as they are given; whether they define a law is for the laws to say.
 
 use super::not_yet;
-use crate::deck::entries::MaterialEntry;
+use crate::deck::entries::{Hardening, MaterialEntry};
 use crate::deck::finding::At;
-use crate::deck::reader::{self, Table};
+use crate::deck::reader::{self, Log, Table, Value};
 use crate::mesh::Integration;
 
 pub(super) fn read(table: Table<'_>) -> Option<MaterialEntry> {
@@ -24,10 +24,10 @@ pub(super) fn read(table: Table<'_>) -> Option<MaterialEntry> {
             None
         }
     });
-    for (key, given) in [("hardening", &isotropic), ("kinematic", &kinematic)] {
-        if let (Some(given), None) = (given, table.get("yield-stress")) {
+    for key in ["hardening", "kinematic"] {
+        if let (Some(given), None) = (table.get(key), table.get("yield-stress")) {
             log.borrow_mut().error(
-                &given.span,
+                &given.span(),
                 format!("{key} is given without a yield-stress"),
                 "an elastic material does not harden",
             );
@@ -47,44 +47,63 @@ pub(super) fn read(table: Table<'_>) -> Option<MaterialEntry> {
     })
 }
 
-fn isotropic(table: &Table<'_>) -> Option<At<f64>> {
+fn isotropic(table: &Table<'_>) -> Option<At<Hardening>> {
     let log = table.log();
     let value = table.get("hardening")?;
     let inner = reader::table(value, "hardening", "hardening", log)?;
-    for key in ["voce", "swift", "table"] {
-        if let Some(value) = inner.get(key) {
-            let what = format!("hardening = {{ {key} = … }}");
-            not_yet(log, &value.span(), &what, "use hardening = { linear = H }");
-            return None;
-        }
-    }
-    let linear = inner.number("linear");
+    let given = ["linear", "voce", "swift", "table"].map(|key| (key, inner.get(key)));
+    let given: Vec<_> = given
+        .iter()
+        .filter_map(|(k, v)| Some((*k, (*v)?)))
+        .collect();
     inner.finish();
-    linear
-}
-
-fn kinematic(table: &Table<'_>) -> Option<At<f64>> {
-    let log = table.log();
-    let value = table.get("kinematic")?;
-    let terms = reader::tables(value, "kinematic", "a kinematic term", log);
-    if terms.len() > 1 {
-        let instead = "use one term, kinematic = [ { modulus = H, recall = 0.0 } ]";
-        not_yet(log, &value.span(), "several kinematic terms", instead);
-        return None;
-    }
-    let term = terms.into_iter().next()?;
-    let modulus = term.number("modulus");
-    let recall = term.number_if("recall");
-    term.finish();
-    if let Some(recall) = recall.filter(|r| r.value != 0.0) {
-        let instead = "use recall = 0.0 (linear kinematic hardening)";
-        not_yet(
-            log,
-            &recall.span,
-            "kinematic hardening with recall",
-            instead,
+    let &[(key, law)] = given.as_slice() else {
+        log.borrow_mut().error(
+            &value.span(),
+            format!("hardening has {} laws, expected one", given.len()),
+            "expected one of linear, voce, swift and table",
         );
         return None;
+    };
+    let law = match key {
+        "linear" => Hardening::Linear(reader::number(law, key, log)?.value),
+        "voce" => Hardening::Voce(row(law, "voce", "[q_inf, b]", log)?.value),
+        "swift" => Hardening::Swift(row(law, "swift", "[k, e0, n]", log)?.value),
+        _ => {
+            let rows = reader::items(law, key, "an array of [p, stress]", log)?;
+            let rows = rows
+                .into_iter()
+                .map(|r| row(r, "a row of the table", "[p, stress]", log));
+            Hardening::Table(rows.collect::<Option<_>>()?)
+        }
+    };
+    Some(At::new(law, value.span()))
+}
+
+/// An array of N numbers.
+fn row<const N: usize>(
+    value: Value<'_>,
+    what: &str,
+    shown: &str,
+    log: &Log,
+) -> Option<At<[f64; N]>> {
+    let list = reader::numbers(value, what, log)?;
+    match <[f64; N]>::try_from(list.value) {
+        Ok(row) => Some(At::new(row, list.span)),
+        Err(_) => reader::wrong(value, what, shown, log),
     }
-    modulus
+}
+
+fn kinematic(table: &Table<'_>) -> Vec<[At<f64>; 2]> {
+    let mut terms = Vec::new();
+    for term in table.tables("kinematic", "a kinematic term") {
+        let modulus = term.number("modulus");
+        let recall = term.number_if("recall");
+        if let Some(modulus) = modulus {
+            let none = At::new(0.0, modulus.span.clone());
+            terms.push([modulus, recall.unwrap_or(none)]);
+        }
+        term.finish();
+    }
+    terms
 }

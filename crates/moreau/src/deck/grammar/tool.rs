@@ -1,7 +1,6 @@
 //! `[[tool]]` and `[[contact]]`: surfaces and pairs as they are given.
 
-use super::not_yet;
-use crate::deck::entries::{Adjust, Analysis, ContactEntry, Shape, ToolEntry};
+use crate::deck::entries::{Adjust, Analysis, ContactEntry, FrictionEntry, Shape, ToolEntry};
 use crate::deck::finding::At;
 use crate::deck::reader::{self, Table};
 
@@ -117,7 +116,7 @@ pub(super) fn read_contacts(root: &Table<'_>) -> Vec<ContactEntry> {
                 surface: surface?,
                 against: against?,
                 // A stand-in for what was refused, so that the names are still looked up.
-                friction: friction.unwrap_or(At::new(1.0, 0..0)),
+                friction: friction.unwrap_or(FrictionEntry::Coulomb(At::new(1.0, 0..0))),
                 gap_offset,
                 adjust,
             })
@@ -143,21 +142,31 @@ fn adjust(table: &Table<'_>) -> Option<At<Adjust>> {
     Some(At::new(adjust, value.span()))
 }
 
-fn friction(table: &Table<'_>) -> Option<At<f64>> {
+fn friction(table: &Table<'_>) -> Option<FrictionEntry> {
     let log = table.log();
     let value = table.need("friction", "a number (0 for none)")?;
     if !value.get_ref().is_table() {
-        return reader::number(value, "friction", log);
+        return reader::number(value, "friction", log).map(FrictionEntry::Coulomb);
     }
     let inner = reader::table(value, "friction", "friction", log)?;
-    for key in ["tresca", "tau-max"] {
-        if let Some(value) = inner.get(key) {
-            let instead = "use friction = { coulomb = … }";
-            not_yet(log, &value.span(), &format!("friction with {key}"), instead);
-            return None;
+    let law = match inner.number_if("tresca") {
+        Some(limit) => Some(FrictionEntry::Tresca(limit)),
+        None => match (inner.number("coulomb"), inner.number_if("tau-max")) {
+            (Some(mu), Some(limit)) => Some(FrictionEntry::Limited(mu, limit)),
+            (mu, _) => mu.map(FrictionEntry::Coulomb),
+        },
+    };
+    if matches!(law, Some(FrictionEntry::Tresca(_))) {
+        for key in ["coulomb", "tau-max"] {
+            if let Some(value) = inner.get(key) {
+                log.borrow_mut().error(
+                    &value.span(),
+                    format!("friction has tresca and {key}, expected one law"),
+                    "a limit of Coulomb friction is tau-max, tresca stands alone",
+                );
+            }
         }
     }
-    let coulomb = inner.number("coulomb");
     inner.finish();
-    coulomb
+    law
 }
