@@ -79,9 +79,7 @@ impl Diagnosis {
 
     /// For `run.json`.
     pub(super) fn json(&self) -> serde_json::Value {
-        let worst = |w: &Imbalance| {
-            serde_json::json!({ "node": w.node, "position": w.position, "force": w.force })
-        };
+        let worst = |w: &Imbalance| serde_json::json!({ "node": w.node, "position": w.position, "force": w.force });
         let flip = |f: &Flip| {
             let statuses: Vec<&str> = f.statuses.iter().map(|s| status_name(*s)).collect();
             serde_json::json!({ "node": f.node, "position": f.position, "statuses": statuses })
@@ -145,7 +143,11 @@ impl fmt::Display for Diagnosis {
             writeln!(f, "  worst balanced nodes")?;
         }
         for w in &self.worst {
-            writeln!(f, "    node {} at {:?}: {:.3e}", w.node, w.position, w.force)?;
+            writeln!(
+                f,
+                "    node {} at {:?}: {:.3e}",
+                w.node, w.position, w.force
+            )?;
         }
         if !self.flips.is_empty() {
             writeln!(f, "  contact points whose status does not settle")?;

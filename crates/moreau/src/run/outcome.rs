@@ -321,10 +321,7 @@ impl fmt::Display for Outcome {
             let e = &self.energies;
             let [open, stick, slip] = self.contacts;
             let energy = units.energy();
-            writeln!(
-                f,
-                "  contact       {open} open, {stick} stick, {slip} slip"
-            )?;
+            writeln!(f, "  contact       {open} open, {stick} stick, {slip} slip")?;
             writeln!(
                 f,
                 "  energy        external {:.6e} {energy} = stored {:.6e} + plastic {:.6e} + \

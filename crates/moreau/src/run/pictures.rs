@@ -80,7 +80,9 @@ pub(super) fn usual_field(deck: &Deck) -> &'static str {
 pub(super) fn label(name: &str, units: Units) -> String {
     let unit = match name {
         n if n.contains("strain") => "–",
-        n if n.contains("stress") || n == "von_mises" || n.starts_with("pressure") => units.stress(),
+        n if n.contains("stress") || n == "von_mises" || n.starts_with("pressure") => {
+            units.stress()
+        }
         n if n.starts_with("displacement") => units.length(),
         n if n.contains("force") || n == "out_of_balance" => units.force(),
         _ => return name.replace('_', " "),
