@@ -265,6 +265,7 @@ impl Outcome {
             "newton_iterations": self.newton_iterations,
             "contact_iterations": self.contact_iterations,
             "factorisations": self.factorisations,
+            "cuts": self.cuts,
             "peak_memory_mb": peak_memory(),
             "dofs": self.dofs,
             "threads": self.threads,

@@ -42,7 +42,8 @@ pub(super) fn report<const D: usize>(
         deck => resolved,
         history => forces(&history, deck),
         contact => if D == 2 { tractions(&contacts, deck) } else { None },
-        data => viewer(mesh, deck, directory, last)?.to_string(),
+        // No name in it may end the script.
+        data => viewer(mesh, deck, directory, last)?.to_string().replace("</", "<\\/"),
     };
     let mut environment = Environment::new();
     let html = environment
