@@ -40,7 +40,7 @@ impl<const D: usize> Condensation<D> {
                 let mut row = BTreeMap::new();
                 for (a, w) in footings[c].weights() {
                     for i in 0..D {
-                        let coefficient = w * k.to_local[(j, i)];
+                        let coefficient = w * k.axes[(i, j)];
                         if let Some(dof) = system.interface_index(D * a + i)
                             && coefficient != 0.0
                         {

@@ -109,14 +109,13 @@ impl<const D: usize> Footing<D> {
 /// A contact point at an instant: frame, gap and slip.
 ///
 /// Where Dirichlet conditions hold components of the relative displacement, the law lives on the
-/// free subspace F alone: n is replaced by its projection on F, the tangents are those in F, and
-/// the components left over are switched off (zero slip, zero force).
+/// free subspace F alone: n acts where it is free, the tangents are those in F, and the components
+/// left over are switched off (zero slip, zero force).
 #[derive(Debug, Clone)]
 pub(crate) struct Kinematics<const D: usize> {
-    /// Rows: u = B v, from relative displacements to gap and slip; zero where switched off.
-    pub(crate) to_local: SMatrix<f64, D, D>,
-    /// Unit normal and tangents, for forces in space.
-    axes: SMatrix<f64, D, D>,
+    /// Unit normal and tangents: for forces in space, and from relative displacements to gap and
+    /// slip; zero where switched off.
+    pub(crate) axes: SMatrix<f64, D, D>,
     /// Gap at the end of the step and slip of the step \[mm\].
     pub(crate) u: Local<D>,
     /// Components that take part in the law.
@@ -155,9 +154,7 @@ impl<const D: usize> Kinematics<D> {
         out.axes.set_column(0, n);
         for k in 0..dimension {
             let e = q.column(k);
-            let scale = if k == 0 { length } else { 1.0 };
             out.active[k] = true;
-            out.to_local.set_row(k, &(e.transpose() * scale));
             if k > 0 {
                 out.axes.set_column(k, &e);
                 out.u[k] = e.dot(slip);
@@ -171,7 +168,6 @@ impl<const D: usize> Kinematics<D> {
         let mut u = Local::zeros();
         u[0] = gap;
         Self {
-            to_local: SMatrix::zeros(),
             axes: SMatrix::zeros(),
             u,
             active: [false; D],
@@ -221,7 +217,7 @@ mod tests {
         let k = Kinematics::new(&n, 0.15, &SVector::<f64, 2>::new(0.0, -0.1), [false, true]);
         assert_eq!(k.active, [true, false]);
         assert_eq!(k.u, Local::<2>::new(0.15, 0.0));
-        assert_eq!(k.to_local, nalgebra::Matrix2::new(0.0, 1.0, 0.0, 0.0));
+        assert_eq!(k.axes, nalgebra::Matrix2::new(0.0, 0.0, 1.0, 0.0));
     }
 
     #[test]
@@ -231,7 +227,7 @@ mod tests {
         let d_u = SVector::<f64, 2>::new(0.0, 0.3);
         let k = Kinematics::new(&n, 0.3 * c, &d_u, [false, true]);
         // Moving up by 0.3 opens the gap by 0.3 cos; the force n t_n does the same work.
-        assert!((k.to_local * d_u - k.u).norm() < 1e-15);
+        assert!((k.local_force(&d_u) - k.u).norm() < 1e-15);
         let t = Local::<2>::new(2.0, 0.0);
         assert!((k.force(&t).dot(&d_u) - t.dot(&k.u)).abs() < 1e-15);
     }

@@ -354,7 +354,7 @@ fn unknown_names_are_refused_with_the_nearest() -> Fallible {
         .contact("block.bottom", "floor", Coulomb::new(0.1)?)
         .err();
     assert!(
-        matches!(error, Some(ModelError::UnknownTool { nearest: None, .. })),
+        matches!(error, Some(ModelError::UnknownOpposite { .. })),
         "{error:?}"
     );
     let error = model()?.material("blocks", steel()?, RULE).err();

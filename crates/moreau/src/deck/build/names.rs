@@ -30,19 +30,7 @@ pub(super) fn check<const D: usize>(
             &mut used,
             findings,
         );
-        let is_facets = groups.is_some_and(|g| g.mesh.facet_group(&contact.against.value).is_ok());
-        if is_facets && !deck.tool_names.contains(&contact.against.value) {
-            findings
-                .error_with(
-                    &contact.against.span,
-                    "contact between two deformable bodies: not available yet",
-                    "not available yet",
-                    "give the name of a [[tool]]",
-                )
-                .about(Class::Unavailable);
-        } else {
-            tool(&contact.against, deck, &mut used, findings);
-        }
+        opposite(&contact.against, deck, groups, &mut used, findings);
     }
     for step in &deck.steps {
         for condition in &step.conditions {
@@ -162,6 +150,31 @@ fn tool(name: &At<String>, deck: &Deck, used: &mut BTreeSet<String>, findings: &
             .error(&name.span, message, "not a tool")
             .about(Class::Names);
     }
+}
+
+/// A tool, or the surface of another body.
+fn opposite<const D: usize>(
+    name: &At<String>,
+    deck: &Deck,
+    groups: Option<&Groups<D>>,
+    used: &mut BTreeSet<String>,
+    findings: &mut Findings,
+) {
+    used.insert(name.value.clone());
+    let Some(groups) = groups else { return };
+    let is_tool = deck.tool_names.contains(&name.value);
+    if is_tool || groups.is_broken(&name.value) || groups.mesh.facet_group(&name.value).is_ok() {
+        return;
+    }
+    let facets = groups
+        .names()
+        .filter(|n| groups.mesh.facet_group(n).is_ok());
+    let tools = deck.tool_names.iter().map(String::as_str);
+    let near = did_you_mean(&name.value, tools.chain(facets));
+    let message = format!("no tool or side of a body \"{}\"{near}", name.value);
+    findings
+        .error(&name.span, message, "not a tool")
+        .about(Class::Names);
 }
 
 /// Names of tools and steps that are given twice. Groups complain for themselves.
