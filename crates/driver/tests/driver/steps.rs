@@ -3,7 +3,7 @@
 
 use moreau_contact::{Ball, GaussSeidel, Penalty, Plane};
 use moreau_driver::{
-    Axis, Driver, Model, ModelError, Nesting, Ramp, Reader, Settings, Step, StepError,
+    Axis, Driver, Increments, Model, ModelError, Nesting, Ramp, Reader, Settings, Step, StepError,
 };
 use moreau_laws::{Coulomb, Elastic, Status, VonMises};
 use moreau_mesh::{CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform};
@@ -442,7 +442,7 @@ fn a_state_that_is_read_back_goes_on_to_the_bit() {
             let mut other = virgin();
             let mut from = Reader::new(numbers);
             other.read(&mut from).expect("fits");
-            let mut ramp = Ramp::read(step, &mut from).expect("fits");
+            let mut ramp = Ramp::read(step, Increments::equal(4), &mut from).expect("fits");
             for report in &reports[k..] {
                 let again = other.proceed(&mut ramp, &mut |_| {}).expect("converges");
                 assert_eq!(&again, report);
@@ -485,4 +485,97 @@ fn iterates_are_told() {
         .map(|s| s.2)
         .collect();
     assert_eq!(last, report.residuals);
+}
+
+/// Increments that grow: few of them, of at most the greatest length, and the end is met exactly.
+#[test]
+fn easy_increments_grow() {
+    let increments = Increments {
+        start: 0.02,
+        min: None,
+        max: 0.3,
+    };
+    let step = Step::new("load").pressure("block.top", 40.0);
+    let mut equal = on_floor([6, 2], 0.0, 0.3, Settings::default());
+    equal.run(&step, 50, |_, _| {}).expect("held");
+    let mut driver = on_floor([6, 2], 0.0, 0.3, Settings::default());
+    let reports = driver.run(&step, increments, |_, _| {}).expect("held");
+    let ends: Vec<f64> = reports.iter().map(|r| r.fraction).collect();
+    assert!(ends.len() < 20 && ends[0] == 0.02, "{ends:?}");
+    assert_eq!(ends.last(), Some(&1.0));
+    assert!(
+        ends.windows(2)
+            .all(|e| e[1] > e[0] && e[1] - e[0] <= 0.3 + 1e-12)
+    );
+    // Proportional loading of an elastic block: the path does not matter.
+    for node in 0..driver.mesh().nodes().len() {
+        let difference = driver.displacement(node) - equal.displacement(node);
+        assert!(difference.norm() < 1e-10);
+    }
+}
+
+/// Beyond the limit load, increments are cut down to the least length, and no further.
+#[test]
+fn increments_are_cut_to_the_least() {
+    let increments = Increments {
+        start: 0.1,
+        min: Some(1e-3),
+        max: 0.2,
+    };
+    let mut driver = on_floor([6, 2], 0.0, 0.3, Settings::default());
+    let step = Step::new("load")
+        .fix("block.left", &[Axis::X])
+        .pressure("block.top", 2000.0);
+    match driver.run(&step, increments, |_, _| {}) {
+        Err(StepError::Stopped {
+            reached, smallest, ..
+        }) => {
+            assert!((0.1..0.9).contains(&reached), "{reached}");
+            assert!((1e-3..2e-3).contains(&smallest), "{smallest}");
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+/// A surface that touches at a distance, or where it is, carries what one on the floor does.
+#[test]
+fn gap_offsets_and_adjusted_gaps_move_nothing() {
+    let load = Step::new("load")
+        .fix("block.left", &[Axis::X])
+        .displace("punch", Axis::Y, -0.05);
+    let mut flush = on_floor([6, 2], 0.0, 0.2, Settings::default());
+    flush.run(&load, 2, |_, _| {}).expect("converges");
+    let model = |floor: f64| {
+        Model::new(mesh([6, 2]), PlaneStrain::default())
+            .material("block", steel(), Integration::Reduced)
+            .and_then(|m| {
+                let plane = Plane::new([0.0, floor], [0.0, 1.0])?;
+                m.tool("floor", plane)
+            })
+            .and_then(|m| m.contact("block.bottom", "floor", coulomb(0.2)))
+            .expect("valid")
+    };
+    let models = [
+        model(-0.3).gap_offset(0.3),
+        model(-0.01).adjust(0.02),
+        model(0.015).adjust(0.02),
+        model(-0.31).gap_offset(0.3).and_then(|m| m.adjust(0.02)),
+    ];
+    for driver in models {
+        let mut driver = Driver::new(driver.expect("valid"), Settings::default()).expect("valid");
+        driver.run(&load, 2, |_, _| {}).expect("converges");
+        let (a, b) = (
+            driver.tool_force("floor").expect("exists"),
+            flush.tool_force("floor").expect("exists"),
+        );
+        assert!((a - b).norm() < 1e-8 * b.norm(), "{a} {b}");
+    }
+    // A gap beyond the tolerance stays one.
+    let far = model(-0.3).adjust(0.02).expect("valid");
+    let mut far = Driver::new(far, Settings::default()).expect("valid");
+    let held = load.fix("block.right", &[Axis::X, Axis::Y]);
+    far.run(&held, 1, |_, _| {}).expect("converges");
+    assert_eq!(far.tool_force("floor").expect("exists").norm(), 0.0);
+    assert!(model(0.0).gap_offset(f64::NAN).is_err());
+    assert!(model(0.0).adjust(-1.0).is_err());
 }

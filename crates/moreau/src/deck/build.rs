@@ -154,6 +154,7 @@ fn setup<const D: usize, H: Cells<D>>(
     }
     free_motions(&driver, deck, &stages, &groups, findings);
     conditions::doubts(deck, findings);
+    conditions::inner_surfaces(deck, &groups, findings);
     Some(Setup {
         driver,
         stages,

@@ -236,6 +236,28 @@ load = [{ on = "top", traction = [0, 1] }]
 }
 
 #[test]
+fn surfaces_inside_a_body_are_a_warning() {
+    let deck = r#"
+units = "mm-N-MPa"
+analysis = "plane-strain"
+mesh.file = "../../crates/mesh/tests/data/quad8.4b.msh"
+material = [{ on = "plate", young = 1000.0, poisson = 0.3 }]
+[[step]]
+name = "pull"
+increments = 1
+fix = [{ on = "bottom", u = ["y"] }, { on = "left", u = ["x"] }]
+load = [{ on = "cut", pressure = 1 }]
+"#;
+    let (_, problem, findings) = open_in(deck, &folder("docs/examples"));
+    assert!(problem.is_some());
+    let out = findings.render("deck.toml", deck, false);
+    assert!(
+        out.contains("3 of the 3 facets of \"cut\" lie between two cells"),
+        "{out}"
+    );
+}
+
+#[test]
 fn two_hundred_thousand_cells_are_checked() {
     let lines = uniform(0.0, 1.0, 448);
     let mesh = block2("block", CellKind::Quad4, &lines, &lines).expect("valid");

@@ -5,6 +5,8 @@ use super::groups::Groups;
 use crate::deck::entries::{Action, Deck};
 use crate::deck::finding::Findings;
 use crate::driver::{Axis, Step};
+use crate::mesh::Facet;
+use std::collections::HashSet;
 
 const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
@@ -104,5 +106,39 @@ pub(super) fn doubts(deck: &Deck, findings: &mut Findings) {
             "nothing loads the model: no move, load or tool motion is other than zero",
             "no load",
         );
+    }
+}
+
+/// Contacts and tractions on facets between two cells: what lies inside a body touches nothing.
+pub(super) fn inner_surfaces<const D: usize>(
+    deck: &Deck,
+    groups: &Groups<D>,
+    findings: &mut Findings,
+) {
+    // The sides of a block are on its boundary.
+    if deck.mesh_file.is_none() {
+        return;
+    }
+    let boundary: HashSet<Facet> = groups.mesh.boundary_facets().into_iter().collect();
+    let loads = deck
+        .steps
+        .iter()
+        .flat_map(|s| &s.conditions)
+        .filter(|c| matches!(c.action, Action::Pressure(_) | Action::Traction(_)));
+    let surfaces = deck.contacts.iter().map(|c| &c.surface);
+    for on in surfaces.chain(loads.map(|c| &c.on)) {
+        let facets = groups.mesh.facet_group(&on.value).unwrap_or_default();
+        let inside = facets.iter().filter(|f| !boundary.contains(f)).count();
+        if inside > 0 {
+            findings.warning(
+                &on.span,
+                format!(
+                    "{inside} of the {} facets of \"{}\" lie between two cells, inside a body",
+                    facets.len(),
+                    on.value
+                ),
+                "not on the surface",
+            );
+        }
     }
 }
