@@ -1,5 +1,6 @@
 //! The tasks of the workspace, `cargo xtask …`; not the `moreau` command that users run.
 
+mod contact_bench;
 #[cfg(test)]
 mod scratch;
 mod tidy;
@@ -27,6 +28,8 @@ struct Cli {
 enum Task {
     /// Run the verification cases and write a report
     Verify(verify::Args),
+    /// Run all contact solvers over a folder of discrete frictional contact problems
+    ContactBench(contact_bench::Args),
     /// Check the architecture of the workspace from its manifests and sources
     Tidy,
 }
@@ -34,6 +37,7 @@ enum Task {
 fn main() -> ExitCode {
     let done = match Cli::parse().task {
         Task::Verify(args) => verify::run(&args),
+        Task::ContactBench(args) => contact_bench::run(&args),
         Task::Tidy => tidy::run(),
     };
     match done {
