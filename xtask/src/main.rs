@@ -1,6 +1,7 @@
 //! The tasks of the workspace, `cargo xtask …`; not the `moreau` command that users run.
 
 mod bench;
+mod contact_bench;
 #[cfg(test)]
 mod scratch;
 mod tidy;
@@ -30,6 +31,8 @@ enum Task {
     Verify(verify::Args),
     /// Time the punched block on meshes of growing size
     Bench(bench::Args),
+    /// Run all contact solvers over a folder of discrete frictional contact problems
+    ContactBench(contact_bench::Args),
     /// Check the architecture of the workspace from its manifests and sources
     Tidy,
 }
@@ -38,6 +41,7 @@ fn main() -> ExitCode {
     let done = match Cli::parse().task {
         Task::Verify(args) => verify::run(&args),
         Task::Bench(args) => bench::run(&args),
+        Task::ContactBench(args) => contact_bench::run(&args),
         Task::Tidy => tidy::run(),
     };
     match done {

@@ -2,9 +2,9 @@
 //! is computed is the business of the package `verification`.
 
 mod comparison;
-mod csv;
+pub mod csv;
 mod execute;
-mod files;
+pub mod files;
 mod groups;
 mod number;
 mod paint;

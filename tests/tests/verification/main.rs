@@ -6,6 +6,7 @@ mod cattaneo;
 mod contact_patch;
 mod cook;
 mod cylinder;
+mod discrete;
 mod energy;
 mod faults;
 mod greco;

@@ -4,12 +4,13 @@ use super::Violation;
 use super::lexer::Kind;
 use super::source::Source;
 
-/// Linear algebra: a library to be replaced in one file for sparse and in one for dense matrices.
-const ALGEBRA: (&str, [&str; 2]) = (
+/// Linear algebra: a library to be replaced in one file for each kind of matrix.
+const ALGEBRA: (&str, [&str; 3]) = (
     "faer",
     [
         "crates/driver/src/cholesky.rs",
         "crates/contact/src/dense.rs",
+        "crates/contact/src/sparse.rs",
     ],
 );
 /// Plots: one file, somewhere below this.

@@ -62,7 +62,7 @@ impl<const D: usize> LocalSolver<D> for Admm {
         let mut factor = factorise(problem, rho);
         let mut balanced = 0;
         for iterations in 1..=limit {
-            if best.residual.scaled <= relative {
+            if best.residual.size() <= relative {
                 break;
             }
             let rhs: Vec<Local<D>> = (0..contacts)
@@ -89,7 +89,7 @@ impl<const D: usize> LocalSolver<D> for Admm {
             }
             if iterations % LOOK == 0 {
                 let now = LocalSolution::at(problem, z.clone(), iterations, NAME);
-                if now.residual.scaled < best.residual.scaled {
+                if now.residual.size() < best.residual.size() {
                     best = now;
                 }
                 let ratio = (primal / dual).sqrt() / rho;

@@ -78,7 +78,7 @@ impl<const D: usize> LocalSolver<D> for Auto {
         ];
         let mut last = best.force.clone();
         for (method, warm) in methods {
-            if best.residual.scaled <= self.tolerance {
+            if best.residual.size() <= self.tolerance {
                 break;
             }
             let (point, reason) = match method.solve(problem, warm.then_some(&last)) {
@@ -87,10 +87,10 @@ impl<const D: usize> LocalSolver<D> for Auto {
             };
             iterations += point.iterations;
             if let Some(reason) = reason {
-                attempts.push((point.solver, point.residual.scaled, reason));
+                attempts.push((point.solver, point.residual.size(), reason));
             }
             last.clone_from(&point.force);
-            if point.residual.scaled < best.residual.scaled {
+            if point.residual.size() < best.residual.size() {
                 best = point;
             }
         }
@@ -114,7 +114,7 @@ impl Auto {
         };
         let mut best = LocalSolution::at(problem, r.clone(), 0, NAME);
         let mut sweeps = 0;
-        while best.residual.scaled > self.tolerance {
+        while best.residual.size() > self.tolerance {
             for _ in 0..LOOK {
                 sweeps += 1;
                 if sweep(&exact, &mut r) <= 0.1 * self.tolerance {
@@ -122,9 +122,9 @@ impl Auto {
                 }
             }
             let now = LocalSolution::at(problem, r.clone(), sweeps, NAME);
-            let rate = (now.residual.scaled / best.residual.scaled).powf(1.0 / LOOK as f64);
-            let left = (self.tolerance / now.residual.scaled).ln() / rate.ln();
-            if now.residual.scaled < best.residual.scaled {
+            let rate = (now.residual.size() / best.residual.size()).powf(1.0 / LOOK as f64);
+            let left = (self.tolerance / now.residual.size()).ln() / rate.ln();
+            if now.residual.size() < best.residual.size() {
                 best = now;
             }
             // The first sweeps find out what is open; they are not typical.

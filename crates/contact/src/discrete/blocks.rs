@@ -129,7 +129,7 @@ const FULL: f64 = 0.15;
 /// A factorised block matrix.
 pub(super) enum Factor {
     Dense(Lu),
-    Sparse(SparseLu),
+    Sparse(Box<SparseLu>),
 }
 
 impl Factor {
@@ -158,7 +158,7 @@ impl Factor {
                 scalar.starts.push(scalar.columns.len());
             }
         }
-        SparseLu::new(&scalar).map(Self::Sparse)
+        SparseLu::new(&scalar).map(|lu| Self::Sparse(Box::new(lu)))
     }
 
     /// x of A x = b; `None` where A was singular to rounding.

@@ -28,23 +28,23 @@ impl<const D: usize> LocalSolver<D> for GaussSeidel {
             alpha: 0.0,
             centre: &r.clone(),
         };
-        let mut milestone = (0, best.residual.scaled);
+        let mut milestone = (0, best.residual.size());
         // R. P. Brent's search for a cycle: iterates against one of the past.
         let (mut past, mut since, mut span) = (r.clone(), 0, 1);
         let mut reason = Reason::Iterations;
         for sweeps in 1..=limit {
-            if best.residual.scaled <= tolerance {
+            if best.residual.size() <= tolerance {
                 break;
             }
             let change = sweep(&exact, &mut r);
             since += 1;
             if sweeps % LOOK == 0 || change <= tolerance {
                 let now = LocalSolution::at(problem, r.clone(), sweeps, NAME);
-                if now.residual.scaled < best.residual.scaled {
+                if now.residual.size() < best.residual.size() {
                     best = now;
                 }
-                if best.residual.scaled < 0.9 * milestone.1 {
-                    milestone = (sweeps, best.residual.scaled);
+                if best.residual.size() < 0.9 * milestone.1 {
+                    milestone = (sweeps, best.residual.size());
                 } else if sweeps > milestone.0 + PATIENCE {
                     reason = Reason::Stalled;
                     break;
@@ -56,7 +56,7 @@ impl<const D: usize> LocalSolver<D> for GaussSeidel {
                 .zip(&past)
                 .map(|(r, p)| (r - p).norm_squared())
                 .sum();
-            if far <= (f64::EPSILON * f64::EPSILON) * size && best.residual.scaled > tolerance {
+            if far <= (f64::EPSILON * f64::EPSILON) * size && best.residual.size() > tolerance {
                 reason = if since == 1 {
                     Reason::Stalled
                 } else {

@@ -152,6 +152,7 @@ impl<const D: usize> GlobalProblem<D> {
             local,
             residual: Residual {
                 scaled: over(norms.scaled, norms.forces),
+                of_load: over(norms.scaled, norms.scaled_loads),
                 unscaled: over(norms.unscaled, norms.forces.max(norms.displacements)),
             },
         }

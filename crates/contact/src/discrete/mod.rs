@@ -1,7 +1,7 @@
 //! The discrete frictional contact problem u = W r + q and the methods that solve it; not the
 //! condensed problem t = S (u − g) − f of the driver, whose S need not be invertible.
 //!
-//! Every method is judged by the same [`Residual`], whichever it iterates on.
+//! Every method is judged by the same residual, whichever map it iterates on.
 
 mod admm;
 mod auto;
@@ -13,6 +13,8 @@ mod one_contact;
 mod problem;
 mod projection;
 mod proximal;
+#[cfg(test)]
+mod tests;
 mod tresca;
 
 pub use admm::Admm;
@@ -102,7 +104,7 @@ impl std::fmt::Display for Reason {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
     "{} left a residual of {:.3e} after {} iterations, expected at most {tolerance:.3e}: {reason}",
-    .best.solver, .best.residual.scaled, .best.iterations
+    .best.solver, .best.residual.size(), .best.iterations
 )]
 pub struct Unsolved<const D: usize> {
     /// The best point that the method met.
@@ -140,7 +142,7 @@ fn judge<const D: usize>(
     tolerance: f64,
     reason: Reason,
 ) -> Result<LocalSolution<D>, Unsolved<D>> {
-    if best.residual.scaled <= tolerance {
+    if best.residual.size() <= tolerance {
         Ok(best)
     } else {
         Err(Unsolved {

@@ -234,7 +234,7 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
                 at.map.norm_squared() * p.compliance(i)
             })
             .sum();
-        let residual = p.residual(&r, &u).scaled;
+        let residual = p.residual(&r, &u).size();
         Iterate {
             r,
             u,

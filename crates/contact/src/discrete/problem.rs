@@ -4,7 +4,7 @@
 use super::BlockMatrix;
 use crate::ContactError;
 use moreau_laws::{Coulomb, Local, Status};
-use nalgebra::{Matrix3, SMatrix};
+use nalgebra::{DMatrix, DVector, Matrix3, SMatrix};
 
 /// The discrete frictional contact problem in local form: find r and u with
 ///
@@ -33,9 +33,22 @@ pub struct LocalProblem<const D: usize> {
 pub struct Residual {
     /// |F_ρ| / max(|r|, |ρ q|) with ρ = 1/|W_ii|₂ of each contact: the same in all units.
     pub scaled: f64,
+    /// |F_ρ| / |ρ q|: remains large where forces run away and make the other two small.
+    pub of_load: f64,
     /// |F_1| / max(|q|, |r|, |u|), the measure of the program Siconos: adds forces to displacements,
     /// so that it depends on the units.
     pub unscaled: f64,
+}
+
+/// How much more of the load than of the forces may be left: forces may exceed the load where bodies
+/// are pressed together, but not by orders of magnitude.
+const LOAD: f64 = 1e3;
+
+impl Residual {
+    /// What the methods bring below their tolerance: `scaled`, and a thousandth of `of_load`.
+    pub fn size(&self) -> f64 {
+        self.scaled.max(self.of_load / LOAD)
+    }
 }
 
 impl<const D: usize> LocalProblem<D> {
@@ -134,6 +147,7 @@ impl<const D: usize> LocalProblem<D> {
         let norms = self.norms(r, u);
         Residual {
             scaled: over(norms.scaled, norms.forces.max(norms.scaled_loads)),
+            of_load: over(norms.scaled, norms.scaled_loads),
             unscaled: over(
                 norms.unscaled,
                 norms.forces.max(norms.displacements).max(norms.loads),
@@ -168,6 +182,41 @@ impl<const D: usize> LocalProblem<D> {
         (0..self.contacts())
             .map(|i| self.friction[i].status(&u[i], &r[i], 1.0 / self.compliance[i]))
             .collect()
+    }
+
+    /// Numerical rank of W, by Cholesky's factorisation of its symmetric part with pivots down to
+    /// 10⁻¹⁰ of the largest diagonal entry. Where it is less than the number of components the forces
+    /// need not be unique. The cost is that of `components · rank²`.
+    pub fn rank(&self) -> usize {
+        let n = D * self.contacts();
+        let mut half = DMatrix::<f64>::zeros(n, n);
+        for i in 0..self.contacts() {
+            for (j, block) in self.operator.row(i) {
+                for (k, l) in (0..D).flat_map(|k| (0..D).map(move |l| (k, l))) {
+                    half[(D * i + k, D * j + l)] += 0.5 * block[(k, l)];
+                    half[(D * j + l, D * i + k)] += 0.5 * block[(k, l)];
+                }
+            }
+        }
+        let mut left = half.diagonal();
+        let least = 1e-10 * left.max();
+        let mut columns: Vec<DVector<f64>> = Vec::new();
+        while columns.len() < n {
+            let pivot = left.imax();
+            if left[pivot] <= least {
+                break;
+            }
+            let root = left[pivot].sqrt();
+            let mut column = half.column(pivot).into_owned();
+            for earlier in &columns {
+                column.axpy(-earlier[pivot], earlier, 1.0);
+            }
+            column /= root;
+            left.zip_apply(&column, |left, c| *left -= c * c);
+            left[pivot] = 0.0;
+            columns.push(column);
+        }
+        columns.len()
     }
 
     /// Largest ratio μ/μ_c over the contacts with its contact, μ_c = W_nn/|W_nt| of the diagonal

@@ -21,11 +21,11 @@ impl<const D: usize> LocalSolver<D> for Uzawa {
         let mut anderson = Anderson::default();
         let mut t = start(problem, guess);
         let mut best = LocalSolution::at(problem, t.clone(), 0, NAME);
-        let mut milestone = (0, best.residual.scaled);
+        let mut milestone = (0, best.residual.size());
         let mut u = best.displacement.clone();
         let mut reason = Reason::Iterations;
         for iterations in 1..=self.tolerance.iterations {
-            if best.residual.scaled <= self.tolerance.relative {
+            if best.residual.size() <= self.tolerance.relative {
                 break;
             }
             let image: Vec<Local<D>> = (0..t.len())
@@ -37,11 +37,11 @@ impl<const D: usize> LocalSolver<D> for Uzawa {
             let now = LocalSolution::at(problem, image, iterations, NAME);
             t = split(&anderson.next(&stack(&t), stack(&now.force)));
             u = problem.displacement(&t);
-            if now.residual.scaled < best.residual.scaled {
+            if now.residual.size() < best.residual.size() {
                 best = now;
             }
-            if best.residual.scaled < 0.9 * milestone.1 {
-                milestone = (iterations, best.residual.scaled);
+            if best.residual.size() < 0.9 * milestone.1 {
+                milestone = (iterations, best.residual.size());
             } else if iterations > milestone.0 + PATIENCE {
                 reason = Reason::Stalled;
                 break;

@@ -124,10 +124,10 @@ impl<const D: usize> LocalSolver<D> for ProximalNewton {
         let mut now = LocalSolution::at(problem, start(problem, guess), 0, NAME);
         let mut best = now.clone();
         let mut centre = now.force.clone();
-        let (mut iterations, mut idle, mut milestone) = (0, 0, best.residual.scaled);
+        let (mut iterations, mut idle, mut milestone) = (0, 0, best.residual.size());
         let (mut factor, mut stride) = (1.0, 1.0);
-        while best.residual.scaled > relative && iterations < limit && idle < PATIENCE {
-            let size = now.residual.scaled;
+        while best.residual.size() > relative && iterations < limit && idle < PATIENCE {
+            let size = now.residual.size();
             let softened = Proximal {
                 problem,
                 alpha: (factor * SOFTNESS * size).clamp(ALPHA[0], ALPHA[1]),
@@ -148,7 +148,7 @@ impl<const D: usize> LocalSolver<D> for ProximalNewton {
                 factor = (HARDER * factor).max(1.0);
             }
             let next = LocalSolution::at(problem, run.force, iterations, NAME);
-            let change = next.residual.scaled / size;
+            let change = next.residual.size() / size;
             stride = if reached && size < NEAR && (0.5..2.0).contains(&change) {
                 (STRIDE * stride).min(LONGEST)
             } else {
@@ -162,12 +162,12 @@ impl<const D: usize> LocalSolver<D> for ProximalNewton {
             } else {
                 centre.clone_from(&now.force);
             }
-            if now.residual.scaled < best.residual.scaled {
+            if now.residual.size() < best.residual.size() {
                 best = now.clone();
             }
             idle += 1;
-            if best.residual.scaled < 0.9 * milestone {
-                milestone = best.residual.scaled;
+            if best.residual.size() < 0.9 * milestone {
+                milestone = best.residual.size();
                 idle = 0;
             }
         }

@@ -49,10 +49,10 @@ impl<const D: usize> LocalSolver<D> for TrescaFixedPoint {
         let mut r = start(problem, guess);
         let mut best = LocalSolution::at(problem, r.clone(), 0, NAME);
         let (mut sweeps, mut idle) = (0, 0);
-        let mut milestone = best.residual.scaled;
+        let mut milestone = best.residual.size();
         let mut reason = Reason::Iterations;
-        let mut size = best.residual.scaled;
-        while best.residual.scaled > relative && sweeps < limit {
+        let mut size = best.residual.size();
+        while best.residual.size() > relative && sweeps < limit {
             let thresholds: Vec<f64> = (problem.friction().iter().zip(&r))
                 .map(|(law, r)| law.friction() * r[0].max(0.0))
                 .collect();
@@ -63,13 +63,13 @@ impl<const D: usize> LocalSolver<D> for TrescaFixedPoint {
                 }
             }
             let now = LocalSolution::at(problem, r.clone(), sweeps, NAME);
-            size = now.residual.scaled;
-            if size < best.residual.scaled {
+            size = now.residual.size();
+            if size < best.residual.size() {
                 best = now;
             }
             idle += 1;
-            if best.residual.scaled < 0.9 * milestone {
-                milestone = best.residual.scaled;
+            if best.residual.size() < 0.9 * milestone {
+                milestone = best.residual.size();
                 idle = 0;
             } else if idle > PATIENCE {
                 reason = Reason::Stalled;
