@@ -47,9 +47,14 @@ pub struct Certificate {
 
 impl Certificate {
     /// The certificate of displacements u and forces t under the laws of friction.
-    pub fn new<const D: usize>(friction: &[Friction], u: &[Local<D>], t: &[Local<D>]) -> Self {
+    pub fn new<const D: usize>(
+        friction: &[impl Copy + Into<Friction>],
+        u: &[Local<D>],
+        t: &[Local<D>],
+    ) -> Self {
         let mut certificate = Self::default();
-        for ((law, u), t) in friction.iter().zip(u).zip(t) {
+        for ((&law, u), t) in friction.iter().zip(u).zip(t) {
+            let law: Friction = law.into();
             let admissible = law.project(t);
             let mut open = *u;
             open[0] = open[0].max(0.0);
