@@ -512,7 +512,9 @@ fn hertz_line_contact_of_two_elastic_bodies() -> Fallible {
 #[test]
 fn a_ring_shrunk_on_another_is_pressed_evenly() -> Fallible {
     const RADII: [f64; 3] = [10.0, 20.0, 35.0];
-    const INTERFERENCE: f64 = 5e-3;
+    // Small against the radii, and large against the 1e-6 mm by which quadratic edges miss a circle:
+    // these are felt as a ripple.
+    const INTERFERENCE: f64 = 2e-2;
     let ring = |name: &str, radii: [f64; 2], cells: [usize; 2]| {
         let (r, angle) = (
             uniform(radii[0], radii[1], cells[0]),
@@ -534,8 +536,8 @@ fn a_ring_shrunk_on_another_is_pressed_evenly() -> Fallible {
     let ratio = |p: f64, q: f64| (p * p + q * q) / (p * p - q * q);
     let exact = INTERFERENCE / (b * ((ratio(c, b) + nu_o) / e_o + (ratio(b, a) - nu_i) / e_i));
     for swapped in [false, true] {
-        let inner = ring("inner", [a, b + INTERFERENCE], [6, 17])?;
-        let mesh = ring("outer", [b, c], [6, 24])?.joined(inner)?;
+        let inner = ring("inner", [a, b + 0.5 * INTERFERENCE], [8, 23])?;
+        let mesh = ring("outer", [b - 0.5 * INTERFERENCE, c], [8, 32])?.joined(inner)?;
         let mut surfaces = ["outer.left", "inner.right"];
         if swapped {
             surfaces.reverse();

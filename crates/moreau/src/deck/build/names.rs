@@ -171,9 +171,9 @@ fn opposite<const D: usize>(
         .filter(|n| groups.mesh.facet_group(n).is_ok());
     let tools = deck.tool_names.iter().map(String::as_str);
     let near = did_you_mean(&name.value, tools.chain(facets));
-    let message = format!("no tool or side of a body \"{}\"{near}", name.value);
+    let message = format!("no tool \"{}\"{near}", name.value);
     findings
-        .error(&name.span, message, "not a tool")
+        .error(&name.span, message, "neither a tool nor a side of a body")
         .about(Class::Names);
 }
 
