@@ -771,8 +771,8 @@ fn a_run_is_drawn_again_from_its_files() {
 #[test]
 fn algorithms_are_compared() {
     let deck = punched()
-        .replace("increments = 20", "increments = 2")
-        .replace("y = -0.2", "y = -0.02");
+        .replace("increments = 20", "increments = 1")
+        .replace("y = -0.2", "y = -0.01");
     let deck = deck.split("[expect]").next().expect("a deck");
     let at = directory("bench");
     let file = at.join("deck.toml");
@@ -788,7 +788,9 @@ fn algorithms_are_compared() {
         assert!(line.starts_with(name), "{line}");
         let off = line.split_whitespace().last().expect("a number");
         let off: f64 = off.parse().expect("a number");
-        assert!(off.abs() < 1e-3, "{told}");
+        // The springs of the penalty give way; what is exact agrees.
+        let most = if name == "penalty" { 1e-2 } else { 1e-8 };
+        assert!(off.abs() < most, "{told}");
     }
 }
 
