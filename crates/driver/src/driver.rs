@@ -365,7 +365,11 @@ impl<const D: usize> Driver<D> {
                 }
                 Err(error @ StepError::Model(_)) => return Err(error),
                 Err(cause) => {
-                    length = 0.5 * (target - done);
+                    // Halved exactly, and until it is not what has just failed.
+                    length *= 0.5;
+                    while length >= (1.0 - 1e-9) * (target - done) {
+                        length *= 0.5;
+                    }
                     cuts += 1;
                     if length < smallest {
                         let last = reports.last().map_or(0.0, |r| r.plastic_fraction);
