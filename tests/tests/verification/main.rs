@@ -12,6 +12,7 @@ mod hertz;
 mod hole;
 mod incline;
 mod invariance;
+mod laws;
 mod modes;
 mod newton;
 mod notch;
