@@ -66,11 +66,8 @@ fn macneal_harder_patch_is_exact_in_plane_strain() -> Fallible {
     let law = Elastic::new(E, NU)?;
     let exact = law.stress(&mandel(g));
     for (kind, rule) in plane_kinds() {
-        let model = Model::new(plane_patch(kind)?, PlaneStrain::default()).material(
-            "patch",
-            law.clone(),
-            rule,
-        )?;
+        let model =
+            Model::new(plane_patch(kind)?, PlaneStrain::default()).material("patch", law, rule)?;
         let mut driver = Driver::new(model, Settings::default())?;
         let field = |x: &[f64; 2]| {
             let u = g * nalgebra::Vector2::from(*x) + nalgebra::Vector2::new(1e-4, -2e-4);
@@ -102,7 +99,7 @@ fn macneal_harder_patch_is_exact_in_axial_symmetry() -> Fallible {
     for (kind, rule) in plane_kinds() {
         for inner in [0.0, 0.5] {
             let mesh = plane_patch(kind)?.map(|[r, z]| [r + inner, z])?;
-            let model = Model::new(mesh, Axisymmetric).material("patch", law.clone(), rule)?;
+            let model = Model::new(mesh, Axisymmetric).material("patch", law, rule)?;
             let mut driver = Driver::new(model, Settings::default())?;
             let outline = driver.mesh().node_group("patch.outline")?;
             let field = |x: &[f64; 2]| [a * x[0], b * x[1]];
@@ -125,11 +122,8 @@ fn macneal_harder_patch_is_exact_in_space() -> Fallible {
     let law = Elastic::new(E, NU)?;
     let exact = law.stress(&mandel(g));
     for kind in [CellKind::Hex8, CellKind::Tet4] {
-        let model = Model::new(solid_patch(kind)?, Solid).material(
-            "patch",
-            law.clone(),
-            Integration::Full,
-        )?;
+        let model =
+            Model::new(solid_patch(kind)?, Solid).material("patch", law, Integration::Full)?;
         let mut driver = Driver::new(model, Settings::default())?;
         let outline = driver.mesh().node_group("patch.outline")?;
         let inner = driver.mesh().nodes().len() - outline.len();
@@ -235,8 +229,7 @@ fn quadratic_field_is_exact_on_quadratic_parallelograms() -> Fallible {
             }
             let mesh = block2("patch", kind, &uniform(0.0, 3.0, 3), &uniform(0.0, 2.0, 3))?
                 .map(|[x, y]| [x + 0.4 * y, y + 0.2 * x])?;
-            let model =
-                Model::new(mesh, PlaneStrain::default()).material("patch", law.clone(), rule)?;
+            let model = Model::new(mesh, PlaneStrain::default()).material("patch", law, rule)?;
             let mut driver = Driver::new(model, Settings::default())?;
             let outline: Vec<usize> = {
                 let mesh = driver.mesh();
