@@ -20,8 +20,8 @@ impl Numbers for Sym2 {
 pub struct Response<S> {
     /// Stress at the end of the step, σ₁ \[MPa\].
     pub stress: Sym2,
-    /// Consistent tangent ∂σ₁/∂Δε \[MPa\], 6×6; where the flow is not associated its symmetric
-    /// part, with which a symmetric solver still converges, but linearly.
+    /// Consistent tangent ∂σ₁/∂Δε \[MPa\], 6×6 and symmetric; where the flow is not associated a
+    /// symmetric matrix near it, with which Newton's method converges linearly.
     pub tangent: Sym4,
     /// State at the end of the step.
     pub state: S,

@@ -6,7 +6,6 @@ use crate::drucker_prager::DruckerPrager;
 use crate::elastic::Elastic;
 use crate::error::{LawError, positive};
 use moreau_mandel::{Sym2, Sym4, deviator, deviatoric_projector, identity, trace};
-use nalgebra::{Matrix2, Vector2};
 
 /// What a Drucker–Prager material remembers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -37,9 +36,11 @@ impl Numbers for DruckerPragerState {
 /// s = s_trial − 2G λ n and σ_m = σ_m,trial − K_c k_t λ; where that would turn s around, it returns
 /// to the apex s = 0, σ_m = c₀. Either way (Δεᵖ, σ₁) is extremal for the bipotential.
 ///
-/// With k_t < k_f there is no potential and ∂σ₁/∂Δε is not symmetric. The tangent of the response is
-/// the positive semi-definite part of its symmetric part, so that a symmetric solver still converges,
-/// but linearly.
+/// With k_t < k_f there is no potential and ∂σ₁/∂Δε = C is not symmetric. Its symmetric part is
+/// indefinite and Newton's method with it diverges. The tangent of the response is that of associated
+/// flow with the friction k_t: symmetric and positive semi-definite, it lets the same strains flow
+/// freely as C does, T εᵖ = C εᵖ = 0, and differs from it along one strain only. Convergence is
+/// linear, at a rate that grows with k_f − k_t: some forty iterations at k_t = 0, k_f = ½.
 ///
 /// Source: M. Hjiaj, J. Fortin and G. de Saxcé, *International Journal of Engineering Science* 41
 /// (2003) 1109-1143.
@@ -75,16 +76,13 @@ impl ElasticDruckerPrager {
     /// Tangent on the cone, with λ and the norm of the trial deviator.
     fn tangent_on_cone(&self, n: &Sym2, lambda: f64, norm: f64) -> Sym4 {
         let (k, g) = (self.elastic.bulk_modulus(), self.elastic.shear_modulus());
-        let (k_f, k_t) = (self.plastic.friction(), self.plastic.dilatancy());
-        // Along n and along the unit pressure d: the elastic stiffness less what flows, a⊗b.
-        let (a, b) = (
-            Vector2::new(2.0 * g, 3f64.sqrt() * k * k_t),
-            Vector2::new(2.0 * g, 3f64.sqrt() * k * k_f),
-        );
-        let flow = a * b.transpose() / (2.0 * g + k * k_f * k_t);
-        let block = Matrix2::from_diagonal(&Vector2::new(2.0 * g, 3.0 * k))
-            - 0.5 * (flow + flow.transpose());
-        let [[nn, nd], [_, dd]] = positive_part(&block);
+        let k_t = self.plastic.dilatancy();
+        // Along n and along the unit pressure d: the elastic stiffness less what flows, a⊗a.
+        let (a_n, a_d) = (2.0 * g, 3f64.sqrt() * k * k_t);
+        let weight = 1.0 / (2.0 * g + k * k_t * k_t);
+        let nn = 2.0 * g - weight * a_n * a_n;
+        let nd = -weight * a_n * a_d;
+        let dd = 3.0 * k - weight * a_d * a_d;
         let d = identity() / 3f64.sqrt();
         // Across n the deviator turns with the trial.
         let across = 2.0 * g * (1.0 - 2.0 * g * lambda / norm);
@@ -93,21 +91,6 @@ impl ElasticDruckerPrager {
             + nd * (n * d.transpose() + d * n.transpose())
             + dd * d * d.transpose()
     }
-}
-
-/// The positive semi-definite part of a symmetric matrix that has a positive eigenvalue.
-fn positive_part(m: &Matrix2<f64>) -> [[f64; 2]; 2] {
-    let [a, b, c] = [m[(0, 0)], m[(0, 1)], m[(1, 1)]];
-    let (mean, radius) = (0.5 * (a + c), (0.5 * (a - c)).hypot(b));
-    if mean >= radius {
-        return [[a, b], [b, c]];
-    }
-    // λ e⊗e of the larger eigenvalue alone, from Cayley and Hamilton.
-    let weight = 0.5 * (mean + radius) / radius;
-    [
-        [weight * (a - mean + radius), weight * b],
-        [weight * b, weight * (c - mean + radius)],
-    ]
 }
 
 impl BulkLaw for ElasticDruckerPrager {

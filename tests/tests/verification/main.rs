@@ -14,6 +14,7 @@ mod hertz;
 mod hole;
 mod incline;
 mod invariance;
+mod laws;
 mod modes;
 mod newton;
 mod notch;
