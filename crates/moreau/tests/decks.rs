@@ -317,11 +317,6 @@ fn what_is_not_available_is_refused_by_name() {
             "gap-offset",
         ),
         (
-            "against = \"foundation\"",
-            "against = \"block.top\"",
-            "deformable",
-        ),
-        (
             "plane = { point = [0, 0], normal = [0, 1] }",
             "polyline = [[0, 0], [1, 0]]",
             "polyline",
@@ -385,6 +380,7 @@ fn a_resolved_deck_is_the_same_deck() {
     for text in [
         DECK,
         include_str!("../../../docs/examples/indentation-flat-punch.toml"),
+        include_str!("../../../docs/examples/block-dragged-on-block.toml"),
         include_str!("../../../docs/examples/block-opening-sliding-sticking.toml"),
         include_str!("../../../docs/examples/cylinder-pressed-into-block.toml"),
     ] {
