@@ -7,7 +7,8 @@ use moreau::driver::{Axis, Driver, Loading, Model, ModelError, Nesting, Settings
 use moreau::laws::{Coulomb, Elastic, Status};
 use moreau::mandel::Sym2;
 use moreau::mesh::{
-    CellKind, Integration, Mesh, NodeKind, Pairing, PlaneStrain, Solid, block2, block3, uniform,
+    Axisymmetric, CellKind, Integration, Mesh, NodeKind, Pairing, PlaneStrain, Solid, block2,
+    block3, uniform,
 };
 use nalgebra::{Rotation2, Vector2};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -383,6 +384,91 @@ fn a_pressure_passes_through_a_body_between_two_others() -> Fallible {
         assert!(error <= 1e-10, "stress off by {error:.2e}");
         let middle = driver.contact_force("middle")?;
         assert!(middle.norm() <= 1e-10 * PRESSURE * WIDTH, "{middle}");
+    }
+    Ok(())
+}
+
+/// The corner of a block is a contact point on the floor, and opposite to those of a wall.
+#[test]
+fn a_block_in_a_corner_is_held_by_two_other_bodies() -> Fallible {
+    const SIDE: f64 = 3.0;
+    const PUSH: f64 = 30.0;
+    for kind in [CellKind::Quad4, CellKind::Quad8] {
+        let block = |name: &str, x: [f64; 2], y: [f64; 2], n: usize| {
+            block2(name, kind, &uniform(x[0], x[1], n), &uniform(y[0], y[1], n))
+        };
+        let mut mesh = block("block", [0.0, SIDE], [0.0, SIDE], 3)?
+            .joined(block("floor", [0.0, SIDE], [-1.0, 0.0], 4)?)?
+            .joined(block("wall", [-1.0, 0.0], [0.0, SIDE], 2)?)?;
+        mesh.node_group_where("foot", "wall.left", |x| x[1] == 0.0)?;
+        let law = Coulomb::new(0.0)?;
+        let mut model = Model::new(mesh, PlaneStrain::default());
+        for name in ["block", "floor", "wall"] {
+            model = model.material(name, Elastic::new(E, NU)?, Integration::Full)?;
+        }
+        let model = model.contact("block.bottom", "floor.top", law)?.contact(
+            "wall.right",
+            "block.left",
+            law,
+        )?;
+        let mut driver = Driver::new(model, Settings::default())?;
+        let step = Step::new("push")
+            .fix("floor.bottom", &[Axis::Y])
+            .fix("floor.left", &[Axis::X])
+            .fix("wall.left", &[Axis::X])
+            .fix("foot", &[Axis::Y])
+            .pressure("block.top", PRESSURE)
+            .pressure("block.right", PUSH);
+        driver.run(&step, 1, |_, _| {})?;
+        for point in driver.points() {
+            let [x, y] = point.position;
+            let x_stress = if y > 0.0 { -PUSH } else { 0.0 };
+            let y_stress = if x > 0.0 { -PRESSURE } else { 0.0 };
+            let z_stress = NU * (x_stress + y_stress);
+            let exact = Sym2::from_column_slice(&[x_stress, y_stress, z_stress, 0.0, 0.0, 0.0]);
+            let error = (point.stress - exact).norm() / PRESSURE;
+            assert!(
+                error <= 1e-10,
+                "{kind}: stress off by {error:.2e} at {x}, {y}"
+            );
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn a_uniform_pressure_passes_between_two_discs() -> Fallible {
+    for (kind, other) in [
+        (CellKind::Quad4, CellKind::Quad8),
+        (CellKind::Quad8, CellKind::Quad8),
+        (CellKind::Quad8, CellKind::Tri3),
+    ] {
+        for swapped in [false, true] {
+            let stack = Stack {
+                kinds: [kind, other],
+                swapped,
+                ..Stack::new(kind, [3, 4])
+            };
+            let [own, opposite] = stack.surfaces();
+            let model = Model::new(stack.mesh()?, Axisymmetric)
+                .material("upper", Elastic::new(E, NU)?, Integration::Full)?
+                .material("lower", Elastic::new(E / 9.0, NU)?, Integration::Full)?
+                .contact(own, opposite, Coulomb::new(0.0)?)?;
+            let mut driver = Driver::new(model, Settings::default())?;
+            let step = Step::new("press")
+                .fix("upper.left", &[Axis::X])
+                .fix("lower.left", &[Axis::X])
+                .fix("lower.bottom", &[Axis::Y])
+                .pressure("upper.top", PRESSURE);
+            driver.run(&step, 1, |_, _| {})?;
+            let error = stress_error(&driver, [0.0, -PRESSURE, 0.0, 0.0, 0.0, 0.0]);
+            assert!(
+                error <= 1e-10,
+                "{kind} {other} {swapped}: stress off by {error:.2e}"
+            );
+            let force = action_is_reaction(&driver, &stack)?;
+            close("resultant", force[1], PRESSURE * PI * WIDTH * WIDTH, 1e-11);
+        }
     }
     Ok(())
 }

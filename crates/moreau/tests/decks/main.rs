@@ -306,11 +306,6 @@ fn what_is_not_available_is_refused_by_name() {
     for (from, to, name) in [
         ("0.3", "0.3\nquadrature = \"b-bar\"", "b-bar"),
         (
-            "against = \"foundation\"",
-            "against = \"block.top\"",
-            "deformable",
-        ),
-        (
             "[expect]",
             "[[step]]\nname=\"b\"\nincrements=1\ntools=[{name=\"foundation\",force=[0,1]}]\n[expect]",
             "driven by a force",
@@ -436,6 +431,7 @@ fn a_resolved_deck_is_the_same_deck() {
     for text in [
         DECK,
         include_str!("../../../../docs/examples/indentation-flat-punch.toml"),
+        include_str!("../../../../docs/examples/block-dragged-on-block.toml"),
         include_str!("../../../../docs/examples/block-opening-sliding-sticking.toml"),
         include_str!("../../../../docs/examples/cylinder-pressed-into-block.toml"),
         include_str!("../../../../docs/examples/punch-on-gmsh-mesh.toml"),
