@@ -2,7 +2,9 @@
 //! close, tools that roll off, steps that are cut, supports that are released.
 
 use moreau_contact::{Ball, GaussSeidel, Penalty, Plane};
-use moreau_driver::{Axis, Driver, Model, Nesting, Settings, Step, StepError};
+use moreau_driver::{
+    Axis, Driver, Model, ModelError, Nesting, Ramp, Reader, Settings, Step, StepError,
+};
 use moreau_laws::{Coulomb, Elastic, Status, VonMises};
 use moreau_mesh::{CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform};
 
@@ -404,4 +406,83 @@ fn gauss_seidel_says_that_it_cannot_hold_a_floating_body() {
             .contains("Gauss-Seidel needs bodies held without contact"),
         "{error}"
     );
+}
+
+/// Written before each of its increments and read by a virgin driver of the same model, a run goes
+/// on to the bit, with the same work.
+#[test]
+fn a_state_that_is_read_back_goes_on_to_the_bit() {
+    let press = Step::new("press")
+        .fix("block.left", &[Axis::X])
+        .displace("punch", Axis::Y, -0.1);
+    let lift = Step::new("lift").fix("block.left", &[Axis::X]);
+    let bits = |driver: &Driver<2>| -> Vec<u64> {
+        let mut numbers = Vec::new();
+        driver.write(&mut numbers);
+        numbers.into_iter().map(f64::to_bits).collect()
+    };
+    let virgin = || on_floor([6, 2], 0.0, 0.3, Settings::default());
+    for step in [&press, &lift] {
+        let mut driver = virgin();
+        if step == &lift {
+            driver.run(&press, 2, |_, _| {}).expect("converges");
+        }
+        let mut ramp = driver.begin(step, 4).expect("valid");
+        let mut saved = Vec::new();
+        let mut reports = Vec::new();
+        while !ramp.is_done() {
+            let mut numbers = Vec::new();
+            driver.write(&mut numbers);
+            ramp.write(&mut numbers);
+            saved.push(numbers);
+            reports.push(driver.proceed(&mut ramp, &mut |_| {}).expect("converges"));
+        }
+        assert!(step == &lift || reports.iter().any(|r| r.plastic_fraction > 0.0));
+        for (k, numbers) in saved.iter().enumerate() {
+            let mut other = virgin();
+            let mut from = Reader::new(numbers);
+            other.read(&mut from).expect("fits");
+            let mut ramp = Ramp::read(step, &mut from).expect("fits");
+            for report in &reports[k..] {
+                let again = other.proceed(&mut ramp, &mut |_| {}).expect("converges");
+                assert_eq!(&again, report);
+            }
+            assert_eq!(bits(&other), bits(&driver));
+        }
+        // Of another mesh, or too short.
+        let mut other = on_floor([5, 2], 0.0, 0.3, Settings::default());
+        let error = other.read(&mut Reader::new(&saved[0])).expect_err("unlike");
+        assert!(matches!(error, ModelError::Saved { .. }), "{error}");
+        let half = &saved[0][..saved[0].len() / 2];
+        assert!(virgin().read(&mut Reader::new(half)).is_err());
+    }
+}
+
+/// Every iterate is told, those of attempts that fail too.
+#[test]
+fn iterates_are_told() {
+    let settings = Settings {
+        iterations: 3,
+        ..Settings::default()
+    };
+    let mut driver = on_floor([6, 2], 0.0, 0.3, settings);
+    let press = Step::new("press")
+        .fix("block.left", &[Axis::X])
+        .displace("punch", Axis::Y, -0.1);
+    let mut ramp = driver.begin(&press, 1).expect("valid");
+    let mut seen = Vec::new();
+    let report = driver.proceed(&mut ramp, &mut |i| {
+        assert_eq!(i.d_u.len(), i.residual.len());
+        let largest = i.residual.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
+        assert_eq!(largest, i.out_of_balance);
+        seen.push((i.cuts, i.newton, i.out_of_balance));
+    });
+    let report = report.expect("converges once it is short enough");
+    assert!(report.cuts > 0 && seen[0].0 == 0);
+    let last: Vec<f64> = seen
+        .iter()
+        .filter(|s| s.0 == report.cuts && s.1 > 0)
+        .map(|s| s.2)
+        .collect();
+    assert_eq!(last, report.residuals);
 }

@@ -73,6 +73,8 @@ fn every_example_is_as_expected() {
             "history.svg",
             "contact.svg",
             "deformed.svg",
+            "report.html",
+            "log.jsonl",
         ] {
             assert!(results.join(file).exists(), "{name}: {file}");
         }
@@ -213,8 +215,26 @@ fn exit_status_tells_what_happened() {
     let rows = fs::read_to_string(results.join("history.csv")).expect("a history");
     assert!(rows.lines().count() > 3);
     let json = fs::read_to_string(results.join("run.json")).expect("a summary");
-    assert!(json.contains("not converged"));
+    let json: serde_json::Value = serde_json::from_str(&json).expect("json");
+    assert_eq!(json["status"], "not converged");
+    assert!(
+        json["error"]
+            .as_str()
+            .is_some_and(|e| e.contains("limit load"))
+    );
+    assert_eq!(json["diagnosis"]["worst"].as_array().map(Vec::len), Some(5));
+    let worst = &json["diagnosis"]["worst"];
+    assert!(worst[0]["force"].as_f64() >= worst[4]["force"].as_f64());
+    assert_eq!(worst[0]["position"].as_array().map(Vec::len), Some(2));
+    let advice = json["diagnosis"]["suggestion"].as_str().expect("one");
+    assert!(
+        advice.contains("\"punch\"") && advice.contains("move"),
+        "{advice}"
+    );
+    assert!(err.contains(advice) && out.contains("nodes farthest out of balance"));
     assert!(results.join("deformed.svg").exists());
+    let failed = fs::read(results.join("failed.vtu")).expect("the last attempt");
+    assert!(text(&failed).contains("out_of_balance"));
 
     assert_eq!(moreau(&["run", "no-such-deck.toml"]).status.code(), Some(1));
     assert_eq!(moreau(&["fly"]).status.code(), Some(1));
@@ -308,4 +328,273 @@ fn a_contact_that_never_closes_is_told() {
     let (status, out, err, _) = run("hover", &hover, &[]);
     assert_eq!(status, 0, "{out}{err}");
     assert!(out.contains("never closed"), "{out}");
+}
+
+/// Two steps, the second without the punch: plastic flow, friction, release.
+fn pressed_and_released(increments: usize) -> String {
+    let deck = punched().replace("increments = 20", &format!("increments = {increments}"));
+    let head = deck.split("[expect]").next().expect("a deck").to_owned();
+    head + "[[step]]\nname = \"release\"\nincrements = 4\n\
+            fix = [{ on = \"block.left\", u = [\"x\"] }]\n[output]\ncheckpoint = 3\n"
+}
+
+fn copy(from: &Path, to: &Path) {
+    // Nothing may be there yet.
+    let _ = fs::remove_dir_all(to);
+    fs::create_dir_all(to.join("checkpoint")).expect("a directory");
+    for directory in [PathBuf::new(), "checkpoint".into()] {
+        for entry in fs::read_dir(from.join(&directory)).expect("a directory") {
+            let path = entry.expect("an entry").path();
+            if path.is_file() {
+                let name = path.file_name().expect("a name");
+                fs::copy(&path, to.join(&directory).join(name)).expect("a copy");
+            }
+        }
+    }
+}
+
+fn names(directory: &Path) -> Vec<String> {
+    let entries = fs::read_dir(directory).expect("a directory");
+    let name = |e: fs::DirEntry| e.file_name().to_string_lossy().into_owned();
+    let mut names: Vec<String> = entries.map(|e| name(e.expect("an entry"))).collect();
+    names.sort();
+    names
+}
+
+/// All files of two directories are equal to the byte, but for times.
+fn equal_but_for_times(a: &Path, b: &Path) {
+    assert_eq!(names(a), names(b));
+    for name in names(a) {
+        let read = |d: &Path| fs::read(d.join(&name)).unwrap_or_default();
+        let timeless = |text: &str| {
+            let mut v: serde_json::Value = serde_json::from_str(text).expect("json");
+            for key in ["seconds", "peak_memory_mb", "threads"] {
+                v[key] = 0.into();
+            }
+            v
+        };
+        match name.as_str() {
+            "checkpoint" | "report.html" => {}
+            "log.jsonl" => {
+                let lines = |d: &Path| text(&read(d)).lines().map(timeless).collect::<Vec<_>>();
+                assert_eq!(lines(a), lines(b));
+            }
+            "run.json" => assert_eq!(timeless(&text(&read(a))), timeless(&text(&read(b)))),
+            _ => assert!(read(a) == read(b), "{name} differs"),
+        }
+    }
+}
+
+fn resume(at: &Path, more: &[&str]) -> (i32, String) {
+    let mut arguments = vec!["resume", at.to_str().expect("a path"), "--quiet"];
+    arguments.extend(more);
+    let output = moreau(&arguments);
+    (
+        output.status.code().expect("a status"),
+        text(&output.stderr),
+    )
+}
+
+/// From the last checkpoint, or from the one before a torn one, a run ends to the bit as if it had
+/// never stopped.
+#[test]
+fn a_resumed_run_is_the_uninterrupted_one() {
+    let (status, _, err, whole) = run("whole", &pressed_and_released(10), &["--quiet"]);
+    assert_eq!(status, 0, "{err}");
+    let kept = names(&whole.join("checkpoint"));
+    assert_eq!(kept, ["increment-000009.ckpt", "increment-000012.ckpt"]);
+
+    // What a crash leaves: rows and files beyond the checkpoint, the last of them cut off.
+    let crashed = whole.with_file_name("crashed");
+    copy(&whole, &crashed);
+    fs::remove_file(crashed.join("run.json")).expect("was there");
+    let history = fs::read(crashed.join("history.csv")).expect("a history");
+    fs::write(crashed.join("history.csv"), &history[..history.len() - 17]).expect("shorter");
+    assert_eq!(resume(&crashed, &[]), (0, String::new()));
+    equal_but_for_times(&whole, &crashed);
+
+    // The newest checkpoint torn, or altered: the one before it, in the step before.
+    for length in [1000, usize::MAX] {
+        copy(&whole, &crashed);
+        let newest = crashed.join("checkpoint").join(&kept[1]);
+        let mut bytes = fs::read(&newest).expect("a checkpoint");
+        bytes.truncate(length);
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+        fs::write(&newest, bytes).expect("written");
+        assert_eq!(resume(&crashed, &["--threads", "1"]), (0, String::new()));
+        equal_but_for_times(&whole, &crashed);
+    }
+
+    // None whole, or of another deck: told.
+    for name in &kept {
+        let path = crashed.join("checkpoint").join(name);
+        fs::write(path, b"moreau checkpoint 1\n").expect("written");
+    }
+    let (status, err) = resume(&crashed, &[]);
+    assert!(status == 1 && err.contains("torn"), "{status} {err}");
+    copy(&whole, &crashed);
+    let deck = fs::read_to_string(crashed.join("deck.resolved.toml")).expect("a deck");
+    let other = deck.replace("poisson = 0.3", "poisson = 0.29");
+    fs::write(crashed.join("deck.resolved.toml"), other).expect("written");
+    let (status, err) = resume(&crashed, &[]);
+    assert!(
+        status == 1 && err.contains("another deck"),
+        "{status} {err}"
+    );
+    assert_eq!(resume(&directory("empty"), &[]).0, 1);
+}
+
+/// Killed at some moment, or asked to stop: it goes on from the last checkpoint.
+#[cfg(unix)]
+#[test]
+fn a_run_that_is_killed_or_interrupted_goes_on() {
+    let (status, _, err, whole) = run("long", &pressed_and_released(30), &["--quiet"]);
+    assert_eq!(status, 0, "{err}");
+    let file = whole.with_file_name("deck.toml");
+    for signal in ["-KILL", "-INT"] {
+        let out = whole.with_file_name(&signal[1..]);
+        let mut child = Command::new(env!("CARGO_BIN_EXE_moreau"))
+            .args(["run", file.to_str().expect("a path"), "--quiet", "--out"])
+            .arg(&out)
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .expect("it starts");
+        let rows = || {
+            let history = fs::read_to_string(out.join("history.csv"));
+            history.map_or(0, |h| h.lines().count())
+        };
+        while rows() < 10 && child.try_wait().expect("a child").is_none() {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        let number = child.id().to_string();
+        let _ = Command::new("kill")
+            .args([signal, number.as_str()])
+            .status();
+        let ended = child.wait_with_output().expect("it ends");
+        if signal == "-INT" && ended.status.code() == Some(2) {
+            let told = text(&ended.stderr);
+            assert!(told.contains("moreau resume"), "{told}");
+            let json = fs::read_to_string(out.join("run.json")).expect("a summary");
+            assert!(json.contains("\"interrupted\""), "{json}");
+        }
+        assert_eq!(resume(&out, &[]), (0, String::new()));
+        equal_but_for_times(&whole, &out);
+    }
+}
+
+#[test]
+fn the_log_has_every_iteration() {
+    let (status, out, err, results) = run("log", &punched(), &["--json-log"]);
+    assert_eq!((status, err.as_str()), (0, ""));
+    let log = fs::read_to_string(results.join("log.jsonl")).expect("a log");
+    assert_eq!(out, log);
+    let lines: Vec<serde_json::Value> = log
+        .lines()
+        .map(|l| serde_json::from_str(l).expect("json"))
+        .collect();
+    let newton = lines.iter().filter(|l| l["iteration"] != 0).count();
+    let contact = lines
+        .iter()
+        .filter_map(|l| l["contact_iterations"].as_u64());
+    let contact: u64 = contact.sum();
+    let json = fs::read_to_string(results.join("run.json")).expect("a summary");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("json");
+    assert_eq!(json["newton_iterations"], newton);
+    assert_eq!(json["contact_iterations"], contact);
+    let last = lines.last().expect("a line");
+    assert!(last["increment"] == 20 && last["cut"] == 0 && last["step"] == "press");
+    let relative = last["relative_residual"].as_f64();
+    assert!(relative.is_some_and(|r| r <= 1e-10));
+}
+
+/// From files alone: the same pictures, others on demand, and a report that needs no network.
+#[test]
+fn a_run_is_drawn_again_from_its_files() {
+    let (status, _, err, results) = run("draw", &punched(), &["--quiet"]);
+    assert_eq!(status, 0, "{err}");
+    let usual = || {
+        ["history.svg", "contact.svg", "deformed.svg", "report.html"]
+            .map(|f| fs::read(results.join(f)).expect("a picture"))
+    };
+    let before = usual();
+    let at = results.to_str().expect("a path");
+    assert_eq!(moreau(&["plot", at]).status.code(), Some(0));
+    assert!(before == usual());
+    let one = "--field displacement.y --increment 7 --scale 3";
+    let one: Vec<&str> = ["plot", at].into_iter().chain(one.split(' ')).collect();
+    let output = moreau(&one);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let svg = fs::read_to_string(results.join("deformed-displacement.y-7.svg"));
+    assert!(svg.expect("a picture").contains("displacement.y [mm]"));
+    assert!(results.join("contact-7.svg").exists());
+    for (key, value, named) in [
+        ("--field", "pres", "von_mises"),
+        ("--increment", "21", "1 to 20"),
+    ] {
+        let output = moreau(&["plot", at, key, value]);
+        assert_eq!(output.status.code(), Some(1));
+        let told = text(&output.stderr);
+        assert!(told.contains(value) && told.contains(named), "{told}");
+    }
+
+    let page = text(&before[3]);
+    let outside = page.replace("http://www.w3.org/2000/svg", "");
+    assert!(!outside.contains("http") && !outside.contains("src="));
+    let data = page.split("id=\"data\">").nth(1);
+    let data = data.and_then(|d| d.split("</script>").next());
+    let data: serde_json::Value = serde_json::from_str(data.expect("data")).expect("json");
+    assert_eq!(data["frames"].as_array().map(Vec::len), Some(20));
+    assert_eq!(data["faces"].as_array().map(Vec::len), Some(20));
+    let punch = data["frames"][19]["values"]["displacement.y"]["low"].as_f64();
+    assert!((punch.expect("a number") + 0.2).abs() < 1e-12);
+    assert!(page.contains("Certificate of every increment") && page.contains("force.punch.y"));
+    assert!(page.contains("[[mesh.block]]"));
+}
+
+#[test]
+fn algorithms_are_compared() {
+    let deck = punched()
+        .replace("increments = 20", "increments = 1")
+        .replace("y = -0.2", "y = -0.01");
+    let deck = deck.split("[expect]").next().expect("a deck");
+    let at = directory("bench");
+    let file = at.join("deck.toml");
+    fs::write(&file, deck).expect("a deck");
+    let (file, out) = (file.to_str().expect("a path"), at.join("out"));
+    let output = moreau(&["bench", file, "--out", out.to_str().expect("a path")]);
+    let (told, err) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(0), "{told}{err}");
+    let punch = told.split("force.punch.y").nth(1).expect("a force");
+    let mut lines = punch.lines().skip(1);
+    for name in ["exact", "gauss-seidel", "uzawa", "penalty", "uzawa outside"] {
+        let line = lines.next().expect("a line").trim();
+        assert!(line.starts_with(name), "{line}");
+        let off = line.split_whitespace().last().expect("a number");
+        let off: f64 = off.parse().expect("a number");
+        // The springs of the penalty give way; what is exact agrees.
+        let most = if name == "penalty" { 1e-2 } else { 1e-8 };
+        assert!(off.abs() < most, "{told}");
+    }
+}
+
+/// Streams, not lists: thirty times the increments take no more memory.
+#[test]
+fn memory_does_not_grow_with_the_increments() {
+    let peak = |increments: usize| {
+        let deck = punched()
+            .replace("increments = 20", &format!("increments = {increments}"))
+            .replace("yield-stress = 300.0", "");
+        let deck = deck.split("[expect]").next().expect("a deck").to_owned();
+        let deck = deck + "[output]\nvtu = \"last\"\ncheckpoint = 100\n";
+        let (status, _, err, results) = run(&format!("many-{increments}"), &deck, &["--quiet"]);
+        assert_eq!(status, 0, "{err}");
+        let json = fs::read_to_string(results.join("run.json")).expect("a summary");
+        let json: serde_json::Value = serde_json::from_str(&json).expect("json");
+        json["peak_memory_mb"].as_f64()
+    };
+    // Where the system does not tell there is nothing to see.
+    if let (Some(few), Some(many)) = (peak(30), peak(1000)) {
+        assert!(many < few + 2.0, "{few} MB, then {many} MB");
+    }
 }

@@ -2,7 +2,7 @@
 
 use super::log::Trace;
 use super::status_name;
-use crate::deck::{Action, Deck, Method};
+use crate::deck::{Action, Deck, Method, Units};
 use crate::driver::{Driver, Imbalance, StepError};
 use crate::laws::Status;
 use std::fmt;
@@ -32,6 +32,8 @@ pub struct Diagnosis {
     pub plastic_fraction: f64,
     /// What to change first.
     pub suggestion: String,
+    /// Units of the deck.
+    pub units: Units,
 }
 
 impl Diagnosis {
@@ -74,14 +76,13 @@ impl Diagnosis {
             flips,
             plastic_fraction,
             suggestion,
+            units: deck.units,
         }
     }
 
     /// For `run.json`.
     pub(super) fn json(&self) -> serde_json::Value {
-        let worst = |w: &Imbalance| {
-            serde_json::json!({ "node": w.node, "position": w.position, "force": w.force })
-        };
+        let worst = |w: &Imbalance| serde_json::json!({ "node": w.node, "position": w.position, "force": w.force });
         let flip = |f: &Flip| {
             let statuses: Vec<&str> = f.statuses.iter().map(|s| status_name(*s)).collect();
             serde_json::json!({ "node": f.node, "position": f.position, "statuses": statuses })
@@ -142,10 +143,11 @@ fn suggestion(
 impl fmt::Display for Diagnosis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.worst.is_empty() {
-            writeln!(f, "  worst balanced nodes")?;
+            writeln!(f, "  nodes farthest out of balance")?;
         }
         for w in &self.worst {
-            writeln!(f, "    node {} at {:?}: {:.3e}", w.node, w.position, w.force)?;
+            let (node, at, unit) = (w.node, &w.position, self.units.force());
+            writeln!(f, "    node {node} at {at:?}: {:.3e} {unit}", w.force)?;
         }
         if !self.flips.is_empty() {
             writeln!(f, "  contact points whose status does not settle")?;

@@ -265,6 +265,7 @@ impl Outcome {
             "newton_iterations": self.newton_iterations,
             "contact_iterations": self.contact_iterations,
             "factorisations": self.factorisations,
+            "cuts": self.cuts,
             "peak_memory_mb": peak_memory(),
             "dofs": self.dofs,
             "threads": self.threads,
@@ -321,10 +322,7 @@ impl fmt::Display for Outcome {
             let e = &self.energies;
             let [open, stick, slip] = self.contacts;
             let energy = units.energy();
-            writeln!(
-                f,
-                "  contact       {open} open, {stick} stick, {slip} slip"
-            )?;
+            writeln!(f, "  contact       {open} open, {stick} stick, {slip} slip")?;
             writeln!(
                 f,
                 "  energy        external {:.6e} {energy} = stored {:.6e} + plastic {:.6e} + \

@@ -18,13 +18,18 @@ pub(super) fn forces(history: &Table, deck: &Deck) -> Option<String> {
     let columns: Vec<_> = names.map(|n| (n, history.numbers(n))).collect();
     let largest = |c: &[f64]| c.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     let scale = columns.iter().map(|(_, c)| largest(c)).fold(0.0, f64::max);
+    // Markers tell increments apart as long as they are not too many.
+    let style = match time.len() <= 200 {
+        true => Style::LinePoints,
+        false => Style::Line,
+    };
     for (name, column) in columns {
         if largest(&column) > 1e-9 * scale {
             let start = std::iter::once([0.0, 0.0]);
             let points = time.iter().zip(&column).map(|(&t, &f)| [t, f]);
             let points: Vec<_> = start.chain(points).collect();
             let short = name.trim_start_matches("force.");
-            chart = chart.with(short, Style::LinePoints, points);
+            chart = chart.with(short, style, points);
         }
     }
     chart.to_svg().ok()
@@ -80,7 +85,9 @@ pub(super) fn usual_field(deck: &Deck) -> &'static str {
 pub(super) fn label(name: &str, units: Units) -> String {
     let unit = match name {
         n if n.contains("strain") => "–",
-        n if n.contains("stress") || n == "von_mises" || n.starts_with("pressure") => units.stress(),
+        n if n.contains("stress") || n == "von_mises" || n.starts_with("pressure") => {
+            units.stress()
+        }
         n if n.starts_with("displacement") => units.length(),
         n if n.contains("force") || n == "out_of_balance" => units.force(),
         _ => return name.replace('_', " "),

@@ -42,7 +42,8 @@ pub(super) fn report<const D: usize>(
         deck => resolved,
         history => forces(&history, deck),
         contact => if D == 2 { tractions(&contacts, deck) } else { None },
-        data => viewer(mesh, deck, directory, last)?.to_string(),
+        // No name in it may end the script.
+        data => viewer(mesh, deck, directory, last)?.to_string().replace("</", "<\\/"),
     };
     let mut environment = Environment::new();
     let html = environment
@@ -89,7 +90,11 @@ fn summary(run: &serde_json::Value, deck: &Deck) -> Vec<[String; 2]> {
         ("largest bipotential gap", "bipotential_gap", units.energy()),
         ("the same, over the external work", "relative_gap", "–"),
         ("largest penetration", "penetration", units.length()),
-        ("largest force outside the cone", "excess_force", units.force()),
+        (
+            "largest force outside the cone",
+            "excess_force",
+            units.force(),
+        ),
     ] {
         rows.push([format!("{name} [{unit}]"), small(key)]);
     }
@@ -235,7 +240,11 @@ fn packed(values: &[f64]) -> serde_json::Value {
         (l.min(v), h.max(v))
     });
     let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
-    let scale = if high > low { 65534.0 / (high - low) } else { 0.0 };
+    let scale = if high > low {
+        65534.0 / (high - low)
+    } else {
+        0.0
+    };
     let code = |v: &f64| match v.is_finite() {
         true => ((v - low) * scale).round() as u16,
         false => u16::MAX,
@@ -279,7 +288,11 @@ fn faces<const D: usize>(mesh: &Mesh<D>) -> Vec<Vec<usize>> {
     }
     let face = |facet| {
         let nodes: Vec<usize> = mesh.facet_nodes(facet).collect();
-        let corners = if nodes.len().is_multiple_of(3) && nodes.len() < 9 { 3 } else { 4 };
+        let corners = if nodes.len().is_multiple_of(3) && nodes.len() < 9 {
+            3
+        } else {
+            4
+        };
         let mut face: Vec<usize> = Vec::new();
         for k in 0..corners {
             face.push(nodes[k]);

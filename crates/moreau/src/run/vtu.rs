@@ -1,9 +1,9 @@
 //! Results as VTK files: bodies and contact surfaces of an increment, and the list of all; appended
 //! binary data, compressed.
 
-use super::view::{NodalField, View};
 use super::RunError;
 use super::files::{Stream, read_text, write_file};
+use super::view::{NodalField, View};
 use crate::driver::{ContactRecord, Driver};
 use crate::laws::Status;
 use crate::mesh::{CellKind, Facet, FacetKind};
@@ -43,9 +43,15 @@ impl Collection {
         } else {
             let _ = std::fs::remove_file(path);
         }
-        for entry in std::fs::read_dir(&directory).into_iter().flatten().flatten() {
+        for entry in std::fs::read_dir(&directory)
+            .into_iter()
+            .flatten()
+            .flatten()
+        {
             let name = entry.file_name().to_string_lossy().into_owned();
-            let ours = ["body_", "contact_", "failed"].iter().any(|p| name.starts_with(p));
+            let ours = ["body_", "contact_", "failed"]
+                .iter()
+                .any(|p| name.starts_with(p));
             if ours && name.ends_with(".vtu") && !kept.contains(&format!("\"{name}\"")) {
                 // One that stays does no harm.
                 let _ = std::fs::remove_file(entry.path());
@@ -143,7 +149,8 @@ pub(super) fn read_point_data(path: &Path) -> Result<Vec<Array>, RunError> {
         source,
     };
     let bytes = std::fs::read(path).map_err(error)?;
-    point_data(&bytes).ok_or_else(|| error(std::io::Error::other("it is not a file of a run, or torn")))
+    point_data(&bytes)
+        .ok_or_else(|| error(std::io::Error::other("it is not a file of a run, or torn")))
 }
 
 fn point_data(bytes: &[u8]) -> Option<Vec<Array>> {
@@ -151,7 +158,11 @@ fn point_data(bytes: &[u8]) -> Option<Vec<Array>> {
     let at = bytes.windows(START.len()).position(|w| w == START)?;
     let head = std::str::from_utf8(&bytes[..at]).ok()?;
     let data = &bytes[at + START.len()..];
-    let section = head.split("<PointData>").nth(1)?.split("</PointData>").next()?;
+    let section = head
+        .split("<PointData>")
+        .nth(1)?
+        .split("</PointData>")
+        .next()?;
     let array = |tag: &str| {
         let offset: usize = attribute(tag, "offset")?.parse().ok()?;
         let values = decompressed(data.get(offset..)?)?;
@@ -162,7 +173,11 @@ fn point_data(bytes: &[u8]) -> Option<Vec<Array>> {
             values: values.chunks_exact(8).map(number).collect(),
         })
     };
-    section.lines().filter(|l| l.starts_with("<DataArray")).map(array).collect()
+    section
+        .lines()
+        .filter(|l| l.starts_with("<DataArray"))
+        .map(array)
+        .collect()
 }
 
 /// The inverse of [`compressed`], from the start of `bytes`.

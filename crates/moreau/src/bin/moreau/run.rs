@@ -15,9 +15,7 @@ pub(crate) fn run(path: &Path, out: Option<PathBuf>, manner: &Manner) -> u8 {
         return INPUT_ERROR;
     };
     let given = deck.directory.as_ref().map(PathBuf::from);
-    let directory = out
-        .or(given)
-        .unwrap_or_else(|| default_directory(path, ""));
+    let directory = out.or(given).unwrap_or_else(|| default_directory(path, ""));
     let (deck, to) = (&deck, directory.as_path());
     go(deck, to, manner, move |watch| match problem {
         Problem::Plane(setup) => moreau::run::run(*setup, deck, to, watch),
