@@ -669,7 +669,7 @@ fn a_resumed_run_is_the_uninterrupted_one() {
 #[cfg(unix)]
 #[test]
 fn a_run_that_is_killed_or_interrupted_goes_on() {
-    let (status, _, err, whole) = run("long", &pressed_and_released(60), &["--quiet"]);
+    let (status, _, err, whole) = run("long", &pressed_and_released(30), &["--quiet"]);
     assert_eq!(status, 0, "{err}");
     let file = whole.with_file_name("deck.toml");
     for signal in ["-KILL", "-INT"] {
