@@ -1,6 +1,6 @@
 //! `moreau check`: what a deck was understood to say; nothing is solved.
 
-use super::{INPUT_ERROR, folder, read, report};
+use super::{INPUT_ERROR, folder, read, report, say};
 use moreau::deck::{Action, Deck, Method, Problem, Setup, Shape, open_in};
 use std::path::Path;
 
@@ -20,7 +20,7 @@ pub(crate) fn check(path: &Path) -> u8 {
                 Problem::Solid(setup) => model(&deck, setup),
             }
             conditions(&deck);
-            println!("no rigid motion is free; the deck can be run");
+            say!("no rigid motion is free; the deck can be run");
             0
         }
     }
@@ -28,9 +28,9 @@ pub(crate) fn check(path: &Path) -> u8 {
 
 fn head(deck: &Deck) {
     if !deck.title.is_empty() {
-        println!("{}", deck.title);
+        say!("{}", deck.title);
     }
-    println!("units      {}", deck.units.name());
+    say!("units      {}", deck.units.name());
     let thickness = match deck.analysis {
         moreau::deck::Analysis::PlaneStrain => {
             format!(", {} {} thick", deck.thickness.value, deck.units.length())
@@ -38,24 +38,24 @@ fn head(deck: &Deck) {
         moreau::deck::Analysis::Axisymmetric => " (forces are of the whole ring)".into(),
         moreau::deck::Analysis::Solid => String::new(),
     };
-    println!("analysis   {}{thickness}", deck.analysis.name());
+    say!("analysis   {}{thickness}", deck.analysis.name());
 }
 
 fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
     let length = deck.units.length();
     let mesh = setup.driver.mesh();
-    println!(
+    say!(
         "mesh       {} nodes, {} cells, {} degrees of freedom",
         mesh.nodes().len(),
         mesh.cell_count(),
         D * mesh.nodes().len()
     );
     if let Some(file) = &deck.mesh_file {
-        println!("           from {}", file.value.display());
+        say!("           from {}", file.value.display());
     }
     for body in &setup.bodies {
         let cells: Vec<String> = body.cells.iter().map(|(k, n)| format!("{n} {k}")).collect();
-        println!(
+        say!(
             "body       {}: {}, volume {:.6e} {length}³",
             body.name,
             cells.join(", "),
@@ -63,7 +63,7 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
         );
         for (step, supports) in deck.steps.iter().zip(&body.supports) {
             let held = supports.join("; ");
-            println!("           held in step {} by {held}", step.name.value);
+            say!("           held in step {} by {held}", step.name.value);
         }
     }
     for group in &setup.groups {
@@ -71,9 +71,12 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
         let measure = group
             .measure
             .map_or(String::new(), |m| format!(", {m:.6e} {length}{unit}"));
-        println!(
+        say!(
             "group      {}: {} {}, {} nodes{measure}",
-            group.name, group.members, group.kind, group.nodes
+            group.name,
+            group.members,
+            group.kind,
+            group.nodes
         );
     }
     let stress = deck.units.stress();
@@ -92,7 +95,7 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
                 )
             }
         };
-        println!(
+        say!(
             "material   {}: E {} {stress}, ν {}, {plastic}; {} quadrature",
             m.on.value,
             m.young.value,
@@ -115,11 +118,11 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
             }
             Shape::Polyline(points) => format!("polyline {points:?}"),
         };
-        println!("tool       {}: {shape}", tool.name.value);
+        say!("tool       {}: {shape}", tool.name.value);
     }
     for (k, contact) in deck.contacts.iter().enumerate() {
         let points = setup.driver.contacts().iter().filter(|c| c.contact == k);
-        println!(
+        say!(
             "contact    {} against {}, friction {}, {} points{}{}",
             contact.surface.value,
             contact.against.value,
@@ -147,14 +150,14 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
         Method::Penalty(n, t) => format!("penalty, {} and {}", n.value, t.value),
         Method::Penetration(part) => format!("penalty, penetration {} of a cell", part.value),
     };
-    println!("solver     {method}");
+    say!("solver     {method}");
 }
 
 fn conditions(deck: &Deck) {
     const AXES: [&str; 3] = ["x", "y", "z"];
     let (length, force, stress) = (deck.units.length(), deck.units.force(), deck.units.stress());
     for step in &deck.steps {
-        println!(
+        say!(
             "step       {}: {} increments{}",
             step.name.value,
             step.increments.count(),
@@ -182,11 +185,11 @@ fn conditions(deck: &Deck) {
                 Action::BodyForce(f) => format!("body force {f:?} {force}/{length}³"),
                 Action::Tool(u) => format!("tool moves by {u:?} {length}"),
             };
-            println!("           {}: {what}", condition.on.value);
+            say!("           {}: {what}", condition.on.value);
         }
     }
     for e in &deck.expectations {
-        println!(
+        say!(
             "expect     {} = {} ± {:.3e}",
             e.column.value,
             e.value,

@@ -1,6 +1,6 @@
 //! `moreau convert`: a mesh file in another format; the mesh stays what it is.
 
-use super::INPUT_ERROR;
+use super::{INPUT_ERROR, say};
 use moreau::files::{FileError, read_mesh, write_mesh};
 use moreau::mesh::{Mesh, ReadError};
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ impl Convert {
         };
         match done {
             Ok(what) => {
-                println!("{}: {what}", self.output.display());
+                say!("{}: {what}", self.output.display());
                 0
             }
             Err(error) => {

@@ -13,6 +13,15 @@ use clap::{Parser, Subcommand};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+/// Prints a line; a reader that has gone away, as `head` does, is no error.
+macro_rules! say {
+    ($($what:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stdout(), $($what)*);
+    }};
+}
+use say;
+
 /// Exit status for input that makes no sense.
 const INPUT_ERROR: u8 = 1;
 /// Exit status for a run that did not converge, or was interrupted: what converged is kept.
@@ -132,7 +141,7 @@ fn main() -> ExitCode {
         }
         Command::Convert(convert) => convert.run(),
         Command::Schema => {
-            print!("{}", moreau::deck::SCHEMA);
+            say!("{}", moreau::deck::SCHEMA.trim_end());
             0
         }
     };
