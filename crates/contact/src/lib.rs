@@ -1,9 +1,13 @@
-//! The contact problem with Coulomb friction, condensed on the interface, and its solvers; not
-//! the bodies it was condensed from.
+//! The contact problem with Coulomb friction and its solvers; not the bodies it comes from.
 //!
-//! Every method solves the same small dense problem, [`ContactProblem`], and is judged by the
-//! same residual and by the same certificate: the bipotential gap Σ b_c(−u, t) + t·u, which is
-//! zero exactly at the solution.
+//! | problem | form | solvers |
+//! |---|---|---|
+//! | [`ContactProblem`] | t = S (u − g) − f, a structure condensed on its interface | [`ContactSolver`] |
+//! | [`LocalProblem`] | u = W r + q, W of any rank, dense or sparse | [`LocalSolver`], above all [`Auto`] |
+//! | [`GlobalProblem`] | M v = H r + f, u = Hᵀ v + w | the same, by reduction |
+//!
+//! All methods for a problem are judged by the same residual and by the same certificate: the
+//! bipotential gap Σ b_c(−u, t) + t·u, which is zero exactly at the solution.
 //!
 //! ```
 //! use moreau_contact::{Certificate, ContactProblem, ContactSolver, SemismoothNewton};

@@ -15,6 +15,22 @@ use nalgebra::{DMatrix, DVector, Matrix3, SMatrix};
 /// r the contact forces \[N\] (or impulses), u the gaps and slips \[mm\] (or relative velocities),
 /// W the Delassus operator \[mm/N\]: positive semi-definite, of any rank, symmetric up to rounding.
 /// Where W is rank deficient the forces need not be unique.
+///
+/// ```
+/// use moreau_contact::{Auto, BlockMatrix, LocalProblem, LocalSolver};
+/// use moreau_laws::{Coulomb, Local};
+/// use nalgebra::DMatrix;
+///
+/// // A rigid block of unit mass on two points, which cannot be told apart: W has rank two of four.
+/// let w = DMatrix::from_fn(4, 4, |i, j| if i % 2 == j % 2 { 1.0 } else { 0.0 });
+/// let q = vec![Local::<2>::new(-1.0, 0.5); 2];
+/// let problem = LocalProblem::new(BlockMatrix::from_dense(&w), q, vec![Coulomb::new(0.3)?; 2])?;
+/// let solution = Auto::default().solve(&problem, None)?;
+/// // It slides on, slowed down by the friction of its weight.
+/// assert_eq!(problem.rank(), 2);
+/// assert!((solution.displacement[0] - Local::<2>::new(0.0, 0.2)).norm() < 1e-8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct LocalProblem<const D: usize> {
     operator: BlockMatrix<D>,
