@@ -109,7 +109,7 @@ impl StepReport {
 /// A contact point at the end of an increment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactRecord<const D: usize> {
-    /// Index of the contact, in the order in which contacts were added to the model.
+    /// Index of the contact, in the order in which contacts and pairs were added to the model.
     pub contact: usize,
     /// The node.
     pub node: usize,
@@ -117,13 +117,15 @@ pub struct ContactRecord<const D: usize> {
     pub position: [f64; D],
     /// Corner or mid-side node of the surface.
     pub kind: NodeKind,
-    /// Gap and slip of the increment \[mm\].
+    /// Gap and slip of the increment \[mm\]; where no surface is opposite the gap is the size of
+    /// the mesh.
     pub u: Local<D>,
     /// Force on the body, normal and tangential \[N\].
     pub t: Local<D>,
     /// Force on the body in space \[N\].
     pub force: SVector<f64, D>,
-    /// Consistent share of the surface \[mm²\]: t over it is a traction.
+    /// Consistent share of the surface \[mm²\], between bodies that of the overlap: t over it is a
+    /// traction.
     pub area: f64,
     /// Status; for a point held along the surface, `Open` or `Stick`.
     pub status: Status,

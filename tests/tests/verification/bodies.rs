@@ -477,7 +477,8 @@ fn a_uniform_pressure_passes_between_two_discs() -> Fallible {
 #[test]
 fn a_block_is_pushed_up_an_incline() -> Fallible {
     const TAN: f64 = 0.1;
-    const DENSITY: f64 = 1e-3;
+    /// So light that the deformed surface is as steep as the undeformed one.
+    const DENSITY: f64 = 1e-2;
     for (friction, expected) in [
         (0.0, 0.1),
         (0.1, 0.202_020_2),
@@ -499,7 +500,8 @@ fn a_block_is_pushed_up_an_incline() -> Fallible {
                     .displace("upper.left", Axis::X, travel)
                     .body_force("upper", [0.0, -DENSITY])
             };
-            driver.run(&hold(0.1), 2, |_, _| {})?;
+            let reports = driver.run(&hold(1e-3), 2, |_, _| {})?;
+            assert!(reports.iter().all(|r| r.cuts == 0), "no increment was cut");
             let weight = DENSITY * WIDTH * HEIGHT;
             let force = driver.reaction("upper.left")?[0];
             close(
@@ -680,10 +682,10 @@ fn gripped() -> Stack {
 
 const PATH: [[f64; 2]; 3] = [[0.0, -2e-3], [4e-4, -2.5e-3], [-2e-4, -2e-3]];
 
-fn run(stack: &Stack, settings: Settings<2>) -> Fallible<Driver<2>> {
+fn run(stack: &Stack, path: &[[f64; 2]], settings: Settings<2>) -> Fallible<Driver<2>> {
     let mut driver = stack.driver(stack.mesh()?, settings)?;
-    for motion in PATH {
-        let end = grip(&driver, stack, motion)?;
+    for motion in path {
+        let end = grip(&driver, stack, *motion)?;
         driver.advance(&end)?;
     }
     action_is_reaction(&driver, stack)?;
@@ -703,7 +705,7 @@ fn farthest(a: &Driver<2>, b: &Driver<2>, turn: f64) -> f64 {
 #[test]
 fn all_methods_find_the_same_forces_between_two_bodies() -> Fallible {
     let stack = gripped();
-    let first = run(&stack, Settings::default())?;
+    let first = run(&stack, &PATH, Settings::default())?;
     let slips = |s: Status| first.contacts().iter().any(|c| c.status == s);
     assert!(slips(Status::Slip) && slips(Status::Stick));
     let others: [Box<dyn ContactSolver<2>>; 3] = [
@@ -717,28 +719,30 @@ fn all_methods_find_the_same_forces_between_two_bodies() -> Fallible {
             contact,
             ..Settings::default()
         };
-        let apart = farthest(&first, &run(&stack, settings)?, 0.0);
+        let apart = farthest(&first, &run(&stack, &PATH, settings)?, 0.0);
         assert!(apart <= 1e-8, "{name}: {apart:.2e}");
     }
     let nesting = Nesting::Outside {
-        tolerance: 1e-7,
+        tolerance: 1e-6,
         iterations: 20_000,
     };
     let settings = Settings {
         nesting,
         ..Settings::default()
     };
-    let apart = farthest(&first, &run(&stack, settings)?, 0.0);
+    let path = &PATH[..1];
+    let first = run(&stack, path, Settings::default())?;
+    let apart = farthest(&first, &run(&stack, path, settings)?, 0.0);
     assert!(apart <= 1e-4, "the paper's nesting: {apart:.2e}");
     Ok(())
 }
 
 #[test]
 fn two_bodies_turned_feel_turned_forces() -> Fallible {
-    let first = run(&gripped(), Settings::default())?;
+    let first = run(&gripped(), &PATH, Settings::default())?;
     for angle in [0.7, PI / 2.0, -2.5] {
         let stack = Stack { angle, ..gripped() };
-        let apart = farthest(&first, &run(&stack, Settings::default())?, angle);
+        let apart = farthest(&first, &run(&stack, &PATH, Settings::default())?, angle);
         assert!(apart <= 1e-9, "{angle}: {apart:.2e}");
     }
     Ok(())
