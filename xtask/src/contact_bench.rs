@@ -272,8 +272,12 @@ fn line(run: &Run) -> String {
     )
 }
 
-/// Seconds of a run over the best known; nothing for what is too short to be compared.
+/// Seconds of a run over the best known; nothing for global problems, of which only the solution of
+/// the local form is timed here.
 fn ratio(run: &Run, known: &Known) -> Option<f64> {
+    if Form::of_name(&run.file) == Form::Global {
+        return None;
+    }
     let (_, best) = known.iter().find(|(file, _)| *file == run.file)?;
     let seconds = if run.solved() {
         run.seconds

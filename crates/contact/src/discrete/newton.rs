@@ -128,6 +128,9 @@ impl<const D: usize> Proximal<'_, D> {
 /// Earlier merits among which the largest must decrease: full steps past a kink are let through.
 const MEMORY: usize = 5;
 
+/// Steps over which the residual must halve.
+const PATIENCE: usize = 10;
+
 /// What a run of Newton's method came to.
 pub(super) struct Run<const D: usize> {
     pub(super) force: Vec<Local<D>>,
@@ -157,7 +160,13 @@ pub(super) fn newton<const D: usize>(
     };
     let mut merits = vec![now.merit];
     let mut iterations = 0;
+    let mut milestone = (0, best.residual);
     while best.residual > target && iterations < limit {
+        if best.residual < 0.5 * milestone.1 {
+            milestone = (iterations, best.residual);
+        } else if iterations >= milestone.0 + PATIENCE {
+            break;
+        }
         iterations += 1;
         let Some(step) = method.step(&now) else {
             best.singular = true;
