@@ -84,7 +84,7 @@ fn the_committed_problems_are_solved() -> Fallible {
 fn the_open_collection_is_solved() -> Fallible {
     let folder = Path::new(COLLECTION);
     if !folder.exists() {
-        println!("skipped: no collection of problems beside the workspace");
+        eprintln!("skipped: no collection of problems beside the workspace");
         return Ok(());
     }
     assert_eq!(solve_all(folder)?, 44);
