@@ -17,7 +17,7 @@ pub trait Cells<const D: usize>: Send + Sync {
     /// Nodes of the k-th cell.
     fn nodes(&self, k: usize) -> &[usize];
 
-    /// Quadrature points of a cell.
+    /// Quadrature points of a cell, at most 27.
     fn points_per_cell(&self) -> usize;
 
     /// Position of a quadrature point in the undeformed body \[mm\].

@@ -168,8 +168,9 @@ impl<const D: usize> Driver<D> {
                 let own = (0..self.points.len()).filter(|&i| index(&self.points[i]));
                 let at: BTreeMap<usize, usize> = own.map(|i| (self.points[i].node, i)).collect();
                 for coupling in couplings {
-                    let point = at[&coupling.node];
-                    footings[point] = Footing::on_surface(coupling, &positions);
+                    if let Some(&point) = at.get(&coupling.node) {
+                        footings[point] = Footing::on_surface(coupling, &positions);
+                    }
                 }
             }
         }

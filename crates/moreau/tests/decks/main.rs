@@ -319,6 +319,14 @@ fn what_is_not_available_is_refused_by_name() {
     }
 }
 
+/// Keys that are asked for in several places are listed once.
+#[test]
+fn the_keys_of_a_table_are_listed_once() {
+    let out = shown("poisson = 0.3", "poisson = 0.3\npossion = 0.3");
+    assert!(out.contains("did you mean \"poisson\"?"), "{out}");
+    assert_eq!(out.matches("kinematic").count(), 1, "{out}");
+}
+
 #[test]
 fn tools_and_contacts_out_of_their_range_are_pointed_at() {
     let plane = "plane = { point = [0, 0], normal = [0, 1] }";
