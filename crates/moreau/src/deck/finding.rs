@@ -3,6 +3,7 @@
 use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource};
 use std::fmt;
 use std::ops::Range;
+use textwrap::{WordSeparator, WordSplitter};
 
 /// A value of a deck and the bytes of the file that it was read from.
 #[derive(Debug, Clone, PartialEq)]
@@ -209,7 +210,11 @@ impl Findings {
         let handler = GraphicalReportHandler::new_themed(theme)
             .with_links(false)
             .with_context_lines(1)
-            .with_width(100);
+            .with_width(100)
+            // Names and paths stay whole: a reader copies them.
+            .with_word_separator(WordSeparator::AsciiSpace)
+            .with_word_splitter(WordSplitter::NoHyphenation)
+            .with_break_words(false);
         let source = NamedSource::new(file, text.to_owned());
         let mut sorted: Vec<&Finding> = self.list.iter().collect();
         sorted.sort_by_key(|f| f.span.start);

@@ -71,6 +71,22 @@ fn physical_names_are_groups() {
     }
 }
 
+/// Wherever the line ends, a path and a name are never cut: they are there to be copied.
+#[test]
+fn paths_stay_whole_when_a_message_is_wrapped() {
+    for length in 1..120 {
+        let file = format!(
+            "{}/no-such-mesh-of-a-punch.msh",
+            "a-b/".repeat(length / 4) + &"c".repeat(length % 4)
+        );
+        let text = example().replace("punch-on-gmsh-mesh.msh", &file);
+        let (_, _, findings) = open_in(&text, &folder("docs/examples"));
+        let out = findings.render("deck.toml", &text, false);
+        let message = out.split("╭").next().unwrap_or_default();
+        assert!(message.contains(&file), "{file} in {out}");
+    }
+}
+
 #[test]
 fn files_that_cannot_be_read_are_pointed_at() {
     let with = |file: &str| example().replace("punch-on-gmsh-mesh.msh", file);
