@@ -46,8 +46,11 @@ struct Scatter {
     size: usize,
     /// Degree of freedom of the mesh of every unknown of every cell.
     dofs: Vec<u32>,
-    /// Slot among the values of every entry of the upper triangle of every cell, or [`FIXED`].
+    /// Slot among the values of every entry of the upper triangle of every cell; the one beyond
+    /// the last for what no unknown sees.
     slots: Vec<u32>,
+    /// Cells with a prescribed displacement.
+    held: Vec<bool>,
 }
 
 /// Internal forces of an assembly.
@@ -124,7 +127,8 @@ impl System {
             .iter()
             .map(|b| scatter(b.as_ref(), &position, &pattern))
             .collect();
-        let values = vec![0.0; pattern.row.len()];
+        // One more, for what no unknown sees.
+        let values = vec![0.0; pattern.row.len() + 1];
         let unknowns = dofs.len();
         let cholesky = Cholesky::analyse(pattern).ok_or(ModelError::TooLarge { unknowns })?;
         Ok(Self {
@@ -190,6 +194,7 @@ impl System {
         if stiffness != Stiffness::None {
             self.values.fill(0.0);
         }
+        let moves = missing.iter().any(|&m| m != 0.0);
         let (position, values) = (&self.position, &mut self.values);
         for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
             let size = scatter.size;
@@ -199,27 +204,12 @@ impl System {
                 for (&dof, f) in dofs.iter().zip(result.force) {
                     internal[dof as usize] += f;
                 }
-                if result.stiffness.is_empty() {
-                    return;
-                }
                 let slots = &scatter.slots[result.cell * triangle..(result.cell + 1) * triangle];
-                let mut next = 0;
-                for i in 0..size {
-                    for j in i..size {
-                        let slot = slots[next];
-                        next += 1;
-                        let k = result.stiffness[i * size + j];
-                        if slot != FIXED {
-                            values[slot as usize] += k;
-                            continue;
-                        }
-                        let (a, b) = (dofs[i] as usize, dofs[j] as usize);
-                        match (position[a] == FIXED, position[b] == FIXED) {
-                            (false, true) => coupling[a] += k * missing[b],
-                            (true, false) => coupling[b] += k * missing[a],
-                            _ => {}
-                        }
-                    }
+                for (&slot, k) in slots.iter().zip(result.stiffness) {
+                    values[slot as usize] += k;
+                }
+                if moves && scatter.held[result.cell] {
+                    couple(result.stiffness, dofs, position, missing, &mut coupling);
                 }
             });
         }
@@ -272,7 +262,8 @@ impl System {
         self.elastic_factor = false;
         self.factorisations += 1;
         timed(&mut self.timings.factorisation, || {
-            self.cholesky.factorise(&self.values)
+            let (_, values) = self.values.split_last().unwrap_or((&0.0, &[]));
+            self.cholesky.factorise(values)
         })
         .map_err(|NotPositiveDefinite { row }| self.dofs[row])?;
         self.elastic_factor = elastic;
@@ -332,6 +323,22 @@ impl System {
     }
 }
 
+/// Adds the stiffness of a cell between its unknowns and its prescribed displacements, times what is
+/// missing of these.
+fn couple(stiffness: &[f64], dofs: &[u32], position: &[u32], missing: &[f64], sum: &mut [f64]) {
+    let mut entries = stiffness.iter();
+    for (i, &a) in dofs.iter().enumerate() {
+        for (&b, k) in dofs[i..].iter().zip(entries.by_ref()) {
+            let (a, b) = (a as usize, b as usize);
+            match (position[a] == FIXED, position[b] == FIXED) {
+                (false, true) => sum[a] += k * missing[b],
+                (true, false) => sum[b] += k * missing[a],
+                _ => {}
+            }
+        }
+    }
+}
+
 struct Adjacency {
     start: Vec<usize>,
     entries: Vec<usize>,
@@ -386,9 +393,18 @@ fn scatter<const D: usize>(block: &dyn Block<D>, position: &[u32], pattern: &Pat
                 let (p, q) = (position[a as usize], position[b as usize]);
                 let free = p != FIXED && q != FIXED;
                 let slot = free.then(|| pattern.slot(p.max(q), p.min(q))).flatten();
-                slots.push(slot.unwrap_or(FIXED));
+                slots.push(slot.unwrap_or(pattern.row.len() as u32));
             }
         }
     }
-    Scatter { size, dofs, slots }
+    let is_held = |cell: &[u32]| cell.iter().any(|&dof| position[dof as usize] == FIXED);
+    let held = (0..cells)
+        .map(|k| is_held(&dofs[k * size..(k + 1) * size]))
+        .collect();
+    Scatter {
+        size,
+        dofs,
+        slots,
+        held,
+    }
 }
