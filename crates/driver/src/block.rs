@@ -101,7 +101,7 @@ pub trait Block<const D: usize>: Send + Sync {
 const PANEL: usize = 512;
 
 /// Cells that are worth a thread.
-const GRAIN: usize = 32;
+const GRAIN: usize = 128;
 
 /// The block of some cells with law L.
 pub struct SolidBlock<L: BulkLaw, const D: usize> {

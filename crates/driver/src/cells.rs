@@ -207,7 +207,11 @@ where
                 for b in a..N {
                     let first = if a == b { i } else { 0 };
                     for (j, entry) in (first..D).zip(next.by_ref()) {
-                        *entry = if i <= j { sum[i][j][a][b] } else { sum[j][i][b][a] };
+                        *entry = if i <= j {
+                            sum[i][j][a][b]
+                        } else {
+                            sum[j][i][b][a]
+                        };
                     }
                 }
             }

@@ -36,14 +36,17 @@ mod error;
 mod increment;
 mod increments;
 mod interface;
+mod iterate;
 mod line_search;
 mod load;
 mod model;
 mod nested;
+mod norm;
 mod ordering;
 mod ramp;
 mod report;
 mod saved;
+mod scatter;
 mod system;
 mod timings;
 

@@ -1,11 +1,11 @@
 //! Semismooth Newton method on the natural map; not a regularisation: its zeros are the law.
 
+use super::linearised::{self, Row};
 use super::{ContactSolution, ContactSolver, GaussSeidel, Tolerance, Uzawa};
-use crate::dense::Lu;
 use crate::problem::stack;
 use crate::{ContactError, ContactProblem};
-use moreau_laws::Local;
-use nalgebra::{DMatrix, DVector, SMatrix};
+use moreau_laws::{Friction, Local};
+use nalgebra::{DVector, SMatrix};
 
 /// Newton's method on t − proj(t − α ũ) = 0, \[90′\], with t = S (u − g) − f.
 ///
@@ -224,27 +224,21 @@ impl<const D: usize> Newton<'_, D> {
 
     /// Newton step of the map; `None` if its matrix is singular.
     fn step(&self, now: &Iterate<D>) -> Option<DVector<f64>> {
-        let p = self.problem;
-        let n = D * p.contacts();
-        let s = p.stiffness();
-        let mut jacobian = DMatrix::zeros(n, n);
-        for (i, law) in p.friction().iter().enumerate() {
-            let alpha = self.alpha(i);
-            let v = &now.irreversible[i];
+        let row = |(i, law): (usize, &Friction)| {
+            let (v, t) = (&now.irreversible[i], &now.t[i]);
             // dT = P dt − A du, with P the projector and A = α P ∂ũ/∂u under Coulomb's law:
             // dG = [(1 − P) + A C] S du + A du
-            let (projector, shift) = law.correct_jacobian(v, &now.t[i], alpha);
-            let elastic = SMatrix::<f64, D, D>::identity() - projector
-                + shift * SMatrix::from_diagonal(&self.compliance[i]);
-            let rows = elastic * s.fixed_rows::<D>(D * i);
-            jacobian.fixed_rows_mut::<D>(D * i).copy_from(&rows);
-            let mut own = jacobian.fixed_view_mut::<D, D>(D * i, D * i);
-            own += shift;
-        }
-        let rhs = DVector::from_iterator(n, now.map.iter().flat_map(|g| (0..D).map(|k| -g[k])));
+            let (projector, shift) = law.correct_jacobian(v, t, self.alpha(i));
+            let compliance = SMatrix::from_diagonal(&self.compliance[i]);
+            Row {
+                elastic: SMatrix::identity() - projector + shift * compliance,
+                shift,
+                value: -now.map[i],
+            }
+        };
+        let laws = self.problem.friction().iter().enumerate();
         // A rigid motion that no contact stops leaves the matrix singular.
-        let step = Lu::new(jacobian)?.solve(rhs);
-        step.iter().all(|v| v.is_finite()).then_some(step)
+        linearised::solve(self.problem, laws.map(row).collect())
     }
 
     fn solution(&self, now: Iterate<D>, iterations: usize) -> ContactSolution<D> {
