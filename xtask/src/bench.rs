@@ -11,7 +11,7 @@ use std::time::Instant;
 use moreau::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
 use moreau::driver::{Settings, Step};
 use moreau::mesh::Integration;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use verification::paper;
 
 /// Arguments of `bench`.
@@ -27,7 +27,7 @@ pub struct Args {
     #[arg(long, default_value_t = INCREMENTS)]
     increments: usize,
     /// Coefficient of friction
-    #[arg(long, default_value_t = 0.1)]
+    #[arg(long, default_value_t = FRICTION)]
     friction: f64,
     /// Runs on coordinates that differ by 1e-13: how much a rounding error may cost
     #[arg(long, value_name = "RUNS")]
@@ -44,7 +44,7 @@ pub struct Args {
 }
 
 /// How the contact problem is solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Method {
     /// Semismooth Newton, the law itself
@@ -65,17 +65,20 @@ const ALL: [Method; 4] = [
 ];
 
 /// What one run took; times in seconds.
-#[derive(Debug, Clone, Serialize)]
-struct Figures {
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Figures {
     cells: [usize; 2],
     method: Method,
-    unknowns: usize,
+    /// Free displacements.
+    pub unknowns: usize,
     contacts: usize,
     increments: usize,
-    newton_iterations: usize,
+    /// Newton iterations of all increments.
+    pub newton_iterations: usize,
     contact_iterations: usize,
     factorisations: usize,
-    seconds: f64,
+    /// From the mesh to the last increment.
+    pub seconds: f64,
     assembly: f64,
     ordering: f64,
     factorisation: f64,
@@ -90,19 +93,24 @@ struct Figures {
     peak_memory: Option<f64>,
     /// Bipotential gap of the run over its external work.
     relative_gap: f64,
-    punch_load: f64,
+    /// Load of the punch \[N\] at the end.
+    pub punch_load: f64,
 }
 
-/// Total travel of the punch \[mm\], and in how many increments.
+/// Total travel of the punch \[mm\].
 const TRAVEL: f64 = 0.2;
-const INCREMENTS: usize = 10;
+/// In how many increments.
+pub const INCREMENTS: usize = 10;
+/// Coefficient of friction on the foundation.
+pub const FRICTION: f64 = 0.1;
 
 /// The first increments of the ten.
 fn press(increments: usize) -> Step<2> {
     paper::block_step(TRAVEL * increments as f64 / INCREMENTS as f64)
 }
 
-fn size(text: &str) -> Result<[usize; 2], String> {
+/// Reads a number of cells along and across.
+pub fn size(text: &str) -> Result<[usize; 2], String> {
     let wrong = || format!("\"{text}\" is no size: expected cells as 160x64");
     let (n, m) = text.split_once(['x', '×']).ok_or_else(wrong)?;
     let number = |t: &str| t.trim().parse().ok().filter(|n| *n > 0);
@@ -288,7 +296,7 @@ mod tests {
 
     #[test]
     fn parts_of_a_run_add_up_and_methods_agree() -> Result<(), Box<dyn Error>> {
-        let exact = measure([10, 2], Method::Exact, (0.1, INCREMENTS))?;
+        let exact = measure([10, 2], Method::Exact, (FRICTION, INCREMENTS))?;
         let parts = exact.assembly
             + exact.ordering
             + exact.factorisation
@@ -298,7 +306,7 @@ mod tests {
         assert!((parts - exact.seconds).abs() < 1e-9 * exact.seconds);
         assert!(exact.factorisations > 0 && exact.rest >= 0.0);
         assert!(exact.relative_gap.abs() < 1e-10);
-        let uzawa = measure([10, 2], Method::Uzawa, (0.1, INCREMENTS))?;
+        let uzawa = measure([10, 2], Method::Uzawa, (FRICTION, INCREMENTS))?;
         assert!((exact.punch_load / uzawa.punch_load - 1.0).abs() < 1e-7);
         Ok(())
     }
