@@ -190,9 +190,13 @@ impl<const D: usize> Newton<'_, D> {
                 form.free[D * i + k] += rest[k];
             }
         }
+        // A sweep costs 2 n² operations and a step up to ⅔ n³: no more of them than the attempts
+        // with all parts may have taken, or a problem that neither solves takes a hundred times as
+        // long as to cut the increment.
+        let size = D * p.contacts();
         let tolerance = Tolerance {
             relative: 1e-8,
-            iterations: 20_000,
+            iterations: (ATTEMPT * size).clamp(1_000, 20_000),
         };
         // Where sweeps cycle, which takes a large friction, corrections may not, and conversely.
         let swept = GaussSeidel { tolerance }
