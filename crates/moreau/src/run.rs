@@ -16,7 +16,6 @@ mod view;
 mod vtu;
 
 pub use diagnosis::{Diagnosis, Flip};
-pub use history::columns;
 pub use outcome::{Outcome, RunStatus, Verdict};
 pub use view::{NodalField, View};
 pub(crate) use vtu::vtu_of_mesh;
@@ -313,7 +312,7 @@ where
 {
     fn unopened(setup: Setup<D>, deck: &'a Deck, directory: &'a Path, resolved: String) -> Self {
         Self {
-            history: History::new(deck.units, D, setup.held.clone(), setup.tools.clone()),
+            history: History::new(deck.units, &setup),
             tally: Tally::new(&setup.driver),
             setup,
             deck,

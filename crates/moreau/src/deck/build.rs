@@ -69,6 +69,9 @@ pub struct Setup<const D: usize> {
     pub held: Vec<[String; 2]>,
     /// Tools, in the order of the deck.
     pub tools: Vec<String>,
+    /// Surfaces of bodies that touch each other and are not held: each once, in the order of the
+    /// contacts.
+    pub surfaces: Vec<String>,
     /// Groups of the mesh.
     pub groups: Vec<GroupFacts>,
     /// Bodies: cells connected through shared nodes.
@@ -159,10 +162,12 @@ fn setup<const D: usize, H: Cells<D>>(
     let supports = supports(&driver, deck, &stages, &groups, findings);
     conditions::doubts(deck, findings);
     conditions::inner_surfaces(deck, &groups, findings);
+    let held = conditions::held(deck, &groups);
     Some(Setup {
         driver,
         stages,
-        held: conditions::held(deck, &groups),
+        surfaces: surfaces(deck, &held),
+        held,
         tools: deck.tools.iter().map(|t| t.name.value.clone()).collect(),
         groups: groups.facts(&hypothesis),
         bodies: groups.bodies(&hypothesis, &supports),
@@ -230,6 +235,21 @@ fn driver<const D: usize>(
             None
         }
     }
+}
+
+/// Surfaces of the contacts between bodies, without those whose name the history has already.
+fn surfaces(deck: &Deck, held: &[[String; 2]]) -> Vec<String> {
+    let is_tool = |name: &String| deck.tools.iter().any(|t| t.name.value == *name);
+    let is_held = |name: &String| held.iter().any(|[n, _]| n == name);
+    let mut list: Vec<String> = Vec::new();
+    for contact in deck.contacts.iter().filter(|c| !is_tool(&c.against.value)) {
+        for name in [&contact.surface.value, &contact.against.value] {
+            if !list.contains(name) && !is_held(name) {
+                list.push(name.clone());
+            }
+        }
+    }
+    list
 }
 
 /// What stops the rigid motions of every body, step by step; motions that nothing stops are errors.
