@@ -240,11 +240,11 @@ where
     };
     write("history.svg".into(), pictures::forces(&history, deck))?;
     if let Some(mesh) = driver.plane() {
-        let contacts = pictures::contact_table(directory, number)?;
+        let contacts = pictures::contact_table(directory, &[number])?;
         let at = drawing.increment.map_or(String::new(), |n| format!("-{n}"));
         write(
             format!("contact{at}.svg"),
-            pictures::tractions(&contacts, deck),
+            pictures::tractions(&contacts, number, deck),
         )?;
         let files = vtu::bodies(directory);
         let arrays = match files.iter().find(|f| f.0 == number) {

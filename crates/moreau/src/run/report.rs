@@ -1,7 +1,10 @@
 //! `report.html`: a run on one page that needs nothing but a browser; its template is beside it.
 
 use super::files::read_text;
-use super::pictures::{field, forces, label, tractions, usual_field, usual_magnification};
+use super::pictures::{
+    ContactLine, TRACTIONS, contact_axis, contact_labels, contact_lines, field, forces, label,
+    tractions, usual_field, usual_magnification,
+};
 use super::table::Table;
 use super::vtu::{Array, bodies, read_point_data};
 use super::{RunError, pictures};
@@ -24,7 +27,8 @@ pub(super) fn report<const D: usize>(
 ) -> Result<String, RunError> {
     let history = Table::read(&directory.join("history.csv"), |_, _| true)?;
     let increment = history.texts("increment").last().copied().unwrap_or("0");
-    let contacts = pictures::contact_table(directory, increment.parse().unwrap_or(0))?;
+    let increment = increment.parse().unwrap_or(0);
+    let contacts = pictures::contact_table(directory, &[increment])?;
     let resolved = read_text(&directory.join("deck.resolved.toml"))?;
     let run = read_text(&directory.join("run.json"))?;
     let run: serde_json::Value = serde_json::from_str(&run).unwrap_or_default();
@@ -41,9 +45,9 @@ pub(super) fn report<const D: usize>(
         certificate => certificate(&history, deck),
         deck => resolved,
         history => forces(&history, deck),
-        contact => if D == 2 { tractions(&contacts, deck) } else { None },
+        contact => if D == 2 { tractions(&contacts, increment, deck) } else { None },
         // No name in it may end the script.
-        data => viewer(mesh, deck, directory, last)?.to_string().replace("</", "<\\/"),
+        data => viewer(mesh, deck, directory, (increment, last))?.to_string().replace("</", "<\\/"),
     };
     let mut environment = Environment::new();
     let html = environment
@@ -169,7 +173,7 @@ fn viewer<const D: usize>(
     mesh: &Mesh<D>,
     deck: &Deck,
     directory: &Path,
-    last: Option<&[Array]>,
+    (end, last): (usize, Option<&[Array]>),
 ) -> Result<serde_json::Value, RunError> {
     let all = bodies(directory);
     let per_frame = mesh.nodes().len() * (D + 4);
@@ -203,14 +207,17 @@ fn viewer<const D: usize>(
         frames.push(json!({ "label": label, "values": values }));
     };
     let count = all.len();
+    let mut increments = Vec::new();
     for (k, (number, time, path)) in all.into_iter().enumerate() {
         // The last frame is always there.
         if (count - 1 - k).is_multiple_of(stride) {
             let arrays = read_point_data(&path)?;
+            increments.push(number);
             add(format!("increment {number}, time {time:.4}"), &arrays);
         }
     }
     if let (0, Some(arrays)) = (count, last) {
+        increments.push(end);
         add("end".into(), arrays);
     }
     let labels: Map<String, serde_json::Value> = names
@@ -229,6 +236,32 @@ fn viewer<const D: usize>(
         "colours": crate::plot::colours(),
         "length": deck.units.length(),
         "frames": frames,
+        "contact": if D == 2 { contact(deck, directory, &increments)? } else { json!(null) },
+    }))
+}
+
+/// Tractions along the contact surfaces in every frame; null without contact.
+fn contact(
+    deck: &Deck,
+    directory: &Path,
+    increments: &[usize],
+) -> Result<serde_json::Value, RunError> {
+    let table = pictures::contact_table(directory, increments)?;
+    let axis = contact_axis(&table);
+    let frame = |&increment: &usize| contact_lines(&table, increment, axis);
+    let frames: Vec<Vec<ContactLine>> = increments.iter().map(frame).collect();
+    // The points of a surface are the same in all frames.
+    let Some(first) = frames.first().filter(|lines| !lines.is_empty()) else {
+        return Ok(json!(null));
+    };
+    let surface = |line: &ContactLine| json!({ "name": line.name, "at": packed(&line.at) });
+    let values = |line: &ContactLine| line.tractions.each_ref().map(|v| packed(v));
+    let values = |lines: &Vec<ContactLine>| lines.iter().map(values).collect::<Vec<_>>();
+    Ok(json!({
+        "labels": contact_labels(axis, deck.units),
+        "tractions": TRACTIONS,
+        "surfaces": first.iter().map(surface).collect::<Vec<_>>(),
+        "frames": frames.iter().map(values).collect::<Vec<_>>(),
     }))
 }
 
