@@ -89,6 +89,7 @@ pub struct Driver<const D: usize> {
     pub(crate) system: Option<System>,
     pub(crate) measure: Box<dyn Measure<D>>,
     contacts: Vec<Contact>,
+    materials: Vec<usize>,
 }
 
 impl<const D: usize> Driver<D> {
@@ -128,6 +129,8 @@ impl<const D: usize> Driver<D> {
         };
         let mut driver = Self {
             measure: Box::new(model.hypothesis),
+            // All cells have one: it was checked.
+            materials: model.material.into_iter().flatten().collect(),
             mesh: model.mesh,
             blocks: model.blocks,
             tools: model.tools,
@@ -181,6 +184,11 @@ impl<const D: usize> Driver<D> {
     /// The mesh.
     pub fn mesh(&self) -> &Mesh<D> {
         &self.mesh
+    }
+
+    /// Number of the material of every cell, in the order in which the model was given them.
+    pub fn materials(&self) -> &[usize] {
+        &self.materials
     }
 
     /// Displacement of a node since the virgin state \[mm\].
