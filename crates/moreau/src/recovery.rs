@@ -149,8 +149,12 @@ fn mean(values: impl Iterator<Item = Values>) -> Values {
     sum / count
 }
 
-/// A point for every node and every material of its cells; and the points of every cell.
-fn split<const D: usize>(mesh: &Mesh<D>, materials: &[usize]) -> (Vec<usize>, Vec<Vec<usize>>) {
+/// The nodes of points, one for every node and every material of its cells; and the points of every
+/// cell.
+pub(crate) fn split<const D: usize>(
+    mesh: &Mesh<D>,
+    materials: &[usize],
+) -> (Vec<usize>, Vec<Vec<usize>>) {
     let mut of_node = vec![BTreeMap::new(); mesh.nodes().len()];
     for (cell, &material) in materials.iter().enumerate() {
         for &node in mesh.cell_nodes(cell) {

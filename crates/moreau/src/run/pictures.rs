@@ -140,11 +140,39 @@ pub(super) fn label(name: &str, units: Units) -> String {
     format!("{name} [{unit}]")
 }
 
-/// A field at every node, by name: a scalar; the length of a vector; or a component, as in
-/// `displacement.x`.
+/// Suffixes of the components of vectors, and of stresses in the order of VTK.
+const VECTOR: [&str; 3] = ["x", "y", "z"];
+const TENSOR: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
+
+fn suffixes(array: &Array) -> &'static [&'static str] {
+    match array.components {
+        3 => &VECTOR,
+        6 => &TENSOR,
+        _ => &[],
+    }
+}
+
+/// Names of all that [`field`] finds in some arrays.
+pub(super) fn fields(arrays: &[Array]) -> Vec<String> {
+    let mut names = Vec::new();
+    for array in arrays {
+        if array.components <= 3 {
+            names.push(array.name.clone());
+        }
+        names.extend(
+            suffixes(array)
+                .iter()
+                .map(|s| format!("{}.{s}", array.name)),
+        );
+    }
+    names
+}
+
+/// A field at every point, by name: a scalar; the length of a vector; or a component, as in
+/// `displacement.x` or `stress.xy`. The first points are the nodes of the mesh.
 pub(super) fn field(arrays: &[Array], name: &str) -> Option<Vec<f64>> {
     let of = |name: &str| arrays.iter().find(|a| a.name == name);
-    if let Some(array) = of(name) {
+    if let Some(array) = of(name).filter(|a| a.components <= 3) {
         let length = |v: &[f64]| match v {
             [x] => *x,
             v => v.iter().map(|x| x * x).sum::<f64>().sqrt(),
@@ -153,9 +181,9 @@ pub(super) fn field(arrays: &[Array], name: &str) -> Option<Vec<f64>> {
     }
     let (name, component) = name.rsplit_once('.')?;
     let array = of(name)?;
-    let k = ["x", "y", "z"].iter().position(|c| *c == component)?;
+    let k = suffixes(array).iter().position(|c| *c == component)?;
     let value = |v: &[f64]| v.get(k).copied().unwrap_or(0.0);
-    (k < array.components).then(|| array.values.chunks(array.components).map(value).collect())
+    Some(array.values.chunks(array.components).map(value).collect())
 }
 
 /// Displacement of every node in the plane.
@@ -181,7 +209,10 @@ pub(super) fn deformed(
     name: &str,
     magnification: Option<f64>,
 ) -> Option<String> {
-    let displacement = displacement(arrays)?;
+    let mut displacement = displacement(arrays)?;
+    let mut values = field(arrays, name)?;
+    displacement.truncate(mesh.nodes().len());
+    values.truncate(mesh.nodes().len());
     let largest = displacement
         .iter()
         .map(|u| u[0].hypot(u[1]))
@@ -189,7 +220,7 @@ pub(super) fn deformed(
     let magnification = magnification.unwrap_or(usual_magnification(mesh.size(), largest));
     MeshPicture::new(mesh, &deck.title)
         .deformed(displacement, magnification)
-        .field(label(name, deck.units), field(arrays, name)?)
+        .field(label(name, deck.units), values)
         .outline()
         .to_svg()
         .ok()

@@ -2,14 +2,16 @@
 
 use super::files::read_text;
 use super::pictures::{
-    ContactLine, TRACTIONS, contact_axis, contact_labels, contact_lines, field, forces, label,
-    tractions, usual_field, usual_magnification,
+    ContactLine, TRACTIONS, contact_axis, contact_labels, contact_lines, field, fields, forces,
+    label, tractions, usual_field, usual_magnification,
 };
 use super::table::Table;
 use super::vtu::{Array, bodies, read_point_data};
 use super::{RunError, pictures};
 use crate::deck::Deck;
-use crate::mesh::Mesh;
+use crate::driver::Driver;
+use crate::mesh::{Facet, Mesh};
+use crate::recovery::split;
 use minijinja::value::Value;
 use minijinja::{Environment, context};
 use serde_json::{Map, json};
@@ -20,7 +22,7 @@ const MOST_VALUES: usize = 8_000_000;
 
 /// The page of a run. `last` is the end of the run where no file has it.
 pub(super) fn report<const D: usize>(
-    mesh: &Mesh<D>,
+    driver: &Driver<D>,
     deck: &Deck,
     directory: &Path,
     last: Option<&[Array]>,
@@ -47,7 +49,7 @@ pub(super) fn report<const D: usize>(
         history => forces(&history, deck),
         contact => if D == 2 { tractions(&contacts, increment, deck) } else { None },
         // No name in it may end the script.
-        data => viewer(mesh, deck, directory, (increment, last))?.to_string().replace("</", "<\\/"),
+        data => viewer(driver, deck, directory, (increment, last))?.to_string().replace("</", "<\\/"),
     };
     let mut environment = Environment::new();
     let html = environment
@@ -170,34 +172,36 @@ fn certificate(history: &Table, deck: &Deck) -> Value {
 /// What the viewer draws: nodes, faces and, for each frame, displacements and fields in 16 bits
 /// between their extremes.
 fn viewer<const D: usize>(
-    mesh: &Mesh<D>,
+    driver: &Driver<D>,
     deck: &Deck,
     directory: &Path,
     (end, last): (usize, Option<&[Array]>),
 ) -> Result<serde_json::Value, RunError> {
     let all = bodies(directory);
-    let per_frame = mesh.nodes().len() * (D + 4);
+    let mesh = driver.mesh();
+    let (points, cells) = split(mesh, driver.materials());
+    let per_frame = points.len() * (D + 9);
     let stride = (all.len() * per_frame).div_ceil(MOST_VALUES).max(1);
     let mut frames = Vec::new();
     let mut largest = 0.0f64;
     let mut names: Vec<String> = Vec::new();
     let mut add = |label: String, arrays: &[Array]| {
-        let count = mesh.nodes().len();
-        let fits = |a: &Array| a.values.len() == a.components * count;
+        let fits = |a: &Array| a.values.len() == a.components * points.len();
         if !arrays.iter().all(fits) {
             return;
         }
         let mut values = Map::new();
-        for k in 0..D {
-            let axis = ["x", "y", "z"][k];
-            let u = field(arrays, &format!("displacement.{axis}")).unwrap_or_default();
-            largest = u.iter().fold(largest, |m, v| m.max(v.abs()));
-            values.insert(format!("displacement.{axis}"), packed(&u));
-        }
-        for array in arrays {
-            if let Some(v) = field(arrays, &array.name) {
-                values.insert(array.name.clone(), packed(&v));
+        for name in fields(arrays) {
+            // What is always zero in the plane.
+            let out_of_plane = ["displacement.z", "stress.yz", "stress.xz"];
+            if D == 2 && out_of_plane.contains(&name.as_str()) {
+                continue;
             }
+            let v = field(arrays, &name).unwrap_or_default();
+            if name.starts_with("displacement.") {
+                largest = v.iter().fold(largest, |m, v| m.max(v.abs()));
+            }
+            values.insert(name, packed(&v));
         }
         for name in values.keys() {
             if !names.contains(name) {
@@ -226,9 +230,9 @@ fn viewer<const D: usize>(
         .collect();
     Ok(json!({
         "dimension": D,
-        "nodes": (0..D).map(|i| packed(&mesh.nodes().iter().map(|x| x[i]).collect::<Vec<_>>()))
+        "nodes": (0..D).map(|i| packed(&points.iter().map(|&n| mesh.nodes()[n][i]).collect::<Vec<_>>()))
             .collect::<Vec<_>>(),
-        "faces": faces(mesh),
+        "faces": faces(mesh, &cells),
         "fields": names,
         "labels": labels,
         "usual": usual_field(deck),
@@ -302,13 +306,13 @@ fn base64(bytes: &[u8]) -> String {
     text
 }
 
-/// What is seen of the cells: in the plane all of them, in space those of their facets that belong
+/// What is seen of the cells, by their points: in the plane all of them, in space those of their facets that belong
 /// to one cell only. Nodes around each face, mid-side nodes between their corners, and the node in
 /// its middle after them if it has one.
-fn faces<const D: usize>(mesh: &Mesh<D>) -> Vec<Vec<usize>> {
+fn faces<const D: usize>(mesh: &Mesh<D>, cells: &[Vec<usize>]) -> Vec<Vec<usize>> {
     if D == 2 {
         let face = |cell: usize| {
-            let nodes = mesh.cell_nodes(cell);
+            let nodes = &cells[cell];
             let mut face: Vec<usize> = Vec::new();
             for facet in mesh.kind(cell).facets() {
                 face.push(nodes[facet[0]]);
@@ -319,8 +323,9 @@ fn faces<const D: usize>(mesh: &Mesh<D>) -> Vec<Vec<usize>> {
         };
         return (0..mesh.cell_count()).map(face).collect();
     }
-    let face = |facet| {
-        let nodes: Vec<usize> = mesh.facet_nodes(facet).collect();
+    let face = |facet: Facet| {
+        let own = mesh.kind(facet.cell).facets()[facet.facet].iter();
+        let nodes: Vec<usize> = own.map(|&k| cells[facet.cell][k]).collect();
         let corners = if nodes.len().is_multiple_of(3) && nodes.len() < 9 {
             3
         } else {

@@ -146,7 +146,6 @@ fn what_is_smooth_is_recovered_better_than_it_was() {
         ("hex8", hex8),
     ] {
         let [raw, better] = [0, 1].map(|k| (coarse[k] / fine[k]).log2());
-        println!("{name}: {coarse:?}, then {fine:?}: orders {raw:.2} and {better:.2}");
         assert!(fine[1] < 0.5 * fine[0], "{name}: {coarse:?} {fine:?}");
         // On the boundary, where patches are one-sided, less than a whole order is gained.
         assert!(better > raw + 0.25, "{name}: {raw} {better}");
