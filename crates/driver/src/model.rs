@@ -159,14 +159,17 @@ pub struct Model<const D: usize, H> {
     pub(crate) tools: Vec<Tool<D>>,
     pub(crate) contacts: Vec<Contact>,
     pub(crate) points: Vec<ContactPoint<D>>,
-    has_material: Vec<bool>,
+    /// Number of the material of every cell, in the order in which they were given.
+    pub(crate) material: Vec<Option<usize>>,
+    materials: usize,
 }
 
 impl<const D: usize, H: Analysis<D>> Model<D, H> {
     /// A model of a mesh under a hypothesis, without materials.
     pub fn new(mesh: Mesh<D>, hypothesis: H) -> Self {
         Self {
-            has_material: vec![false; mesh.cell_count()],
+            material: vec![None; mesh.cell_count()],
+            materials: 0,
             mesh,
             hypothesis,
             blocks: Vec::new(),
@@ -188,7 +191,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     ) -> Result<Self, ModelError> {
         let mut by_kind: BTreeMap<CellKind, Vec<usize>> = BTreeMap::new();
         for &cell in self.mesh.cell_group(group)? {
-            if std::mem::replace(&mut self.has_material[cell], true) {
+            if self.material[cell].replace(self.materials).is_some() {
                 return Err(ModelError::TwoMaterials {
                     cell,
                     group: group.into(),
@@ -196,6 +199,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             }
             by_kind.entry(self.mesh.kind(cell)).or_default().push(cell);
         }
+        self.materials += 1;
         for (kind, cells) in by_kind {
             let own = self.hypothesis.cells(&self.mesh, kind, &cells, integration);
             // A mesh of dimension D has no cells of another dimension.
@@ -386,7 +390,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     /// # Errors
     /// [`ModelError::MissingMaterial`].
     pub(crate) fn check(&self) -> Result<(), ModelError> {
-        let mut bare = (0..self.has_material.len()).filter(|&c| !self.has_material[c]);
+        let mut bare = (0..self.material.len()).filter(|&c| self.material[c].is_none());
         match bare.next() {
             Some(first) => Err(ModelError::MissingMaterial {
                 count: 1 + bare.count(),

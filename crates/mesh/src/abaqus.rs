@@ -4,7 +4,7 @@ mod cells;
 mod keyword;
 mod sets;
 
-use crate::read::{Cell, Draft, Place, ReadError, Side};
+use crate::read::{Cell, Draft, Loss, Place, ReadError, Side};
 use crate::{CellKind, Facet, GroupKind, Mesh};
 use keyword::{Block, blocks, fields, number, unexpected};
 use sets::Sets;
@@ -60,6 +60,14 @@ use std::collections::{BTreeMap, BTreeSet};
 /// # }
 /// ```
 pub fn read_abaqus<const D: usize>(text: &str) -> Result<Mesh<D>, ReadError> {
+    Ok(read_abaqus_noting(text)?.0)
+}
+
+/// [`read_abaqus`], with what the file says and the mesh does not have.
+///
+/// # Errors
+/// Those of [`read_abaqus`].
+pub fn read_abaqus_noting<const D: usize>(text: &str) -> Result<(Mesh<D>, Vec<Loss>), ReadError> {
     const { assert!(D == 2 || D == 3) };
     let blocks = blocks(text)?;
     let mut file = File::new();
@@ -128,6 +136,7 @@ struct File {
     surfaces: BTreeMap<String, (String, BTreeSet<Side>)>,
     /// Surfaces of nodes, likewise.
     node_surfaces: BTreeMap<String, (String, BTreeSet<u64>)>,
+    losses: Vec<Loss>,
 }
 
 impl File {
@@ -141,6 +150,7 @@ impl File {
             element_sets: Sets::new(GroupKind::Cells),
             surfaces: BTreeMap::new(),
             node_surfaces: BTreeMap::new(),
+            losses: Vec::new(),
         }
     }
 
@@ -294,7 +304,10 @@ impl File {
                     .1
                     .extend(members);
             }
-            _ => {}
+            _ => self.losses.push(Loss::Group {
+                name: named,
+                reason: "its type is neither ELEMENT nor NODE",
+            }),
         }
         Ok(())
     }
@@ -359,6 +372,7 @@ impl File {
         draft.facet_groups = surfaces
             .map(|(name, sides)| (name, sides.into_iter().collect()))
             .collect();
+        draft.losses = self.losses;
         draft.nodes = self.nodes;
         draft.cells = self.cells;
         Ok(draft)

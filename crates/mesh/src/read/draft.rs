@@ -1,7 +1,7 @@
 //! Nodes, cells and groups by the numbers of a file, made into a mesh; knows no file format.
 
 use crate::geometry::diagonal;
-use crate::read::ReadError;
+use crate::read::{Loss, ReadError};
 use crate::sample::cell_samples;
 use crate::{CellKind, Facet, Mesh, MeshError};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -18,6 +18,8 @@ pub(crate) struct Draft {
     pub(crate) facet_groups: BTreeMap<String, Vec<Side>>,
     /// Numbers of nodes.
     pub(crate) node_groups: BTreeMap<String, Vec<u64>>,
+    /// What has been left out already.
+    pub(crate) losses: Vec<Loss>,
 }
 
 /// A cell, its nodes by number and in the order of its kind, of either orientation.
@@ -81,9 +83,10 @@ impl Draft {
     /// The mesh: nodes by increasing number, those of no cell left out, cells in their order here
     /// and turned round where their orientation is negative.
     ///
-    /// Groups left without member are left out; a name that also serves cells (or facets) gets
+    /// Groups left without member are left out and noted; a name that also serves cells (or facets) gets
     /// `.boundary` for facets and `.nodes` for nodes.
-    pub(crate) fn finish<const D: usize>(self) -> Result<Mesh<D>, ReadError> {
+    pub(crate) fn finish<const D: usize>(self) -> Result<(Mesh<D>, Vec<Loss>), ReadError> {
+        let mut losses = self.losses;
         let numbering = Numbering::new(self.nodes)?;
         let mut elements = Vec::with_capacity(self.cells.len());
         let mut cells = Vec::with_capacity(self.cells.len());
@@ -127,10 +130,20 @@ impl Draft {
             let position = numbering.position_for(element, node)?;
             Ok(places[position])
         })?;
-        let nodes = self.node_groups.into_iter().map(|(name, numbers)| {
-            let nodes = numbers.into_iter().filter_map(place).collect();
+        let nodes = self.node_groups.into_iter().map(|(name, mut numbers)| {
+            numbers.sort_unstable();
+            numbers.dedup();
+            let of = numbers.len();
+            let nodes: Vec<usize> = numbers.into_iter().filter_map(place).collect();
+            if !nodes.is_empty() && nodes.len() < of {
+                let lost = of - nodes.len();
+                let name = name.clone();
+                losses.push(Loss::Nodes { name, lost, of });
+            }
             (name, Members::Nodes(nodes))
         });
+        // Those of nodes are noted before groups that are lost as a whole.
+        let nodes: Vec<_> = nodes.collect();
         let cells = self
             .cell_groups
             .into_iter()
@@ -138,11 +151,12 @@ impl Draft {
         let facets = facets
             .into_iter()
             .map(|(name, facets)| (name, Members::Facets(facets)));
-        add(&mut mesh, cells.chain(facets).chain(nodes)).map_err(|source| ReadError::Mesh {
+        let groups = cells.chain(facets).chain(nodes);
+        add(&mut mesh, groups, &mut losses).map_err(|source| ReadError::Mesh {
             element: None,
             source,
         })?;
-        Ok(mesh)
+        Ok((mesh, losses))
     }
 }
 
@@ -306,6 +320,7 @@ fn mirrored_facet(kind: CellKind, facet: Facet) -> Facet {
 fn add<const D: usize>(
     mesh: &mut Mesh<D>,
     groups: impl Iterator<Item = (String, Members)>,
+    losses: &mut Vec<Loss>,
 ) -> Result<(), MeshError> {
     let mut taken = BTreeSet::new();
     let mut later = Vec::new();
@@ -315,11 +330,13 @@ fn add<const D: usize>(
         Members::Nodes(nodes) => mesh.add_node_group(name, nodes),
     };
     for (name, members) in groups {
-        let empty = match &members {
-            Members::Cells(items) | Members::Nodes(items) => items.is_empty(),
-            Members::Facets(items) => items.is_empty(),
+        let (empty, reason) = match &members {
+            Members::Cells(items) => (items.is_empty(), "it has no cell"),
+            Members::Facets(items) => (items.is_empty(), "it has no side of a cell"),
+            Members::Nodes(items) => (items.is_empty(), "none of its nodes belongs to a cell"),
         };
         if empty {
+            losses.push(Loss::Group { name, reason });
             continue;
         }
         if taken.insert(name.clone()) {

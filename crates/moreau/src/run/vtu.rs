@@ -2,8 +2,9 @@
 //! binary data, compressed.
 
 use super::RunError;
+use super::body::body;
 use super::files::{Stream, read_text, write_file};
-use super::view::{NodalField, View};
+use super::view::View;
 use crate::driver::{ContactRecord, Driver};
 use crate::laws::Status;
 use crate::mesh::{CellKind, Facet, FacetKind, Mesh};
@@ -79,7 +80,7 @@ impl Collection {
         Driver<D>: View,
     {
         let number = driver.increments();
-        let mut files = vec![(0, format!("body_{number:05}.vtu"), body(driver))];
+        let mut files = vec![(0, format!("body_{number:05}.vtu"), body(driver).0)];
         if let Some(contact) = surface(driver) {
             files.push((1, format!("contact_{number:05}.vtu"), contact));
         }
@@ -112,11 +113,14 @@ impl Collection {
     where
         Driver<D>: View,
     {
-        let mut grid = body(driver);
+        let (mut grid, nodes) = body(driver);
         let vector = |name: &str, values: &[f64]| Array {
             name: name.to_owned(),
             components: 3,
-            values: values.chunks(D).flat_map(three).collect(),
+            values: nodes
+                .iter()
+                .flat_map(|n| three(&values[D * n..][..D]))
+                .collect(),
         };
         grid.point_data[0] = vector("displacement", displacement);
         grid.point_data.push(vector("out_of_balance", residual));
@@ -199,12 +203,12 @@ fn decompressed(bytes: &[u8]) -> Option<Vec<u8>> {
 }
 
 /// An unstructured grid.
-struct Grid {
-    points: Vec<[f64; 3]>,
+pub(super) struct Grid {
+    pub(super) points: Vec<[f64; 3]>,
     /// Nodes and VTK type of every cell.
-    cells: Vec<(Vec<i64>, u8)>,
-    point_data: Vec<Array>,
-    cell_data: Vec<Array>,
+    pub(super) cells: Vec<(Vec<i64>, u8)>,
+    pub(super) point_data: Vec<Array>,
+    pub(super) cell_data: Vec<Array>,
 }
 
 /// Values of points or cells.
@@ -216,16 +220,8 @@ pub(super) struct Array {
 }
 
 /// Fills up with zeros to three components.
-fn three(v: &[f64]) -> [f64; 3] {
+pub(super) fn three(v: &[f64]) -> [f64; 3] {
     std::array::from_fn(|i| v.get(i).copied().unwrap_or(0.0))
-}
-
-/// Values at the nodes of the body of a driver.
-pub(super) fn nodal<const D: usize>(driver: &Driver<D>) -> Vec<Array>
-where
-    Driver<D>: View,
-{
-    body(driver).point_data
 }
 
 /// A mesh without results: its groups as arrays of 0 and 1, of cells for groups of cells and of
@@ -266,38 +262,6 @@ fn cells<const D: usize>(mesh: &Mesh<D>) -> Vec<(Vec<i64>, u8)> {
         (nodes, cell_type(mesh.kind(c)))
     };
     (0..mesh.cell_count()).map(cell).collect()
-}
-
-fn body<const D: usize>(driver: &Driver<D>) -> Grid
-where
-    Driver<D>: View,
-{
-    let mesh = driver.mesh();
-    let nodes = 0..mesh.nodes().len();
-    let scalar = |name: &str, field| Array {
-        name: name.to_owned(),
-        components: 1,
-        values: driver.nodal(field),
-    };
-    let displacement = nodes.flat_map(|n| three(driver.displacement(n).as_slice()));
-    Grid {
-        points: mesh.nodes().iter().map(|x| three(x)).collect(),
-        cells: cells(mesh),
-        point_data: vec![
-            Array {
-                name: "displacement".into(),
-                components: 3,
-                values: displacement.collect(),
-            },
-            scalar("von_mises", NodalField::VonMises),
-            scalar("equivalent_plastic_strain", NodalField::PlasticStrain),
-        ],
-        cell_data: vec![Array {
-            name: "cell".into(),
-            components: 1,
-            values: (0..mesh.cell_count()).map(|c| c as f64).collect(),
-        }],
-    }
 }
 
 /// All contact surfaces; none without contacts.
@@ -364,7 +328,7 @@ fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
     })
 }
 
-fn cell_type(kind: CellKind) -> u8 {
+pub(super) fn cell_type(kind: CellKind) -> u8 {
     match kind.name() {
         "tri3" => 5,
         "tri6" => 22,

@@ -3,6 +3,7 @@
 mod meshes;
 mod mutants;
 mod schema;
+mod supports;
 
 use moreau::deck::{Class, Problem, open, open_in};
 use std::path::{Path, PathBuf};
@@ -274,21 +275,6 @@ fn what_is_doubtful_is_a_warning() {
         "\"idle\"",
         &["no [[contact]] uses the tool \"idle\""],
     );
-}
-
-#[test]
-fn rigid_motions_that_are_free_are_named() {
-    let fix = "fix = [{ on = \"block.left\", u = [\"x\"] }]";
-    let text = DECK
-        .replace("friction = 0.1", "friction = 0")
-        .replace(fix, "");
-    let (_, problem, findings) = open(&text);
-    let out = findings.render("deck.toml", &text, false);
-    assert!(problem.is_none() && out.contains("deck.toml:35:8"), "{out}");
-    let flat = flat(&out);
-    for word in ["body \"block\"", "free to move", "translation along x"] {
-        assert!(flat.contains(word), "{word} in {out}");
-    }
 }
 
 #[test]
