@@ -7,8 +7,9 @@ use crate::interface::{ContactPoint, Tool, tool_index};
 use moreau_contact::Obstacle;
 use moreau_laws::{BulkLaw, Friction};
 use moreau_mesh::{
-    Axisymmetric, CellKind, Coupling, Element, Facet, Hex8, Hypothesis, Integration, Mesh, Pairing,
-    PlaneStrain, Quad4, Quad8, Quad9, Share, Solid, Tet4, Tri3, Tri6, nearest,
+    Axisymmetric, CellKind, Coupling, Element, Facet, Hex8, Hex20, Hex27, Hypothesis, Integration,
+    Mesh, Pairing, PlaneStrain, Quad4, Quad8, Quad9, Share, Solid, Tet4, Tet10, Tri3, Tri6,
+    nearest,
 };
 use std::collections::BTreeMap;
 
@@ -56,7 +57,7 @@ fn plane<H: Hypothesis<2>>(
         CellKind::Quad4 => cells::<Quad4, H, 2, 4>(h, mesh, of, rule),
         CellKind::Quad8 => cells::<Quad8, H, 2, 8>(h, mesh, of, rule),
         CellKind::Quad9 => cells::<Quad9, H, 2, 9>(h, mesh, of, rule),
-        CellKind::Tet4 | CellKind::Hex8 => return None,
+        _ => return None,
     })
 }
 
@@ -70,7 +71,10 @@ fn space<H: Hypothesis<3>>(
 ) -> Option<Box<dyn Cells<3>>> {
     Some(match kind {
         CellKind::Tet4 => cells::<Tet4, H, 3, 4>(h, mesh, of, rule),
+        CellKind::Tet10 => cells::<Tet10, H, 3, 10>(h, mesh, of, rule),
         CellKind::Hex8 => cells::<Hex8, H, 3, 8>(h, mesh, of, rule),
+        CellKind::Hex20 => cells::<Hex20, H, 3, 20>(h, mesh, of, rule),
+        CellKind::Hex27 => cells::<Hex27, H, 3, 27>(h, mesh, of, rule),
         _ => return None,
     })
 }
