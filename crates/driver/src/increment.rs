@@ -295,8 +295,7 @@ impl<const D: usize> Driver<D> {
                 };
             };
             let obstacle = &self.tools[tool].obstacle;
-            let x = SVector::from(self.mesh.nodes()[p.node]) + self.displacement(p.node);
-            let x = x + slip - end.tools[tool];
+            let x = footing.relative(|a| self.position(a)) + slip - end.tools[tool];
             let slip = slip - (end.tools[tool] - start.tools[tool]);
             let gap = obstacle.distance(&x) - p.offset;
             Kinematics::new(&obstacle.normal(&x), gap, &slip, free)

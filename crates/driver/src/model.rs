@@ -3,7 +3,7 @@
 use crate::ModelError;
 use crate::block::{Block, SolidBlock};
 use crate::cells::{Cells, ElementCells};
-use crate::interface::{ContactPoint, Tool, tool_index};
+use crate::interface::{ContactPoint, Tool, positive_shares, tool_index};
 use moreau_contact::Obstacle;
 use moreau_laws::{BulkLaw, Friction};
 use moreau_mesh::{
@@ -317,7 +317,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     ) -> Result<(), ModelError> {
         let facets = self.mesh.facet_group(surface)?;
         let shares = self.mesh.facet_shares(facets, &self.hypothesis);
-        for share in shares {
+        for (share, edge) in positive_shares(&self.mesh, facets, shares) {
             if let Some(other) = self.points.iter().find(|p| p.node == share.node) {
                 return Err(ModelError::SharedContactNode {
                     node: share.node,
@@ -334,6 +334,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 offset: 0.0,
                 area: share.area,
                 kind: share.kind,
+                edge,
             });
         }
         Ok(())
@@ -372,7 +373,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         }
         let last = self.contacts.len();
         for point in self.points.iter_mut().filter(|p| p.contact + 1 == last) {
-            let x = self.mesh.nodes()[point.node].into();
+            let x = point.place(|a| self.mesh.nodes()[a].into());
             let Some(tool) = point.tool else { continue };
             let gap = self.tools[tool].obstacle.distance(&x) - point.offset;
             if gap.abs() <= tolerance {

@@ -140,15 +140,15 @@ impl CellKind {
     }
 
     /// The rule to take where none is asked for: the one that locks least in plastic flow without
-    /// modes that pass from cell to cell.
+    /// modes that pass from cell to cell. Those of biquadratic and triquadratic cells under the
+    /// reduced rule do.
     ///
     /// Linear triangles and tetrahedra have none that does not lock: see [`CellKind::locks`].
     pub const fn integration(self) -> Integration {
         match self {
-            Self::Tri3 | Self::Tet4 => Integration::Full,
+            Self::Tri3 | Self::Tet4 | Self::Quad9 | Self::Hex27 => Integration::Full,
             Self::Quad4 | Self::Hex8 => Integration::BBar,
-            Self::Tri6 | Self::Quad8 | Self::Quad9 => Integration::Reduced,
-            Self::Tet10 | Self::Hex20 | Self::Hex27 => Integration::Reduced,
+            Self::Tri6 | Self::Quad8 | Self::Tet10 | Self::Hex20 => Integration::Reduced,
         }
     }
 
