@@ -439,7 +439,8 @@ impl<const D: usize> Driver<D> {
                 .sum::<f64>();
             penalty -= 0.5 * self.state.contacts[i].t[0] * self.state.contacts[i].spring[0];
             irreversible.push(obeying);
-            let held = !(1..D).all(|j| k.active[j]);
+            // A point that is held along one tangent of a surface in space slips along the other.
+            let held = !(1..D).any(|j| k.active[j]);
             let status = match solution.status[i] {
                 Status::Slip if held => Status::Stick,
                 other => other,
