@@ -5,6 +5,8 @@ mod block;
 mod compare;
 mod penalty;
 mod prandtl;
+mod ring;
+mod rounded_punch;
 
 pub use compare::{History, record};
 
@@ -12,5 +14,12 @@ use crate::Case;
 
 /// All cases.
 pub fn all() -> Vec<Case> {
-    vec![prandtl::CASE, block::CASE, penalty::CASE, algorithms::CASE]
+    vec![
+        prandtl::CASE,
+        block::CASE,
+        penalty::CASE,
+        algorithms::CASE,
+        rounded_punch::CASE,
+        ring::CASE,
+    ]
 }
