@@ -46,7 +46,7 @@ const LOADS: [(usize, Integration, f64); 8] = [
 fn name(refinement: usize, integration: Integration) -> String {
     let rule = match integration {
         Integration::Reduced => "2×2",
-        Integration::Full => "3×3",
+        Integration::Full | Integration::BBar => "3×3",
     };
     format!("{} cells, {rule}", 56 * refinement * refinement)
 }
