@@ -10,6 +10,7 @@ mod groups;
 mod hypotheses;
 mod integrals;
 mod pairing;
+mod pairing_space;
 mod quadrature;
 mod validity;
 mod write;
