@@ -2,7 +2,9 @@
 
 mod algorithms;
 mod block;
+mod cattaneo;
 mod compare;
+mod greco;
 mod penalty;
 mod prandtl;
 mod ring;
@@ -19,6 +21,8 @@ pub fn all() -> Vec<Case> {
         block::CASE,
         penalty::CASE,
         algorithms::CASE,
+        greco::CASE,
+        cattaneo::CASE,
         rounded_punch::CASE,
         ring::CASE,
     ]

@@ -51,6 +51,8 @@ pub(crate) struct ElementCells<E, H, const D: usize, const N: usize> {
     /// Shape functions at the points of the reference cell.
     shapes: Vec<[f64; N]>,
     points: Vec<Point<D, N>>,
+    /// Trace b̄_a of the operators B_a, averaged over each cell; none where it is not.
+    dilatation: Vec<[[f64; D]; N]>,
     kind: PhantomData<fn() -> (E, H)>,
 }
 
@@ -88,20 +90,52 @@ where
                 });
             }
         }
-        Self {
+        let mut new = Self {
             nodes,
             shapes,
             points,
+            dilatation: Vec::new(),
             kind: PhantomData,
+        };
+        if integration == Integration::BBar {
+            new.dilatation = (0..new.count()).map(|k| new.mean_dilatation(k)).collect();
+        }
+        new
+    }
+
+    /// ∫ b_a dΩ / ∫ dΩ over a cell, with b_a the trace of B_a.
+    fn mean_dilatation(&self, k: usize) -> [[f64; D]; N] {
+        let mut sum = [[0.0; D]; N];
+        let mut volume = 0.0;
+        for (point, operator) in self.operators(k) {
+            volume += point.weight;
+            for a in 0..N {
+                for i in 0..D {
+                    sum[a][i] += point.weight * dilatation(&operator[i], a);
+                }
+            }
+        }
+        sum.map(|row| row.map(|b| b / volume))
+    }
+
+    /// Rows of every column of the operators that may be other than zero: the mean dilatation fills
+    /// the first three.
+    fn rows(&self) -> [&'static [usize]; D] {
+        if self.dilatation.is_empty() {
+            H::ROWS
+        } else {
+            [&[0, 1, 2, 3, 4, 5]; D]
         }
     }
 
-    /// Points of a cell, and their operators B of \[77\]: by column of B_a, by row, by node. Next to
-    /// each other are the nodes, which all do the same; rows not in [`Hypothesis::ROWS`] are zero.
+    /// Points of a cell, and their operators B of \[77\], or B̄ with the mean dilatation: by column
+    /// of B_a, by row, by node. Next to each other are the nodes, which all do the same; rows not
+    /// among [`Self::rows`] are zero.
     fn operators(&self, k: usize) -> impl Iterator<Item = (&Point<D, N>, [[[f64; N]; 6]; D])> {
         let count = self.shapes.len();
         let points = &self.points[k * count..(k + 1) * count];
-        points.iter().zip(&self.shapes).map(|(point, shape)| {
+        let mean = self.dilatation.get(k);
+        points.iter().zip(&self.shapes).map(move |(point, shape)| {
             let mut operator = [[[0.0; N]; 6]; D];
             for a in 0..N {
                 let b = H::strain_operator(shape[a], &point.gradient[a], &point.position);
@@ -109,11 +143,20 @@ where
                     for &r in H::ROWS[j] {
                         operator[j][r][a] = b[(r, j)];
                     }
+                    if let Some(mean) = mean {
+                        let third = (mean[a][j] - dilatation(&operator[j], a)) / 3.0;
+                        (0..3).for_each(|r| operator[j][r][a] += third);
+                    }
                 }
             }
             (point, operator)
         })
     }
+}
+
+/// Trace of the strain by a unit displacement of node a, from a column of the operators.
+fn dilatation<const N: usize>(column: &[[f64; N]; 6], a: usize) -> f64 {
+    column[0][a] + column[1][a] + column[2][a]
 }
 
 impl<E, H, const D: usize, const N: usize> Cells<D> for ElementCells<E, H, D, N>
@@ -142,13 +185,13 @@ where
     }
 
     fn strain(&self, k: usize, d_u: &[f64], d_eps: &mut [Sym2]) {
-        let nodes = &self.nodes[k];
+        let (nodes, rows) = (&self.nodes[k], self.rows());
         let d_u: [[f64; N]; D] =
             std::array::from_fn(|j| std::array::from_fn(|a| d_u[D * nodes[a] + j]));
         for ((_, operator), d_eps) in self.operators(k).zip(d_eps) {
             *d_eps = Sym2::zeros();
             for j in 0..D {
-                for &r in H::ROWS[j] {
+                for &r in rows[j] {
                     for a in 0..N {
                         d_eps[r] += operator[j][r][a] * d_u[j][a];
                     }
@@ -158,10 +201,11 @@ where
     }
 
     fn force(&self, k: usize, stress: &[Sym2], force: &mut [f64]) {
+        let rows = self.rows();
         let mut sum = [[0.0; N]; D];
         for ((point, operator), stress) in self.operators(k).zip(stress) {
             for i in 0..D {
-                for &r in H::ROWS[i] {
+                for &r in rows[i] {
                     let stress = point.weight * stress[r];
                     for a in 0..N {
                         sum[i][a] += operator[i][r][a] * stress;
@@ -179,13 +223,14 @@ where
     fn stiffness(&self, k: usize, tangent: &[Sym4], stiffness: &mut [f64]) {
         // Components (i, j), i ≤ j, of the blocks of all pairs of nodes: whole rows of nodes, which
         // a processor does at once. K is symmetric, and the other components are those of (b, a).
+        let rows = self.rows();
         let mut sum = [[[[0.0; N]; N]; D]; D];
         for ((point, operator), tangent) in self.operators(k).zip(tangent) {
             for j in 0..D {
                 for i in 0..=j {
-                    for &r in H::ROWS[i] {
+                    for &r in rows[i] {
                         let mut traction = [0.0; N];
-                        for &s in H::ROWS[j] {
+                        for &s in rows[j] {
                             let c = point.weight * tangent[(r, s)];
                             for b in 0..N {
                                 traction[b] += c * operator[j][s][b];

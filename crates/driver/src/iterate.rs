@@ -12,9 +12,8 @@ pub(crate) struct Iterate {
     pub(crate) assembly: Assembly,
     /// Contact forces at every degree of freedom \[N\].
     pub(crate) contact: Vec<f64>,
-    /// Whether displacements and contact forces are those of a full Newton step, which obeys the
-    /// contact law.
-    pub(crate) full: bool,
+    /// Part of the last Newton step that was taken: of a full one, which obeys the contact law, 1.
+    pub(crate) part: f64,
 }
 
 impl Iterate {

@@ -33,7 +33,7 @@ impl<const D: usize> Driver<D> {
             mut missing,
             mut now,
             factorisations,
-        } = self.first_iterate(system, start, end);
+        } = self.first_iterate(system, (start, end), self.predictor(start, end));
         let mut counts = Counts::default();
         let kinematics = self.kinematics(system, start, end, &now.d_u);
         let mut t = self.previous_forces(&kinematics);
@@ -164,6 +164,7 @@ impl<const D: usize> Driver<D> {
             let target = now.contact.clone();
             let line = Line {
                 end,
+                growth: Vec::new(),
                 free,
                 step: &step,
                 target: &target,

@@ -1,7 +1,7 @@
 //! Compression of a ring between plates of constant friction: the test by which friction is
 //! measured in forming.
 
-use crate::{Case, Check, Figure, Kind, Options, Outcome, Table};
+use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
 use moreau::contact::Plane;
 use moreau::driver::{Axis, Driver, Model, Settings, Step};
 use moreau::laws::{Tresca, VonMises};
@@ -12,6 +12,7 @@ use std::error::Error;
 /// The case.
 pub(super) const CASE: Case = Case {
     name: "ring",
+    chapter: Chapter::Beyond,
     title: "Ring compression, the calibration of friction (Male and Cockcroft)",
     description: "A ring of the proportions 6:3:2 (outer, inner diameter, height) is compressed \
         between plates whose friction is a constant part m of the yield stress in shear. With \

@@ -1,7 +1,7 @@
 //! Two elastic bodies of revolution: a steel punch with a rounded edge on a softer foundation.
 
 use crate::problems::shapes::graded;
-use crate::{Case, Check, Figure, Kind, Options, Outcome, Table};
+use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
 use moreau::driver::{Axis, ContactRecord, Driver, Model, Settings, Step};
 use moreau::laws::{Coulomb, Elastic, Status};
 use moreau::mandel::von_mises;
@@ -13,6 +13,7 @@ use std::f64::consts::PI;
 /// The case.
 pub(super) const CASE: Case = Case {
     name: "rounded-punch",
+    chapter: Chapter::Beyond,
     title: "Punch with a rounded edge on a foundation (NAFEMS contact benchmark 2)",
     description: "A steel punch of radius 50 mm and height 100 mm, its edge rounded by 10 mm, is \
         pressed by 100 MPa on an elastic foundation of radius 100 mm and height 200 mm, one third \

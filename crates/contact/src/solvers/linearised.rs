@@ -15,6 +15,10 @@ pub(super) struct Row<const D: usize> {
     pub(super) value: Local<D>,
 }
 
+/// Pivots below this part of the largest are rounding of a stiffness that was condensed, and a rigid
+/// motion.
+const RIGID: f64 = 1e-13;
+
 /// Part of an E at most 1 below which it is rounding.
 const NONE: f64 = 1e-14;
 
@@ -71,7 +75,8 @@ pub(super) fn solve<const D: usize>(
             row += 1;
         }
     }
-    let solved = Lu::new(matrix)?.solve(value);
+    let mut lu = Lu::new(matrix).filter(|lu| lu.least_pivot > RIGID)?;
+    let solved = lu.solve(value);
     let mut step = fixed;
     let mut next = 0;
     for (i, o) in own.iter().enumerate() {
