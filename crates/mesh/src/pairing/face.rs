@@ -196,7 +196,8 @@ impl<const D: usize> Face<D> {
             ];
             xi = [xi[0] + step[0], xi[1] + step[1]];
             // Written so that NaN ends the search.
-            if !(xi[0].abs().max(xi[1].abs()) < 1e3) {
+            let far = xi[0].abs().max(xi[1].abs());
+            if far.is_nan() || far >= 1e3 {
                 return None;
             }
             // Quadratic convergence: the next step is below rounding.
