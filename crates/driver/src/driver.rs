@@ -101,7 +101,7 @@ impl<const D: usize> Driver<D> {
         settings: Settings<D>,
     ) -> Result<Self, ModelError> {
         model.check()?;
-        let dofs = D * model.mesh.nodes().len();
+        let dofs = D * (model.mesh.nodes().len() + model.tools.len());
         let rest = |p: &ContactPoint<D>| ContactRecord {
             contact: p.contact,
             node: p.node,
@@ -120,7 +120,7 @@ impl<const D: usize> Driver<D> {
             displacement: vec![0.0; dofs],
             last: None,
             internal: vec![0.0; dofs],
-            loading: Loading::none(dofs, model.tools.len()),
+            loading: Loading::none(dofs),
             energies: Energies::default(),
             contacts: model.points.iter().map(rest).collect(),
             contact: vec![0.0; dofs],
@@ -145,7 +145,7 @@ impl<const D: usize> Driver<D> {
     /// Finds what the contact points stand on, at the committed positions.
     pub(crate) fn pair(&mut self) -> Result<(), ModelError> {
         let on_tool = |p: &ContactPoint<D>| match p.tool {
-            Some(_) => Footing::on_tool(p.node, p.area),
+            Some(tool) => Footing::on_tool(p.node, self.tool_node(tool), p.area),
             None => Footing::default(),
         };
         let mut footings: Vec<Footing<D>> = self.points.iter().map(on_tool).collect();
@@ -176,6 +176,16 @@ impl<const D: usize> Driver<D> {
         }
         self.footings = footings;
         Ok(())
+    }
+
+    /// The node that stands for a tool.
+    pub(crate) fn tool_node(&self, tool: usize) -> usize {
+        self.mesh.nodes().len() + tool
+    }
+
+    /// Degrees of freedom of the mesh; those of the tools come after them.
+    pub(crate) fn mesh_dofs(&self) -> usize {
+        D * self.mesh.nodes().len()
     }
 
     /// The mesh.
@@ -269,6 +279,15 @@ impl<const D: usize> Driver<D> {
         Ok(pairs.filter(touches).map(|(_, c)| c.force).sum())
     }
 
+    /// Translation of a tool from its first position \[mm\].
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownTool`].
+    pub fn tool_displacement(&self, name: &str) -> Result<SVector<f64, D>, ModelError> {
+        let tool = tool_index(&self.tools, name)?;
+        Ok(self.displacement(self.tool_node(tool)))
+    }
+
     /// Sum of the contact forces on the nodes of a group \[N\]: on either surface of a pair, the
     /// force that the other exerts on it.
     ///
@@ -288,9 +307,7 @@ impl<const D: usize> Driver<D> {
     /// Unknown groups and tools, displacements prescribed twice, numbers that are not finite.
     pub fn loading(&self, step: &Step<D>) -> Result<Loading<D>, ModelError> {
         let mesh = &self.mesh;
-        let mut loading = Loading::none(self.state.displacement.len(), self.tools.len());
-        // A tool that is not mentioned stays where it is.
-        loading.tools.clone_from(&self.state.loading.tools);
+        let mut loading = Loading::none(self.state.displacement.len());
         let mut add = |node: usize, share: f64, vector: &[f64; D]| {
             for i in 0..D {
                 loading.force[D * node + i] += share * vector[i];
@@ -344,16 +361,38 @@ impl<const D: usize> Driver<D> {
                         add(node, share, density);
                     }
                 }
-                Condition::Tool { .. } => {}
+                Condition::Tool { .. } | Condition::Push { .. } => {}
+            }
+        }
+        // A tool that is not mentioned stays where it is.
+        let tools = self.mesh_dofs()..self.state.displacement.len();
+        moved.extend(tools.map(|dof| (dof, self.state.displacement[dof])));
+        for condition in &step.conditions {
+            if let Condition::Tool { name, displacement } = condition {
+                let node = self.tool_node(tool_index(&self.tools, name)?);
+                moved.extend((0..D).map(|i| (D * node + i, displacement[i])));
             }
         }
         for condition in &step.conditions {
-            if let Condition::Tool { name, displacement } = condition {
-                loading.tools[tool_index(&self.tools, name)?] = SVector::from(*displacement);
+            if let Condition::Push { name, axis, force } = condition {
+                let node = self.tool_node(tool_index(&self.tools, name)?);
+                let translations = self.measure.rigid_modes(&[0.0; D]);
+                if !translations
+                    .iter()
+                    .any(|m| m.get(axis.index()) == Some(&1.0))
+                {
+                    return Err(ModelError::OutOfRange {
+                        what: format!("direction of the force on tool {name:?}"),
+                        value: axis.index() as f64,
+                        expected: "a direction in which the analysis lets a tool move",
+                    });
+                }
+                moved.remove(&(D * node + axis.index()));
+                loading.force[D * node + axis.index()] += force;
             }
         }
         loading.displacement = moved;
-        loading.check()?;
+        loading.check(self.mesh.nodes().len())?;
         Ok(loading)
     }
 
@@ -389,8 +428,9 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
         watch: &mut dyn FnMut(&Iteration<'_>),
     ) -> Result<StepReport, StepError> {
-        end.check()?;
+        end.check(self.mesh.nodes().len())?;
         self.pair()?;
+        self.check_pushes(end)?;
         let mut system = self.prepare(end, None)?;
         let start = self.start_of(end);
         let outcome = match self.settings.nesting {
@@ -434,7 +474,14 @@ impl<const D: usize> Driver<D> {
         for contact in self.contacts.iter().filter(|c| c.pairing.is_some()) {
             interface.extend(self.mesh.node_group(&contact.opposite)?);
         }
-        let mut system = System::new(&self.mesh, &self.blocks, fixed, &interface, pivot)?;
+        let mut system = System::new(
+            &self.mesh,
+            &self.blocks,
+            fixed,
+            &interface,
+            pivot,
+            self.tools.len(),
+        )?;
         system.timings += self.timings();
         let zero = vec![0.0; self.state.displacement.len()];
         system.assemble(&mut self.blocks, &zero, &zero, Stiffness::Blended(1.0));
@@ -451,12 +498,38 @@ impl<const D: usize> Driver<D> {
         self.check_rigid_motions(&|dof| loading.displacement.contains_key(&dof))
     }
 
+    /// What a tool that is driven by a force may touch must be able to stand up to it.
+    fn check_pushes(&self, end: &Loading<D>) -> Result<(), ModelError> {
+        for (k, tool) in self.tools.iter().enumerate() {
+            let node = self.tool_node(k);
+            let force = SVector::<f64, D>::from_column_slice(&end.force[D * node..][..D]);
+            // The most work that a contact force of unit pressure can do against the tool's force.
+            let most = |p: &ContactPoint<D>| {
+                let x = SVector::from(self.mesh.nodes()[p.node]) + self.displacement(p.node);
+                let n = tool.obstacle.normal(&(x - self.displacement(node)));
+                let along = n.dot(&force);
+                let across = (force - n * along).norm();
+                along + if p.law.resists_slip() { across } else { 0.0 }
+            };
+            let mut points = self.points.iter().filter(|p| p.tool == Some(k));
+            if force.norm() > 0.0 && !points.any(|p| most(p) > 1e-9 * force.norm()) {
+                return Err(ModelError::PulledTool {
+                    tool: tool.name.clone(),
+                    force: force.iter().copied().collect(),
+                });
+            }
+        }
+        Ok(())
+    }
+
     /// Every rigid motion of the bodies must be resisted by a prescribed displacement, by a contact
     /// normal, or by friction.
     fn check_rigid_motions(&self, fixed: &impl Fn(usize) -> bool) -> Result<(), ModelError> {
         let size = self.mesh.size();
         let mut body_of = vec![usize::MAX; self.mesh.nodes().len()];
         let bodies = self.mesh.bodies();
+        // A tool is a body that does not rotate.
+        body_of.extend((0..self.tools.len()).map(|k| bodies.len() + k));
         for (b, cells) in bodies.iter().enumerate() {
             for &cell in cells {
                 for &node in self.mesh.cell_nodes(cell) {
@@ -467,13 +540,27 @@ impl<const D: usize> Driver<D> {
         // Modes about a point of the body, in the size of the mesh: numbers of order one.
         let center = |b: usize| self.mesh.nodes()[self.mesh.cell_nodes(bodies[b][0])[0]];
         let modes = |node: usize| -> Vec<SVector<f64, D>> {
+            if node >= self.mesh.nodes().len() {
+                let modes = self.measure.rigid_modes(&[0.0; D]).into_iter();
+                let free = |m: [f64; D]| {
+                    SVector::from_fn(|i, _| if fixed(D * node + i) { 0.0 } else { m[i] })
+                };
+                return modes.map(free).collect();
+            }
             let (x, center) = (self.mesh.nodes()[node], center(body_of[node]));
             let relative = std::array::from_fn(|i| (x[i] - center[i]) / size);
             let modes = self.measure.rigid_modes(&relative);
             modes.into_iter().map(SVector::from).collect()
         };
         let count = modes(0).len();
-        let mut gram = DMatrix::<f64>::zeros(count * bodies.len(), count * bodies.len());
+        let all = count * (bodies.len() + self.tools.len());
+        let mut gram = DMatrix::<f64>::zeros(all, all);
+        for k in 0..self.tools.len() {
+            for (j, mode) in modes(self.tool_node(k)).iter().enumerate() {
+                let own = count * (bodies.len() + k) + j;
+                gram[(own, own)] = f64::from(u8::from(mode.norm() == 0.0));
+            }
+        }
         // Motions that move a combination of nodes along a direction are resisted there.
         let mut resist = |weights: &[(usize, f64)], direction: &SVector<f64, D>| {
             let row: Vec<(usize, f64)> = weights
@@ -490,7 +577,7 @@ impl<const D: usize> Driver<D> {
                 }
             }
         };
-        for node in 0..body_of.len() {
+        for node in 0..self.mesh.nodes().len() {
             for i in (0..D).filter(|i| fixed(D * node + i)) {
                 let mut axis = SVector::<f64, D>::zeros();
                 axis[i] = 1.0;
@@ -502,7 +589,7 @@ impl<const D: usize> Driver<D> {
                 Some(tool) => {
                     let x = SVector::from(self.mesh.nodes()[point.node])
                         + self.displacement(point.node)
-                        - self.state.loading.tools[tool];
+                        - self.displacement(self.tool_node(tool));
                     self.tools[tool].obstacle.normal(&x)
                 }
                 None => match footing.plane(&SVector::zeros()) {
@@ -533,6 +620,10 @@ impl<const D: usize> Driver<D> {
                 let most = |a: &usize, b: &usize| part(*a).norm().total_cmp(&part(*b).norm());
                 let k = (0..group.len()).rev().max_by(most).unwrap_or(0);
                 let motion = describe::<D>(part(k).into_owned().as_slice());
+                if let Some(tool) = group[k].checked_sub(bodies.len()) {
+                    let tool = self.tools[tool].name.clone();
+                    return Err(ModelError::FreeTool { tool, motion });
+                }
                 return Err(ModelError::FreeRigidMotion {
                     cell: bodies[group[k]][0],
                     motion,

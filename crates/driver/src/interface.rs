@@ -49,7 +49,7 @@ pub(crate) struct ContactPoint<const D: usize> {
 pub(crate) struct Footing<const D: usize> {
     /// The node, and those that share its multiplier at the edge of an overlap.
     pub(crate) own: Vec<(usize, f64)>,
-    /// Nodes of the surface opposite; none for a tool.
+    /// Nodes of the surface opposite, or that of the tool.
     pub(crate) opposite: Vec<(usize, f64)>,
     /// Share of the surface in contact \[mm²\].
     pub(crate) area: f64,
@@ -58,10 +58,11 @@ pub(crate) struct Footing<const D: usize> {
 }
 
 impl<const D: usize> Footing<D> {
-    /// On a tool, which moves on its own.
-    pub(crate) fn on_tool(node: usize, area: f64) -> Self {
+    /// On a tool, a body of the one node `tool`.
+    pub(crate) fn on_tool(node: usize, tool: usize, area: f64) -> Self {
         Self {
             own: vec![(node, 1.0)],
+            opposite: vec![(tool, 1.0)],
             area,
             ..Self::default()
         }
