@@ -72,17 +72,6 @@ pub enum ModelError {
         /// In the second.
         second: String,
     },
-    /// Two surfaces in space.
-    #[error(
-        "contact of {surface:?} with {opposite:?}: two deformable bodies can touch in the plane, \
-         not in space yet; use a tool"
-    )]
-    SurfacesInSpace {
-        /// First surface.
-        surface: String,
-        /// The surface opposite.
-        opposite: String,
-    },
     /// Two surfaces that share a node.
     #[error(
         "{surface:?} and {opposite:?} share node {node} at {position:?}: \

@@ -46,6 +46,7 @@ mod ordering;
 mod ramp;
 mod report;
 mod saved;
+mod supports;
 mod system;
 mod timings;
 
@@ -60,4 +61,5 @@ pub use model::{Analysis, Model};
 pub use ramp::Ramp;
 pub use report::{ContactRecord, Energies, Iteration, StepReport};
 pub use saved::Reader;
+pub use supports::{RigidMotion, Stopper, Support};
 pub use timings::Timings;
