@@ -303,13 +303,11 @@ fn one_displacement_is_prescribed_once() {
 
 #[test]
 fn what_is_not_available_is_refused_by_name() {
-    for (from, to, name) in [("0.3", "0.3\nquadrature = \"b-bar\"", "b-bar")] {
-        let out = shown(from, to);
-        assert!(
-            out.contains("not available yet") && out.contains(name),
-            "{name}: {out}"
-        );
-    }
+    let out = shown("0.3", "0.3\nquadrature = \"b-bar\"");
+    assert!(
+        out.contains("not available yet") && out.contains("b-bar"),
+        "{out}"
+    );
 }
 
 /// Keys that are asked for in several places are listed once.
