@@ -121,7 +121,10 @@ impl Rows {
         let motion = |mode: nalgebra::DVectorView<'_, f64>| {
             let part = |b: usize| mode.rows(self.modes * b, self.modes);
             let most = |a: &usize, b: &usize| part(*a).norm().total_cmp(&part(*b).norm());
-            let body = (0..self.cells.len() + self.tools.len()).rev().max_by(most).unwrap_or(0);
+            let body = (0..self.cells.len() + self.tools.len())
+                .rev()
+                .max_by(most)
+                .unwrap_or(0);
             let own = part(body);
             let large = |k: &usize| own[*k].abs() > 0.1 * own.amax();
             let names: Vec<String> = (0..self.modes)
