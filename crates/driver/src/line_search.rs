@@ -2,7 +2,7 @@
 
 use crate::block::Stiffness;
 use crate::driver::Driver;
-use crate::iterate::{Iterate, force_scale};
+use crate::iterate::Iterate;
 use crate::load::Loading;
 use crate::norm::largest;
 use crate::system::System;
@@ -91,7 +91,7 @@ impl<const D: usize> Driver<D> {
         let d_u = line.displacement(&now, 1.0);
         let assembly = system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent);
         let internal = &assembly.internal;
-        let scale = force_scale(&assembly, line.end, line.target);
+        let scale = self.force_scale(&assembly, line.end, line.target);
         let left = largest(line.imbalance(internal, line.target, 1.0).map(|(_, r)| r));
         let at_start = line.slope(&now.assembly.internal, &now.contact, 0.0);
         let at_end = line.slope(internal, line.target, 1.0);

@@ -100,6 +100,10 @@ fn conclude(outcome: &Outcome, manner: &Manner, directory: &Path) -> u8 {
             }
             NOT_CONVERGED
         }
+        RunStatus::Collapsed(_) => {
+            eprintln!("if that is what the step is for, give it until = \"collapse\"");
+            NOT_CONVERGED
+        }
         RunStatus::Interrupted(increment) => {
             eprintln!(
                 "interrupted after increment {increment}; to go on: moreau resume \"{shown}\""
