@@ -174,7 +174,9 @@ impl<const D: usize> Driver<D> {
             system.timings.contact += clock.elapsed();
             counts.contact += solved.iterations;
             counts.last_contact = solved.iterations;
-            let complete = missing.iter().all(|&m| m == 0.0);
+            // What a tool has moved is missing in the first iterate as well.
+            let moved = counts.newton == 1 && start.tools != end.tools;
+            let complete = !moved && missing.iter().all(|&m| m == 0.0);
             let mut step = std::mem::replace(&mut missing, vec![0.0; now.d_u.len()]);
             let x = condensation.interface(&solved.displacement);
             system.expand(condensed, &x, &mut step);
