@@ -148,13 +148,13 @@ impl<const D: usize> Driver<D> {
     /// Finds what the contact points stand on, at the committed positions.
     fn pair(&mut self) -> Result<(), ModelError> {
         let on_tool = |p: &ContactPoint<D>| match p.tool {
-            Some(_) => Footing::on_tool(p.node, p.area),
+            Some(_) => Footing::on_tool(p),
             None => Footing::default(),
         };
         let mut footings: Vec<Footing<D>> = self.points.iter().map(on_tool).collect();
         if self.contacts.iter().any(|c| c.pairing.is_some()) {
             let nodes = self.mesh.nodes();
-            let position = |a: usize| (SVector::from(nodes[a]) + self.displacement(a)).into();
+            let position = |a: usize| self.position(a).into();
             let positions: Vec<[f64; D]> = (0..nodes.len()).map(position).collect();
             for (k, contact) in self.contacts.iter().enumerate() {
                 let Some(pairing) = contact.pairing else {
@@ -179,6 +179,11 @@ impl<const D: usize> Driver<D> {
         }
         self.footings = footings;
         Ok(())
+    }
+
+    /// Where a node is \[mm\].
+    pub(crate) fn position(&self, node: usize) -> SVector<f64, D> {
+        SVector::from(self.mesh.nodes()[node]) + self.displacement(node)
     }
 
     /// The mesh.

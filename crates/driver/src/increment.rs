@@ -297,8 +297,7 @@ impl<const D: usize> Driver<D> {
                 };
             };
             let obstacle = &self.tools[tool].obstacle;
-            let x = SVector::from(self.mesh.nodes()[p.node]) + self.displacement(p.node);
-            let x = x + slip - end.tools[tool];
+            let x = footing.relative(|a| self.position(a)) + slip - end.tools[tool];
             let slip = slip - (end.tools[tool] - start.tools[tool]);
             let gap = obstacle.distance(&x) - p.offset;
             Kinematics::new(&obstacle.normal(&x), gap, &slip, free)
@@ -442,7 +441,8 @@ impl<const D: usize> Driver<D> {
                 .sum::<f64>();
             penalty -= 0.5 * self.state.contacts[i].t[0] * self.state.contacts[i].spring[0];
             irreversible.push(obeying);
-            let held = !(1..D).all(|j| k.active[j]);
+            // A point that is held along one tangent of a surface in space slips along the other.
+            let held = !(1..D).any(|j| k.active[j]);
             let status = match solution.status[i] {
                 Status::Slip if held => Status::Stick,
                 other => other,

@@ -3,12 +3,13 @@
 use crate::ModelError;
 use crate::block::{Block, SolidBlock};
 use crate::cells::{Cells, ElementCells};
-use crate::interface::{ContactPoint, Tool, tool_index};
+use crate::interface::{ContactPoint, Tool, positive_shares, tool_index};
 use moreau_contact::Obstacle;
 use moreau_laws::{BulkLaw, Friction};
 use moreau_mesh::{
-    Axisymmetric, CellKind, Coupling, Element, Facet, Hex8, Hypothesis, Integration, Mesh, Pairing,
-    PlaneStrain, Quad4, Quad8, Quad9, Share, Solid, Tet4, Tri3, Tri6, nearest,
+    Axisymmetric, CellKind, Coupling, Element, Facet, Hex8, Hex20, Hex27, Hypothesis, Integration,
+    Mesh, Pairing, PlaneStrain, Quad4, Quad8, Quad9, Share, Solid, Tet4, Tet10, Tri3, Tri6,
+    nearest,
 };
 use std::collections::BTreeMap;
 
@@ -56,7 +57,7 @@ fn plane<H: Hypothesis<2>>(
         CellKind::Quad4 => cells::<Quad4, H, 2, 4>(h, mesh, of, rule),
         CellKind::Quad8 => cells::<Quad8, H, 2, 8>(h, mesh, of, rule),
         CellKind::Quad9 => cells::<Quad9, H, 2, 9>(h, mesh, of, rule),
-        CellKind::Tet4 | CellKind::Hex8 => return None,
+        _ => return None,
     })
 }
 
@@ -70,7 +71,10 @@ fn space<H: Hypothesis<3>>(
 ) -> Option<Box<dyn Cells<3>>> {
     Some(match kind {
         CellKind::Tet4 => cells::<Tet4, H, 3, 4>(h, mesh, of, rule),
+        CellKind::Tet10 => cells::<Tet10, H, 3, 10>(h, mesh, of, rule),
         CellKind::Hex8 => cells::<Hex8, H, 3, 8>(h, mesh, of, rule),
+        CellKind::Hex20 => cells::<Hex20, H, 3, 20>(h, mesh, of, rule),
+        CellKind::Hex27 => cells::<Hex27, H, 3, 27>(h, mesh, of, rule),
         _ => return None,
     })
 }
@@ -317,7 +321,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     ) -> Result<(), ModelError> {
         let facets = self.mesh.facet_group(surface)?;
         let shares = self.mesh.facet_shares(facets, &self.hypothesis);
-        for share in shares {
+        for (share, edge) in positive_shares(&self.mesh, facets, shares) {
             if let Some(other) = self.points.iter().find(|p| p.node == share.node) {
                 return Err(ModelError::SharedContactNode {
                     node: share.node,
@@ -334,6 +338,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 offset: 0.0,
                 area: share.area,
                 kind: share.kind,
+                edge,
             });
         }
         Ok(())
@@ -372,7 +377,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         }
         let last = self.contacts.len();
         for point in self.points.iter_mut().filter(|p| p.contact + 1 == last) {
-            let x = self.mesh.nodes()[point.node].into();
+            let x = point.place(|a| self.mesh.nodes()[a].into());
             let Some(tool) = point.tool else { continue };
             let gap = self.tools[tool].obstacle.distance(&x) - point.offset;
             if gap.abs() <= tolerance {

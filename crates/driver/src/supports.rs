@@ -301,9 +301,7 @@ impl<const D: usize> Driver<D> {
         for (point, footing) in self.points.iter().zip(&self.footings) {
             let normal = match point.tool {
                 Some(tool) => {
-                    let x = SVector::from(self.mesh.nodes()[point.node])
-                        + self.displacement(point.node)
-                        - self.state.loading.tools[tool];
+                    let x = footing.relative(|a| self.position(a)) - self.state.loading.tools[tool];
                     self.tools[tool].obstacle.normal(&x)
                 }
                 None => match footing.plane(&SVector::zeros()) {

@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// | keyword | what is read |
 /// |---|---|
 /// | `*NODE` | nodes; `NSET=` |
-/// | `*ELEMENT` | cells: in the plane `CPE`, `CPS` or `CAX` with 3, 4, 6 or 8 nodes, in space `C3D4` and `C3D8`; `ELSET=` |
+/// | `*ELEMENT` | cells: in the plane `CPE`, `CPS` or `CAX` with 3, 4, 6 or 8 nodes, in space `C3D` with 4, 8, 10 or 20 nodes; `ELSET=` |
 /// | `*NSET`, `*ELSET` | groups of nodes and cells: numbers, names of earlier sets, `GENERATE`; `*NSET, ELSET=` |
 /// | `*SURFACE` | groups of facets: an element or a set and `S1` … `S6`, or no side for all that belong to one cell only; with `TYPE=NODE` groups of nodes |
 ///
@@ -210,10 +210,14 @@ impl File {
                 let expected = format!("a {name} with {} nodes", kind.nodes());
                 return Err(unexpected(line, &found, &expected));
             }
+            let nodes = match cells::places(kind) {
+                Some(places) => places.iter().map(|&k| nodes[k]).collect(),
+                None => nodes.to_vec(),
+            };
             self.cells.push(Cell {
                 element,
                 kind,
-                nodes: nodes.to_vec(),
+                nodes,
             });
             numbers.clear();
         }

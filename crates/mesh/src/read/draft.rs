@@ -1,6 +1,7 @@
 //! Nodes, cells and groups by the numbers of a file, made into a mesh; knows no file format.
 
 use crate::geometry::diagonal;
+use crate::mesh::facet_key as key;
 use crate::read::{Loss, ReadError};
 use crate::sample::cell_samples;
 use crate::{CellKind, Facet, Mesh, MeshError};
@@ -188,7 +189,15 @@ const fn mirrored(kind: CellKind) -> &'static [usize] {
         CellKind::Quad8 => &[0, 3, 2, 1, 7, 6, 5, 4],
         CellKind::Quad9 => &[0, 3, 2, 1, 7, 6, 5, 4, 8],
         CellKind::Tet4 => &[0, 2, 1, 3],
+        CellKind::Tet10 => &[0, 2, 1, 3, 6, 5, 4, 7, 9, 8],
         CellKind::Hex8 => &[0, 3, 2, 1, 4, 7, 6, 5],
+        CellKind::Hex20 => &[
+            0, 3, 2, 1, 4, 7, 6, 5, 9, 8, 10, 13, 15, 11, 14, 12, 17, 16, 19, 18,
+        ],
+        CellKind::Hex27 => &[
+            0, 3, 2, 1, 4, 7, 6, 5, 9, 8, 10, 13, 15, 11, 14, 12, 17, 16, 19, 18, 20, 22, 21, 24,
+            23, 25, 26,
+        ],
     }
 }
 
@@ -291,16 +300,6 @@ fn placed(
     place: impl Fn(u64, u64) -> Result<Option<usize>, ReadError>,
 ) -> Result<Option<Vec<usize>>, ReadError> {
     nodes.iter().map(|&node| place(element, node)).collect()
-}
-
-/// Nodes of a facet in increasing order; `None` for more nodes than any facet has.
-fn key(nodes: impl IntoIterator<Item = usize>) -> Option<[usize; 4]> {
-    let mut key = [usize::MAX; 4];
-    for (i, node) in nodes.into_iter().enumerate() {
-        *key.get_mut(i)? = node;
-    }
-    key.sort_unstable();
-    Some(key)
 }
 
 /// The facet of a cell turned round whose nodes are those of `facet` before.

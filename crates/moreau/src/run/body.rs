@@ -1,6 +1,6 @@
 //! The body with its fields as a grid: recovered at points, as means of what was computed in cells.
 
-use super::vtu::{Array, Grid, cell_type, three};
+use super::vtu::{Array, Grid, three, vtk_cell};
 use crate::driver::Driver;
 use crate::mandel::{Sym2, von_mises};
 use crate::recovery::recover;
@@ -65,10 +65,7 @@ pub(super) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usize>) {
     for (mean, volume) in means.iter_mut().zip(volumes) {
         *mean = (mean.0 / volume, mean.1 / volume, mean.2 / volume);
     }
-    let cell = |(c, points): (usize, &Vec<usize>)| {
-        let points = points.iter().map(|&p| p as i64).collect();
-        (points, cell_type(mesh.kind(c)))
-    };
+    let cell = |(c, points): (usize, &Vec<usize>)| vtk_cell(mesh.kind(c), points);
     let numbers = Array {
         name: "cell".into(),
         components: 1,

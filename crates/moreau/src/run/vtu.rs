@@ -257,10 +257,7 @@ pub(crate) fn vtu_of_mesh<const D: usize>(mesh: &Mesh<D>) -> Vec<u8> {
 
 /// Nodes and VTK type of all cells.
 fn cells<const D: usize>(mesh: &Mesh<D>) -> Vec<(Vec<i64>, u8)> {
-    let cell = |c: usize| {
-        let nodes = mesh.cell_nodes(c).iter().map(|&n| n as i64).collect();
-        (nodes, cell_type(mesh.kind(c)))
-    };
+    let cell = |c: usize| vtk_cell(mesh.kind(c), mesh.cell_nodes(c));
     (0..mesh.cell_count()).map(cell).collect()
 }
 
@@ -284,7 +281,10 @@ fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
                 FacetKind::Line2 => 3,
                 FacetKind::Line3 => 21,
                 FacetKind::Tri3 => 5,
+                FacetKind::Tri6 => 22,
                 FacetKind::Quad4 => 9,
+                FacetKind::Quad8 => 23,
+                FacetKind::Quad9 => 28,
             };
             cells.push((nodes.collect(), kind));
             contact.push(k as f64);
@@ -328,17 +328,32 @@ fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
     })
 }
 
-pub(super) fn cell_type(kind: CellKind) -> u8 {
-    match kind.name() {
-        "tri3" => 5,
-        "tri6" => 22,
-        "quad4" => 9,
-        "quad8" => 23,
-        "quad9" => 28,
-        "tet4" => 10,
-        "hex8" => 12,
-        // A polyvertex shows the nodes of a cell that this list does not know.
-        _ => 2,
+/// Nodes of a cell in the order of VTK, and its type there.
+pub(super) fn vtk_cell(kind: CellKind, nodes: &[usize]) -> (Vec<i64>, u8) {
+    let (code, order) = cell_type(kind);
+    let node = |k: usize| nodes[order.map_or(k, |order| order[k])] as i64;
+    ((0..nodes.len()).map(node).collect(), code)
+}
+
+/// VTK type of a kind of cell, and which of its nodes comes at each place there, unless as here: VTK
+/// lists the edges of hexahedra below, above and upright, and their faces along x, y and z.
+fn cell_type(kind: CellKind) -> (u8, Option<&'static [usize]>) {
+    const TET10: [usize; 10] = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8];
+    const HEX27: [usize; 27] = [
+        0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20,
+        25, 26,
+    ];
+    match kind {
+        CellKind::Tri3 => (5, None),
+        CellKind::Tri6 => (22, None),
+        CellKind::Quad4 => (9, None),
+        CellKind::Quad8 => (23, None),
+        CellKind::Quad9 => (28, None),
+        CellKind::Tet4 => (10, None),
+        CellKind::Tet10 => (24, Some(&TET10)),
+        CellKind::Hex8 => (12, None),
+        CellKind::Hex20 => (25, Some(&HEX27)),
+        CellKind::Hex27 => (29, Some(&HEX27)),
     }
 }
 

@@ -273,7 +273,22 @@ fn what_is_doubtful_is_a_warning() {
         "name = \"press\"",
         &["nothing loads the model"],
     );
-    says("quad8", "quad4", "yield-stress", &["locks in plastic flow"]);
+    let locks = "locks in plastic flow";
+    says(
+        "quad8",
+        "tri3",
+        "yield-stress",
+        &["tri3", locks, "a quadratic element"],
+    );
+    let full = DECK
+        .replace("quad8", "quad4")
+        .replace("0.3", "0.3\nquadrature = \"full\"");
+    let (_, _, findings) = open(&full);
+    let out = flat(&findings.render("deck.toml", &full, false));
+    assert!(out.contains(locks) && out.contains("\"b-bar\""), "{out}");
+    let (deck, _, findings) = open(&DECK.replace("quad8", "quad4"));
+    assert_eq!(findings.iter().count(), 0);
+    assert_eq!(deck.quadrature(&deck.materials[0]), "b-bar");
     let twice = "[[tool]]\nname = \"idle\"\nplane = { point = [0, 9], normal = [0, 1] }\n[[tool]]";
     says(
         "[[tool]]",
@@ -295,14 +310,11 @@ fn one_displacement_is_prescribed_once() {
 
 #[test]
 fn what_is_not_available_is_refused_by_name() {
-    for (from, to, name) in [
-        ("0.3", "0.3\nquadrature = \"b-bar\"", "b-bar"),
-        (
-            "[expect]",
-            "[[step]]\nname=\"b\"\nincrements=1\ntools=[{name=\"foundation\",force=[0,1]}]\n[expect]",
-            "driven by a force",
-        ),
-    ] {
+    for (from, to, name) in [(
+        "[expect]",
+        "[[step]]\nname=\"b\"\nincrements=1\ntools=[{name=\"foundation\",force=[0,1]}]\n[expect]",
+        "driven by a force",
+    )] {
         let out = shown(from, to);
         assert!(
             out.contains("not available yet") && out.contains(name),
@@ -387,8 +399,9 @@ fn every_class_of_findings_is_explained() {
     assert_eq!(classes("on = \"punch\"", "on = \"pinch\""), [Class::Names]);
     assert_eq!(classes("x = [0, 25]", "x = [60, 70]"), [Class::Groups]);
     assert_eq!(classes("u = [\"x\"]", "u = [\"y\"]")[0], Class::Steps);
+    let driven = "[[step]]\nname=\"b\"\nincrements=1\ntools=[{name=\"foundation\",force=[0,1]}]\n";
     assert_eq!(
-        classes("0.3", "0.3\nquadrature = \"b-bar\""),
+        classes("[expect]", &format!("{driven}[expect]")),
         [Class::Unavailable]
     );
     assert_eq!(classes("friction = 0.1", "friction = 0"), [Class::Warnings]);
