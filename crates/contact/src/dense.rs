@@ -16,6 +16,8 @@ pub(crate) struct Lu {
     forward: Vec<usize>,
     inverse: Vec<usize>,
     memory: MemBuffer,
+    /// The least pivot over the largest.
+    pub(crate) least_pivot: f64,
 }
 
 impl Lu {
@@ -38,13 +40,17 @@ impl Lu {
             Default::default(),
         );
         let pivots = a.diagonal();
-        // Written so that NaN is refused, too.
-        let regular = n == 0 || pivots.amin() > SINGULAR * pivots.amax();
-        regular.then_some(Self {
+        let least_pivot = match n {
+            0 => 1.0,
+            _ => pivots.amin() / pivots.amax(),
+        };
+        // NaN is refused, too.
+        (least_pivot > SINGULAR).then_some(Self {
             factors: a,
             forward,
             inverse,
             memory,
+            least_pivot,
         })
     }
 

@@ -195,7 +195,9 @@ fn finite<const D: usize>(what: &'static str, x: &SVector<f64, D>) -> Result<(),
 }
 
 /// An orthonormal frame whose first column is the unit vector n; the other columns span the
-/// tangent plane. In 2D the tangent is n turned by −90°: for n = e_y it is e_x.
+/// tangent plane. In 2D the tangent is n turned by −90°: for n = e_y it is e_x. In 3D the tangents are
+/// the axes in their order, projected, without the one that n is nearest to: for n = e_y they are e_x
+/// and e_z, and nearly so for an n nearby.
 pub fn frame<const D: usize>(n: &SVector<f64, D>) -> nalgebra::SMatrix<f64, D, D> {
     let mut q = nalgebra::SMatrix::<f64, D, D>::zeros();
     q.set_column(0, n);
@@ -204,11 +206,10 @@ pub fn frame<const D: usize>(n: &SVector<f64, D>) -> nalgebra::SMatrix<f64, D, D
         q[(1, 1)] = -n[0];
         return q;
     }
-    // Gram–Schmidt on the axes, starting from the one least aligned with n.
-    let mut axes: Vec<usize> = (0..D).collect();
-    axes.sort_by(|&a, &b| n[a].abs().total_cmp(&n[b].abs()));
-    for k in 1..D {
-        let mut v = axis::<D>(axes[k - 1]);
+    // Gram–Schmidt on the other axes. Of components that are equal up to rounding the last counts.
+    let nearest = (0..D).rfind(|&i| n[i].abs() >= n.amax() - 1e-9);
+    for (i, k) in (0..D).filter(|&i| Some(i) != nearest).zip(1..) {
+        let mut v = axis::<D>(i);
         for j in 0..k {
             let c = q.column(j).into_owned();
             v -= c * c.dot(&v);
@@ -281,6 +282,10 @@ mod tests {
 
     #[test]
     fn tangent_of_the_floor_is_the_x_axis() {
+        // Rounding of the normal turns no tangent.
+        let q = frame(&SVector::<f64, 3>::new(1e-17, -1.0, 0.0));
+        assert!((q.column(1) - SVector::<f64, 3>::x()).norm() < 1e-15);
+        assert!((q.column(2) - SVector::<f64, 3>::z()).norm() < 1e-15);
         let q = frame(&SVector::<f64, 2>::new(0.0, 1.0));
         assert_eq!(q.column(1).into_owned(), SVector::<f64, 2>::new(1.0, 0.0));
     }

@@ -146,7 +146,7 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Finds what the contact points stand on, at the committed positions.
-    fn pair(&mut self) -> Result<(), ModelError> {
+    pub(crate) fn pair(&mut self) -> Result<(), ModelError> {
         let on_tool = |p: &ContactPoint<D>| match p.tool {
             Some(_) => Footing::on_tool(p),
             None => Footing::default(),
@@ -404,7 +404,7 @@ impl<const D: usize> Driver<D> {
     ) -> Result<StepReport, StepError> {
         end.check()?;
         self.pair()?;
-        let mut system = self.prepare(end)?;
+        let mut system = self.prepare(end, None)?;
         let start = self.start_of(end);
         let outcome = match self.settings.nesting {
             Nesting::Inside => self.increment(&mut system, &start, end, &mut |_, now| watch(now)),
@@ -417,29 +417,37 @@ impl<const D: usize> Driver<D> {
         outcome
     }
 
-    /// The linear system for the prescribed degrees of freedom of a loading: the one at hand, or
-    /// a new one if they have changed.
-    pub(crate) fn prepare(&mut self, loading: &Loading<D>) -> Result<System, ModelError> {
+    /// The linear system for the prescribed degrees of freedom of a loading and a pivot: the one at
+    /// hand, or a new one if they have changed.
+    pub(crate) fn prepare(
+        &mut self,
+        loading: &Loading<D>,
+        pivot: Option<usize>,
+    ) -> Result<System, ModelError> {
         let fixed = |dof: usize| loading.displacement.contains_key(&dof);
         let dofs = self.state.displacement.len();
         if let Some(system) = self
             .system
-            .take_if(|s| (0..dofs).all(|d| s.is_free(d) != fixed(d)))
+            .take_if(|s| s.pivot == pivot && (0..dofs).all(|d| s.is_free(d) != fixed(d)))
         {
             return Ok(system);
         }
         self.check_rigid_motions(loading)?;
-        self.elastic_system(loading)
+        self.elastic_system(loading, pivot)
     }
 
     /// A new linear system for a loading, with the elastic stiffness assembled.
-    pub(crate) fn elastic_system(&mut self, loading: &Loading<D>) -> Result<System, ModelError> {
+    pub(crate) fn elastic_system(
+        &mut self,
+        loading: &Loading<D>,
+        pivot: Option<usize>,
+    ) -> Result<System, ModelError> {
         let fixed = |dof: usize| loading.displacement.contains_key(&dof);
         let mut interface: Vec<usize> = self.points.iter().map(|p| p.node).collect();
         for contact in self.contacts.iter().filter(|c| c.pairing.is_some()) {
             interface.extend(self.mesh.node_group(&contact.opposite)?);
         }
-        let mut system = System::new(&self.mesh, &self.blocks, fixed, &interface)?;
+        let mut system = System::new(&self.mesh, &self.blocks, fixed, &interface, pivot)?;
         system.timings += self.timings();
         let zero = vec![0.0; self.state.displacement.len()];
         system.assemble(&mut self.blocks, &zero, &zero, Stiffness::Blended(1.0));

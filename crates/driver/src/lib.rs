@@ -30,7 +30,9 @@
 mod block;
 mod cells;
 mod cholesky;
+mod collapse;
 mod condensation;
+mod control;
 mod driver;
 mod error;
 mod increment;
@@ -50,6 +52,7 @@ mod timings;
 
 pub use block::{Block, BlockEnergy, CellResult, PointState, SolidBlock, Stiffness};
 pub use cells::Cells;
+pub use collapse::{Collapse, UpperBound};
 pub use driver::{Driver, Nesting, Settings};
 pub use error::{Imbalance, ModelError, StepError};
 pub use increments::Increments;

@@ -277,7 +277,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     ///
     /// # Errors
     /// An unknown group; [`ModelError::SharedContactNode`] for a node of `surface` that is one of
-    /// another contact; [`ModelError::SharedSurfaceNode`]; [`ModelError::SurfacesInSpace`].
+    /// another contact; [`ModelError::SharedSurfaceNode`].
     pub fn pair(
         mut self,
         surface: &str,
@@ -288,12 +288,6 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         let own = self.mesh.node_group(surface)?;
         self.mesh.facet_group(opposite)?;
         let other = self.mesh.node_group(opposite)?;
-        if D != 2 {
-            return Err(ModelError::SurfacesInSpace {
-                surface: surface.into(),
-                opposite: opposite.into(),
-            });
-        }
         if let Some(&node) = own.iter().find(|a| other.binary_search(a).is_ok()) {
             return Err(ModelError::SharedSurfaceNode {
                 surface: surface.into(),

@@ -1,24 +1,30 @@
 //! Pairing of two surfaces: which displacements make the relative displacement of a contact node,
 //! and in which direction it opens; not the law that holds there, and not how it is enforced.
 //!
-//! Segment to segment in the plane, with dual multipliers: B. I. Wohlmuth, *SIAM J. Numer. Anal.*
-//! 38 (2000); A. Popp, M. W. Gee and W. A. Wall, *Int. J. Numer. Meth. Engng* 79 (2009).
+//! Segment to segment in the plane and face to face in space, with dual multipliers: B. I. Wohlmuth,
+//! *SIAM J. Numer. Anal.* 38 (2000); A. Popp, M. W. Gee and W. A. Wall, *Int. J. Numer. Meth. Engng*
+//! 79 (2009); A. Popp, M. Gitterle, M. W. Gee and W. A. Wall, *ibid.* 83 (2010).
 
-mod edge;
+mod face;
 mod mortar;
+mod patches;
+mod polygon;
+mod segments;
 mod tree;
 
+use crate::Hypothesis;
+use crate::geometry::{diagonal, dot};
 use crate::mesh::{Facet, Mesh, NodeKind};
-use crate::{Hypothesis, Integration};
-use edge::{Edge, unit};
+use crate::sample::facet_samples;
+use face::{Face, Values, unit};
 use std::collections::BTreeMap;
 use tree::Tree;
 
 /// How a node of one surface is coupled to the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Pairing {
-    /// Segment to segment: weighted by dual multipliers and integrated over the overlap. A uniform
-    /// pressure passes exactly between meshes that do not match.
+    /// Segment to segment, or face to face: weighted by dual multipliers and integrated over the
+    /// overlap. A uniform pressure passes exactly between meshes that do not match.
     #[default]
     Mortar,
     /// The point opposite to the node, along its normal. It fails the patch test where meshes do
@@ -51,8 +57,6 @@ pub struct Coupling<const D: usize> {
 impl<const D: usize> Mesh<D> {
     /// Couples the nodes of a surface to the surface opposite, both at the given positions of the
     /// nodes \[mm\]. Nodes that meet nothing are left out; the others are sorted.
-    ///
-    /// In the plane alone: in space nothing is coupled.
     pub fn couplings<H: Hypothesis<D>>(
         &self,
         positions: &[[f64; D]],
@@ -60,19 +64,16 @@ impl<const D: usize> Mesh<D> {
         pairing: Pairing,
         hypothesis: &H,
     ) -> Vec<Coupling<D>> {
-        if D != 2 {
-            return Vec::new();
-        }
-        let edges = |facets: &[Facet]| -> Vec<Edge<D>> {
-            let edge = |&f: &Facet| Edge::new(self.facet_nodes(f), positions);
-            facets.iter().map(edge).collect()
+        let faces = |facets: &[Facet]| -> Vec<Face<D>> {
+            let face = |&f: &Facet| Face::new(self.facet_kind(f), self.facet_nodes(f), positions);
+            facets.iter().map(face).collect()
         };
-        let (own, other) = (edges(surface), edges(opposite));
+        let (own, other) = (faces(surface), faces(opposite));
         let sides = Sides {
             normals: normals(&own),
             own: &own,
             other: &other,
-            tree: Tree::new(other.iter().map(|e| e.bounds(&[])).collect()),
+            tree: Tree::new(other.iter().map(Face::bounds).collect()),
             reach: reach(own.iter().chain(&other)),
         };
         let measure = |x: &[f64; D]| hypothesis.measure(x);
@@ -85,9 +86,9 @@ impl<const D: usize> Mesh<D> {
 
 /// Two surfaces, and the way from one to the other.
 struct Sides<'a, const D: usize> {
-    own: &'a [Edge<D>],
-    other: &'a [Edge<D>],
-    /// Outward unit normals of the own nodes, averaged over their edges.
+    own: &'a [Face<D>],
+    other: &'a [Face<D>],
+    /// Outward unit normals of the own nodes, averaged over their facets.
     normals: BTreeMap<usize, [f64; D]>,
     tree: Tree<D>,
     /// Farthest that two points of the surfaces can be apart \[mm\].
@@ -95,11 +96,11 @@ struct Sides<'a, const D: usize> {
 }
 
 impl<const D: usize> Sides<'_, D> {
-    fn normals_of(&self, edge: &Edge<D>) -> Vec<[f64; D]> {
-        edge.nodes.iter().map(|a| self.normals[a]).collect()
+    fn normals_of(&self, face: &Face<D>) -> Vec<[f64; D]> {
+        face.nodes.iter().map(|a| self.normals[a]).collect()
     }
 
-    /// Edges that may be met within a distance of points along their normals, ascending.
+    /// Facets that may be met within a distance of points along their normals, ascending.
     fn candidates(
         &self,
         points: &[[f64; D]],
@@ -111,21 +112,21 @@ impl<const D: usize> Sides<'_, D> {
             .iter()
             .zip(normals)
             .flat_map(|(x, n)| [-depth, far].map(|s| std::array::from_fn(|i| x[i] + s * n[i])));
-        self.tree.within(&edge::hull(ends, 0.1 * depth))
+        self.tree.within(&face::hull(ends, 0.1 * depth))
     }
 
     /// The point of the other surface opposite to every node along its normal.
     fn node_to_surface(&self, measure: &dyn Fn(&[f64; D]) -> f64) -> Vec<Coupling<D>> {
         let mut shares: BTreeMap<usize, (f64, NodeKind, f64)> = BTreeMap::new();
-        for edge in self.own {
-            for point in crate::gauss(3).points {
-                let [xi] = point.xi;
-                let n = edge.shape(xi);
-                let d_s = point.weight * edge.stretch(xi) * measure(&edge.at(xi));
-                for (k, &node) in edge.nodes.iter().enumerate() {
-                    let share = shares.entry(node).or_insert((0.0, edge.kind(k), 0.0));
-                    share.0 += n[k] * d_s;
-                    share.2 = edge.size().max(share.2);
+        for face in self.own {
+            for sample in facet_samples::<D>(face.kind) {
+                let area = sample.area_vector(&face.x);
+                let d_s = sample.weight * dot(&area, &area).sqrt();
+                let d_s = d_s * measure(&sample.position(&face.x));
+                for (k, &node) in face.nodes.iter().enumerate() {
+                    let share = shares.entry(node).or_insert((0.0, face.node_kind(k), 0.0));
+                    share.0 += sample.shape[k] * d_s;
+                    share.2 = face.size().max(share.2);
                 }
             }
         }
@@ -137,44 +138,41 @@ impl<const D: usize> Sides<'_, D> {
         let mut couplings = Vec::new();
         for (&node, &(area, kind, size)) in &shares {
             let (x, n) = (position[&node], self.normals[&node]);
-            let mut nearest: Option<(f64, usize, f64)> = None;
+            let mut nearest: Option<(f64, usize, Values)> = None;
             for k in self.candidates(&[x], &[n], size, self.reach) {
                 let other = &self.other[k];
                 let Some(eta) = other.hit(&x, &n) else {
                     continue;
                 };
-                let gap = edge::along(&x, &other.at(eta), &n);
+                let gap = face::along(&x, &other.at(eta), &n);
                 if gap >= -size && nearest.is_none_or(|(g, ..)| gap.abs() < g.abs()) {
-                    nearest = Some((gap, k, eta));
+                    nearest = Some((gap, k, other.shape(eta)));
                 }
             }
-            let Some((_, k, eta)) = nearest else { continue };
-            let other = &self.other[k];
-            let n_b = other.shape(eta);
+            let Some((_, k, n_b)) = nearest else { continue };
             couplings.push(Coupling {
                 node,
                 kind,
                 area,
                 normal: n.map(|v| -v),
                 own: vec![(node, 1.0)],
-                opposite: other.nodes.iter().copied().zip(n_b).collect(),
+                opposite: self.other[k].nodes.iter().copied().zip(n_b).collect(),
             });
         }
         couplings
     }
 }
 
-/// Outward unit normals of the nodes, averaged over the edges that they belong to.
-fn normals<const D: usize>(edges: &[Edge<D>]) -> BTreeMap<usize, [f64; D]> {
+/// Outward unit normals of the nodes, averaged over the facets that they belong to.
+fn normals<const D: usize>(faces: &[Face<D>]) -> BTreeMap<usize, [f64; D]> {
     let mut sums: BTreeMap<usize, [f64; D]> = BTreeMap::new();
-    for edge in edges {
-        for point in <crate::Line3 as crate::Element<1, 3>>::rule(Integration::Full).points {
-            let [xi] = point.xi;
-            let (shape, outward) = (edge.shape(xi), edge.outward(xi));
-            for (k, &node) in edge.nodes.iter().enumerate() {
+    for face in faces {
+        for sample in facet_samples::<D>(face.kind) {
+            let outward = sample.area_vector(&face.x);
+            for (&node, shape) in face.nodes.iter().zip(&sample.shape) {
                 let sum = sums.entry(node).or_insert([0.0; D]);
                 for i in 0..D {
-                    sum[i] += point.weight * shape[k] * outward[i];
+                    sum[i] += sample.weight * shape * outward[i];
                 }
             }
         }
@@ -183,7 +181,7 @@ fn normals<const D: usize>(edges: &[Edge<D>]) -> BTreeMap<usize, [f64; D]> {
     sums
 }
 
-fn reach<'a, const D: usize>(edges: impl Iterator<Item = &'a Edge<D>>) -> f64 {
-    let all: Vec<[f64; D]> = edges.flat_map(|e| e.x.iter().copied()).collect();
-    crate::geometry::diagonal(&all)
+fn reach<'a, const D: usize>(faces: impl Iterator<Item = &'a Face<D>>) -> f64 {
+    let all: Vec<[f64; D]> = faces.flat_map(|f| f.x.iter().copied()).collect();
+    diagonal(&all)
 }

@@ -94,12 +94,13 @@ impl Rule<2> {
         }
     }
 
-    /// Symmetric rule on the unit triangle ξ, η ≥ 0, ξ + η ≤ 1, exact for polynomials of at least
-    /// the given total degree: 1 point for degree 1, 3 for 2, 6 for 3 and 4, 7 for 5.
+    /// Rule on the unit triangle ξ, η ≥ 0, ξ + η ≤ 1, exact for polynomials of at least the given
+    /// total degree: symmetric with 1 point for degree 1, 3 for 2, 6 for 3 and 4, 7 for 5; above,
+    /// products of [`gauss`] rules on the square that the triangle is with one side collapsed.
     ///
     /// # Panics
     ///
-    /// If the degree is not in 1..=5.
+    /// If the degree is 0.
     pub fn triangle(degree: usize) -> Self {
         let centroid = |weight: f64| {
             vec![Point {
@@ -138,7 +139,19 @@ impl Rule<2> {
                 ]
                 .concat()
             }
-            _ => panic!("no triangle rule of degree {degree}: it must be in 1..=5"),
+            0 => panic!("a triangle rule needs a degree of at least 1"),
+            // ξ = s (1 − t), η = t: one degree more in t, by the Jacobian 1 − t.
+            _ => {
+                let collapsed = |p: &Point<2>| {
+                    let [s, t] = p.xi.map(|v| 0.5 * (1.0 + v));
+                    Point {
+                        xi: [s * (1.0 - t), t],
+                        weight: 0.25 * p.weight * (1.0 - t),
+                    }
+                };
+                let square = Self::quadrilateral(degree.div_ceil(2) + 1).points;
+                square.iter().map(collapsed).collect()
+            }
         };
         Self { points }
     }

@@ -47,6 +47,10 @@ impl<const D: usize> ContactSolver<D> for SemismoothNewton {
 /// of ten.
 const PARTS: [f64; 3] = [0.1, 1.0, 0.01];
 
+/// Pivots below this part of the largest are rounding of a stiffness that was condensed, and a rigid
+/// motion.
+const RIGID: f64 = 1e-13;
+
 /// Iterations for one of the parts.
 const ATTEMPT: usize = 30;
 
@@ -242,8 +246,9 @@ impl<const D: usize> Newton<'_, D> {
             own += shift;
         }
         let rhs = DVector::from_iterator(n, now.map.iter().flat_map(|g| (0..D).map(|k| -g[k])));
-        // A rigid motion that no contact stops leaves the matrix singular.
-        let step = Lu::new(jacobian)?.solve(rhs);
+        // A rigid motion that no contact stops leaves the matrix singular, up to the rounding of S.
+        let mut lu = Lu::new(jacobian).filter(|lu| lu.least_pivot > RIGID)?;
+        let step = lu.solve(rhs);
         step.iter().all(|v| v.is_finite()).then_some(step)
     }
 

@@ -1,6 +1,6 @@
 //! Search of boxes that overlap a box, by a binary tree of bounding boxes; not of what is in them.
 
-use super::edge::Box;
+use super::face::Box;
 
 /// A tree of boxes, halved at the median along the longest side.
 pub(super) struct Tree<const D: usize> {

@@ -11,6 +11,7 @@ mod hypotheses;
 mod integrals;
 mod losses;
 mod pairing;
+mod pairing_space;
 mod quadrature;
 mod validity;
 mod write;

@@ -115,7 +115,9 @@ fn has_degree<const D: usize>(rule: &Rule<D>, degree: i32) {
 
 #[test]
 fn triangle_rules_are_exact_up_to_their_degree() {
-    for (asked, count, degree) in [(1, 1, 1), (2, 3, 2), (3, 6, 4), (4, 6, 4), (5, 7, 5)] {
+    let symmetric = [(1, 1, 1), (2, 3, 2), (3, 6, 4), (4, 6, 4), (5, 7, 5)];
+    let collapsed = [(6, 16, 6), (7, 25, 8), (12, 49, 12)];
+    for (asked, count, degree) in symmetric.into_iter().chain(collapsed) {
         let rule = Rule::triangle(asked);
         assert_eq!(rule.points.len(), count);
         has_degree(&rule, degree);

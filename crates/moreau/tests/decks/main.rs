@@ -442,6 +442,7 @@ fn a_resolved_deck_is_the_same_deck() {
         include_str!("../../../../docs/examples/block-dragged-on-block.toml"),
         include_str!("../../../../docs/examples/block-opening-sliding-sticking.toml"),
         include_str!("../../../../docs/examples/cylinder-pressed-into-block.toml"),
+        include_str!("../../../../docs/examples/pad-dragged-over-plate.toml"),
         include_str!("../../../../docs/examples/punch-on-gmsh-mesh.toml"),
         include_str!("../../../../docs/examples/strip-between-rough-platens.toml"),
         &DECK

@@ -1,0 +1,150 @@
+//! The part of a face that the other surface covers, in space: convex polygons in its mean plane;
+//! not the multipliers on it.
+//!
+//! M. A. Puso and T. A. Laursen, *Comput. Methods Appl. Mech. Engng* 193 (2004) 601–629.
+
+use super::Sides;
+use super::face::{Face, View, difference};
+use super::mortar::{NEAR, Overlap, SLIVER, Sample};
+use super::polygon::{self, Polygon};
+use crate::Rule;
+use crate::geometry::dot;
+
+/// Degree of the polynomials that are integrated exactly between linear faces: N_a N_b.
+const LINEAR: usize = 5;
+
+/// The degree where a face is not the linear image of its reference face and shape functions are no
+/// polynomials on it.
+const OTHERWISE: usize = 12;
+
+/// A part of a face that a face of the other surface covers, as seen along its normal.
+struct Patch {
+    polygon: Polygon,
+    other: usize,
+}
+
+impl<const D: usize> Sides<'_, D> {
+    pub(super) fn overlap_in_space(
+        &self,
+        face: &Face<D>,
+        measure: &dyn Fn(&[f64; D]) -> f64,
+    ) -> Overlap {
+        let middle = face.middle();
+        let view = View::new(face.at(middle), &face.outward(middle));
+        let patches = self.patches(face, &view);
+        let samples = patches
+            .iter()
+            .flat_map(|patch| self.patch_samples(face, &view, patch, measure));
+        Overlap {
+            samples: samples.collect(),
+            near: near(face, &view, &patches),
+        }
+    }
+
+    /// The overlap of a face with the other surface, nearest first where that is folded.
+    fn patches(&self, face: &Face<D>, view: &View<D>) -> Vec<Patch> {
+        let own = seen(face, view, false);
+        let whole: f64 = own.iter().map(Polygon::area).sum();
+        let least = SLIVER * whole;
+        let normals = vec![view.normal; face.x.len()];
+        let depth = face.size();
+        let mut far = depth;
+        loop {
+            let mut parts: Vec<(f64, Patch)> = Vec::new();
+            for other in self.candidates(&face.x, &normals, depth, far) {
+                for polygon in seen(&self.other[other], view, true) {
+                    for part in own.iter().map(|own| own.within(&polygon)) {
+                        if part.area() > least
+                            && let Some(gap) = self.gap(face, view, part.centre(), other)
+                            && gap >= -depth
+                        {
+                            let polygon = part;
+                            parts.push((gap, Patch { polygon, other }));
+                        }
+                    }
+                }
+            }
+            parts.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+            let mut patches: Vec<Patch> = Vec::new();
+            for (_, Patch { polygon, other }) in parts {
+                let left = patches.iter().fold(vec![polygon], |left, taken| {
+                    let beside = |p: Polygon| p.without(&taken.polygon, least);
+                    left.into_iter().flat_map(beside).collect()
+                });
+                patches.extend(left.into_iter().map(|polygon| Patch { polygon, other }));
+            }
+            let covered: f64 = patches.iter().map(|p| p.polygon.area()).sum();
+            if covered >= (1.0 - SLIVER) * whole || far >= self.reach {
+                return patches;
+            }
+            far *= 4.0;
+        }
+    }
+
+    /// Distance to another face along the view, at a point of it.
+    fn gap(&self, face: &Face<D>, view: &View<D>, at: [f64; 2], other: usize) -> Option<f64> {
+        let other = &self.other[other];
+        let (x, y) = (face.below(view, at)?, other.below(view, at)?);
+        Some(dot(&difference(&other.at(y), &face.at(x)), &view.normal))
+    }
+
+    fn patch_samples(
+        &self,
+        face: &Face<D>,
+        view: &View<D>,
+        patch: &Patch,
+        measure: &dyn Fn(&[f64; D]) -> f64,
+    ) -> Vec<Sample> {
+        let other = &self.other[patch.other];
+        let linear = |f: &Face<D>| f.is_affine() && f.nodes.len() == f.kind.corner_count();
+        let rule = Rule::triangle(match linear(face) && linear(other) {
+            true => LINEAR,
+            false => OTHERWISE,
+        });
+        let mut samples = Vec::new();
+        for triangle in patch.polygon.triangles() {
+            let [a, b, c] = triangle;
+            let twice = 2.0 * polygon::area(&triangle);
+            for point in &rule.points {
+                let [s, t] = point.xi;
+                let at = [0, 1].map(|i| a[i] + s * (b[i] - a[i]) + t * (c[i] - a[i]));
+                let (Some(xi), Some(eta)) = (face.below(view, at), other.below(view, at)) else {
+                    continue;
+                };
+                // The area of the face itself, not of what is seen.
+                let outward = face.outward(xi);
+                let tilt = dot(&outward, &outward).sqrt() / dot(&outward, &view.normal);
+                samples.push(Sample {
+                    shape: face.shape(xi),
+                    d_s: point.weight * twice * tilt * measure(&face.at(xi)),
+                    other: patch.other,
+                    opposite: other.shape(eta),
+                });
+            }
+        }
+        samples
+    }
+}
+
+/// A face as it is seen along a view; of one that is looked at from behind, if that is asked for.
+fn seen<const D: usize>(face: &Face<D>, view: &View<D>, behind: bool) -> Vec<Polygon> {
+    let mut corners: Vec<[f64; 2]> = face.corners().iter().map(|x| view.of(x)).collect();
+    if behind {
+        corners.reverse();
+    }
+    Polygon::parts(&corners)
+}
+
+/// The nodes of a face that are within an overlap or near, measured in the reference face.
+fn near<const D: usize>(face: &Face<D>, view: &View<D>, patches: &[Patch]) -> Vec<usize> {
+    let limit = 0.5 * NEAR * face.unit();
+    let place = |patch: &Patch| {
+        let corners = patch.polygon.corners().iter();
+        let places: Option<Vec<_>> = corners.map(|&c| face.below(view, c)).collect();
+        places.map(Polygon::new)
+    };
+    let places: Vec<Polygon> = patches.iter().filter_map(place).collect();
+    let nodes = face.places();
+    let is_near = |a: &usize| places.iter().any(|p| p.distance(nodes[*a]) <= limit);
+    (0..nodes.len()).filter(is_near).collect()
+}

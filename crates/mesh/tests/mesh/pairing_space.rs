@@ -1,0 +1,210 @@
+//! Pairing of surfaces in space that do not match, wholly and partly covered, flat and curved.
+
+use moreau_mesh::{CellKind, Coupling, Mesh, Pairing, Solid, block3, uniform};
+use std::collections::BTreeMap;
+
+/// Sides of the footprint along x and z.
+const SIDES: [f64; 2] = [6.0, 5.0];
+
+/// A block on the plane y = 0, above it or below, of n × m cells in its footprint, which f maps.
+fn body(
+    name: &str,
+    kind: CellKind,
+    cells: [usize; 2],
+    f: impl Fn([f64; 2]) -> [f64; 2],
+) -> Mesh<3> {
+    let y = if name == "upper" {
+        [0.0, 1.0]
+    } else {
+        [-1.0, 0.0]
+    };
+    let [x, z] = [0, 1].map(|i| uniform(0.0, SIDES[i], cells[i]));
+    block3(name, kind, &x, &uniform(y[0], y[1], 1), &z)
+        .and_then(|m| {
+            m.map(|[x, y, z]| {
+                let [x, z] = f([x, z]);
+                [x, y, z]
+            })
+        })
+        .expect("valid")
+}
+
+/// Grid lines bent within the footprint.
+fn bent([x, z]: [f64; 2]) -> [f64; 2] {
+    let bump = |v: f64, side: f64| (std::f64::consts::PI * v / side).sin();
+    let both = bump(x, SIDES[0]) * bump(z, SIDES[1]);
+    [x + 0.5 * both, z - 0.4 * both]
+}
+
+/// About the middle of the footprint.
+fn turned(angle: f64, scale: [f64; 2]) -> impl Fn([f64; 2]) -> [f64; 2] {
+    move |[x, z]| {
+        let (s, c) = angle.sin_cos();
+        let [x, z] = [
+            scale[0] * (x - 0.5 * SIDES[0]),
+            scale[1] * (z - 0.5 * SIDES[1]),
+        ];
+        [
+            0.5 * SIDES[0] + c * x - s * z,
+            0.5 * SIDES[1] + s * x + c * z,
+        ]
+    }
+}
+
+fn pair(mesh: &Mesh<3>, pairing: Pairing) -> Vec<Coupling<3>> {
+    let group = |name| mesh.facet_group(name).expect("named");
+    mesh.couplings(
+        mesh.nodes(),
+        (group("upper.bottom"), group("lower.top")),
+        pairing,
+        &Solid,
+    )
+}
+
+fn sum(weights: &[(usize, f64)], f: impl Fn(usize) -> f64) -> f64 {
+    weights.iter().map(|&(a, w)| w * f(a)).sum()
+}
+
+const KINDS: [[CellKind; 2]; 4] = [
+    [CellKind::Hex8, CellKind::Hex8],
+    [CellKind::Hex8, CellKind::Tet4],
+    [CellKind::Tet4, CellKind::Hex8],
+    [CellKind::Tet4, CellKind::Tet4],
+];
+
+/// What holds for any overlap of flat surfaces: sums of weights, linear fields, area. Returns the
+/// forces of a unit pressure on the lower body.
+fn check(mesh: &Mesh<3>, area: f64, what: &str) -> BTreeMap<usize, f64> {
+    let mut on_lower: BTreeMap<usize, f64> = BTreeMap::new();
+    let mut total = 0.0;
+    for c in pair(mesh, Pairing::Mortar) {
+        assert!(c.area > 0.0, "{what}");
+        assert!((c.normal[1] - 1.0).abs() < 1e-14);
+        assert!((sum(&c.own, |_| 1.0) - 1.0).abs() < 1e-12);
+        assert!((sum(&c.opposite, |_| 1.0) - 1.0).abs() < 1e-12);
+        for i in 0..3 {
+            let x = |a: usize| mesh.nodes()[a][i];
+            let apart = sum(&c.own, x) - sum(&c.opposite, x);
+            assert!(apart.abs() < 1e-10, "{what}: {apart:.2e}");
+        }
+        total += c.area;
+        for &(b, w) in &c.opposite {
+            *on_lower.entry(b).or_insert(0.0) += w * c.area;
+        }
+    }
+    let off = (total / area - 1.0).abs();
+    assert!(off < 1e-12, "{what}: area off by {off:.2e}");
+    on_lower
+}
+
+#[test]
+fn linear_fields_and_a_uniform_pressure_pass_between_faces_that_do_not_match() {
+    let shift = 2f64.sqrt() / 10.0;
+    type Map = Box<dyn Fn([f64; 2]) -> [f64; 2]>;
+    let whole = SIDES[0] * SIDES[1];
+    let scaled =
+        |x: [f64; 2]| -> Map { Box::new(move |[s, t]| [x[0] + (x[1] - x[0]) * s / SIDES[0], t]) };
+    // Lower cells, their map, and the area of the overlap.
+    let lowers: Vec<([usize; 2], Map, f64)> = vec![
+        ([5, 4], Box::new(|x| x), whole),
+        ([5, 2], Box::new(bent), whole),
+        ([7, 5], scaled([-1.0 - shift, 7.0 + shift]), whole),
+        ([6, 5], scaled([1.0 + shift, 7.0]), (5.0 - shift) * SIDES[1]),
+        ([11, 3], scaled([0.1, 5.95]), 5.85 * SIDES[1]),
+        ([2, 2], scaled([2.1, 2.4]), 0.3 * SIDES[1]),
+        // Turned: covers all, or lies within.
+        ([7, 6], Box::new(turned(0.4, [2.0, 2.0])), whole),
+        ([3, 4], Box::new(turned(0.4, [0.5, 0.5])), 0.25 * whole),
+        ([1, 1], Box::new(turned(1.0, [0.05, 0.1])), 0.005 * whole),
+    ];
+    for kinds in KINDS {
+        for (case, (cells, map, area)) in lowers.iter().enumerate() {
+            for curved in [false, true] {
+                let upper = if curved { bent } else { |x| x };
+                let mesh = body("upper", kinds[0], [4, 3], upper)
+                    .joined(body("lower", kinds[1], *cells, map))
+                    .expect("valid");
+                let what = format!("{kinds:?}, case {case}, {curved}");
+                let on_lower = check(&mesh, *area, &what);
+                // The lower face feels the consistent load of the pressure where all of it is covered.
+                let facets = mesh.facet_group("lower.top").expect("named");
+                let shares = mesh.facet_shares(facets, &Solid);
+                if (shares.iter().map(|s| s.area).sum::<f64>() / area - 1.0).abs() < 1e-9 {
+                    for share in shares {
+                        let off = (on_lower[&share.node] - share.area).abs() / share.area;
+                        assert!(off < 1e-10, "{what}: load off by {off:.2e}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_node_on_a_face_that_matches_meets_its_twin_alone() {
+    for kind in [CellKind::Hex8, CellKind::Tet4] {
+        let wavy = |[x, y, z]: [f64; 3]| [x, y + 0.2 * (0.5 * x).sin() + 0.1 * z.cos(), z];
+        // Tetrahedra cut both sides along the same diagonals.
+        let mesh = body("upper", kind, [4, 4], bent)
+            .joined(body("lower", kind, [4, 4], bent))
+            .and_then(|m| m.map(wavy))
+            .expect("valid");
+        for pairing in [Pairing::Mortar, Pairing::NodeToSurface] {
+            let couplings = pair(&mesh, pairing);
+            assert_eq!(couplings.len(), 25);
+            for c in couplings {
+                assert!(c.own.len() == 1 && c.own[0].0 == c.node);
+                for (b, w) in c.opposite {
+                    let (x, y) = (mesh.nodes()[b], mesh.nodes()[c.node]);
+                    let same = (0..3).all(|i| (x[i] - y[i]).abs() < 1e-12);
+                    let exact = f64::from(u8::from(same));
+                    assert!((w - exact).abs() < 1e-8, "{kind} {pairing:?}: {w} at {y:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Two tubes: the far side and the back of a surface are not met.
+#[test]
+fn a_tube_meets_the_near_side_of_the_tube_within() {
+    let tube = |name: &str, n: usize, length: usize, radii: [f64; 2]| {
+        let half = |name: &str, from: f64| {
+            let angle = uniform(from, from + std::f64::consts::PI, n);
+            let z = uniform(0.0, 3.0, length);
+            block3(
+                name,
+                CellKind::Hex8,
+                &uniform(radii[0], radii[1], 1),
+                &angle,
+                &z,
+            )
+            .and_then(|m| m.map(|[r, a, z]| [r * a.cos(), r * a.sin(), z]))
+            .expect("valid")
+        };
+        half(&format!("{name}1"), 0.0).joined(half(&format!("{name}2"), std::f64::consts::PI))
+    };
+    let mesh = tube("outer", 16, 4, [2.0, 3.0])
+        .and_then(|outer| outer.joined(tube("inner", 13, 3, [1.0, 1.98])?))
+        .expect("valid");
+    let group = |names: [&str; 2]| {
+        let one = |n: &str| mesh.facet_group(n).expect("named").to_vec();
+        [one(names[0]), one(names[1])].concat()
+    };
+    let surfaces = (
+        group(["outer1.left", "outer2.left"]),
+        group(["inner1.right", "inner2.right"]),
+    );
+    for pairing in [Pairing::Mortar, Pairing::NodeToSurface] {
+        let couplings = mesh.couplings(mesh.nodes(), (&surfaces.0, &surfaces.1), pairing, &Solid);
+        // The joints of the half tubes have a node of each half.
+        assert_eq!(couplings.len(), 2 * 17 * 5, "{pairing:?}");
+        for c in couplings {
+            let at = |w: &[(usize, f64)]| [0, 1, 2].map(|i| sum(w, |a| mesh.nodes()[a][i]));
+            let (own, other) = (at(&c.own), at(&c.opposite));
+            let gap: f64 = (0..3).map(|i| (own[i] - other[i]) * c.normal[i]).sum();
+            // A chord of the inner tube lies lower by at most 0.0144, one of the outer by 0.0096.
+            assert!(gap > 0.005 && gap < 0.04, "{pairing:?}: {gap}");
+        }
+    }
+}
