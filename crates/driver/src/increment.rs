@@ -156,7 +156,9 @@ impl<const D: usize> Driver<D> {
                 |d: usize| end.force[d] - now.assembly.internal[d] - now.assembly.coupling[d];
             let load: Vec<f64> = (0..now.d_u.len()).map(load).collect();
             let mut condensed = system.condense(&load);
-            let complete = missing.iter().all(|&m| m == 0.0);
+            // What a tool has moved is missing in the first iterate as well.
+            let moved = counts.newton == 1 && start.tools != end.tools;
+            let complete = !moved && missing.iter().all(|&m| m == 0.0);
             let border = control.as_ref().map(|c| {
                 let equation = (c.compliance, c.missing(&now.d_u));
                 system.border(&mut condensed, c.load, equation)

@@ -24,7 +24,7 @@ pub(crate) struct Line<'a, const D: usize> {
     pub(crate) step: &'a [f64],
     /// Contact forces at its end, at every degree of freedom.
     pub(crate) target: &'a [f64],
-    /// Whether the iterate has all prescribed displacements already.
+    /// Whether the iterate has all prescribed displacements and the motions of tools already.
     pub(crate) complete: bool,
     /// Imbalance left by the contact solver \[N\].
     pub(crate) slack: f64,
@@ -101,7 +101,7 @@ impl<const D: usize> Driver<D> {
             let before = line.norm(&now.assembly.internal, &now.contact, 0.0);
             line.norm(internal, line.target, 1.0) > before
         };
-        // While prescribed displacements are missing, ΔΦ is not what the step minimises; in balance
+        // While prescribed displacements or motions are missing, ΔΦ is not what the step minimises; in balance
         // its slope is rounding.
         if !line.complete || !overshoots || left <= self.target(system, scale, &d_u) + line.slack {
             return Iterate {

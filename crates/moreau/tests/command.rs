@@ -849,3 +849,44 @@ fn memory_does_not_grow_with_the_increments() {
         assert!(many < few + 2.0, "{few} MB, then {many} MB");
     }
 }
+
+/// Who reads may go away, as `head` does: the run goes on to its end, and says so to nobody.
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let at = directory("pipe");
+    let deck = examples().join("punched-block.toml");
+    for (k, arguments) in [
+        &["run"][..],
+        &["run", "--json-log"],
+        &["check"],
+        &["schema"],
+    ]
+    .iter()
+    .enumerate()
+    {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_moreau"));
+        command.args(*arguments);
+        if arguments[0] != "schema" {
+            command.arg(&deck);
+        }
+        let out = at.join(k.to_string());
+        if arguments[0] == "run" {
+            command.arg("--out").arg(&out);
+        }
+        let piped = std::process::Stdio::piped;
+        let mut child = command
+            .stdout(piped())
+            .stderr(piped())
+            .spawn()
+            .expect("it starts");
+        drop((child.stdout.take(), child.stderr.take()));
+        assert_eq!(
+            child.wait().expect("it ends").code(),
+            Some(0),
+            "{arguments:?}"
+        );
+        if arguments[0] == "run" {
+            assert!(out.join("report.html").exists());
+        }
+    }
+}

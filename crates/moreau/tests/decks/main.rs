@@ -1,6 +1,7 @@
 //! What is said about a deck that is wrong or doubtful, and that nothing said about it is a panic.
 
 mod meshes;
+mod metamorphic;
 mod mutants;
 mod schema;
 mod supports;
@@ -15,6 +16,11 @@ fn folder(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../..")
         .join(path)
+}
+
+/// A path for what a test writes.
+fn temporary(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
 
 /// A text on one line, without the bars before the lines of a long message.
