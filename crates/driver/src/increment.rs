@@ -157,7 +157,9 @@ impl<const D: usize> Driver<D> {
             let load: Vec<f64> = (0..now.d_u.len()).map(load).collect();
             let mut condensed = system.condense(&load);
             // What a tool has moved is missing in the first iterate as well.
-            let moved = counts.newton == 1 && start.tools != end.tools;
+            let tools = self.mesh_dofs()..;
+            let moved = counts.newton == 1
+                && !(start.displacement.range(tools.clone())).eq(end.displacement.range(tools));
             let complete = !moved && missing.iter().all(|&m| m == 0.0);
             let border = control.as_ref().map(|c| {
                 let equation = (c.compliance, c.missing(&now.d_u));
