@@ -452,3 +452,51 @@ fn deflated(block: &[u8]) -> Vec<u8> {
     let written = encoder.write_all(block).and_then(|()| encoder.finish());
     written.unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// VTK's own lists: the corners of the edge or face that each node after the corners halves.
+    #[test]
+    fn nodes_come_in_the_order_of_vtk() {
+        let hexahedron: &[&[usize]] = &[
+            &[0, 1],
+            &[1, 2],
+            &[2, 3],
+            &[3, 0],
+            &[4, 5],
+            &[5, 6],
+            &[6, 7],
+            &[7, 4],
+            &[0, 4],
+            &[1, 5],
+            &[2, 6],
+            &[3, 7],
+            &[0, 3, 4, 7],
+            &[1, 2, 5, 6],
+            &[0, 1, 4, 5],
+            &[2, 3, 6, 7],
+            &[0, 1, 2, 3],
+            &[4, 5, 6, 7],
+            &[0, 1, 2, 3, 4, 5, 6, 7],
+        ];
+        let tetrahedron: &[&[usize]] = &[&[0, 1], &[1, 2], &[2, 0], &[0, 3], &[1, 3], &[2, 3]];
+        for (kind, between) in [
+            (CellKind::Tet10, tetrahedron),
+            (CellKind::Hex20, &hexahedron[..12]),
+            (CellKind::Hex27, hexahedron),
+        ] {
+            let nodes: Vec<&[f64]> = kind.reference_nodes().collect();
+            let (_, order) = cell_type(kind);
+            let order = order.expect("an order of its own");
+            for (k, corners) in between.iter().enumerate() {
+                let node = nodes[order[kind.corner_count() + k]];
+                for i in 0..3 {
+                    let sum: f64 = corners.iter().map(|&c| nodes[c][i]).sum();
+                    assert_eq!(node[i], sum / corners.len() as f64, "{kind} {k}");
+                }
+            }
+        }
+    }
+}
