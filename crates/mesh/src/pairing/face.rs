@@ -164,7 +164,9 @@ impl<const D: usize> Face<D> {
         let xi = self.below(&View::new(*x, n), [0.0; 2])?;
         let inside = match self.kind {
             FacetKind::Tri3 => xi[0].min(xi[1]).min(1.0 - xi[0] - xi[1]) >= -OUTSIDE,
-            _ => xi[0].abs().max(xi[1].abs()) <= 1.0 + OUTSIDE,
+            FacetKind::Line2 | FacetKind::Line3 | FacetKind::Quad4 => {
+                xi[0].abs().max(xi[1].abs()) <= 1.0 + OUTSIDE
+            }
         };
         (inside && dot(&self.outward(xi), n) < 0.0).then_some(xi)
     }

@@ -17,6 +17,9 @@ const ROUNDING: f64 = 1e-13;
 /// multiplier.
 pub(super) const NEAR: f64 = 0.25;
 
+/// Least share of a multiplier in the overlap of a facet.
+const LEAST: f64 = 1e-3;
+
 /// What the other surface covers of a facet.
 #[derive(Default)]
 pub(super) struct Overlap {
@@ -119,12 +122,14 @@ impl Multipliers {
     /// The Φ_a with Σ Φ_a = 1 and ∫ Φ_a N_c = 0 for the other nodes c that have one: all nodes of a
     /// facet that is covered, else those within the overlap or near. `None` without an overlap.
     ///
-    /// A multiplier that would not push, for the overlap is a sliver on the side of its node, is
-    /// left to the others.
+    /// A multiplier that hardly has a share of the overlap or a negative one, as that of a node of
+    /// which the overlap is far, is left to the others: a force would push nowhere, or pull.
     fn new(overlap: &Overlap, count: usize) -> Option<Self> {
         let samples = &overlap.samples;
         let share = |c: usize| samples.iter().map(|s| s.d_s * s.shape[c]).sum::<f64>();
         let by_share = |a: &usize, b: &usize| share(*a).total_cmp(&share(*b));
+        let whole: f64 = samples.iter().map(|s| s.d_s).sum();
+        let pushes = |phi: &Vec<f64>| phi.iter().sum::<f64>() > LEAST * whole;
         let mut nodes = overlap.near.clone();
         if nodes.is_empty() {
             // The other surface is narrower than this facet.
@@ -132,7 +137,7 @@ impl Multipliers {
         }
         while !nodes.is_empty() {
             if let Some(values) = dual(samples, &nodes)
-                && values.iter().all(|phi| phi.iter().sum::<f64>() > 0.0)
+                && values.iter().all(pushes)
             {
                 return Some(Self { nodes, values });
             }
