@@ -2,9 +2,13 @@
 
 mod algorithms;
 mod block;
+mod cattaneo;
 mod compare;
+mod greco;
 mod penalty;
 mod prandtl;
+mod ring;
+mod rounded_punch;
 
 pub use compare::{History, record};
 
@@ -12,5 +16,14 @@ use crate::Case;
 
 /// All cases.
 pub fn all() -> Vec<Case> {
-    vec![prandtl::CASE, block::CASE, penalty::CASE, algorithms::CASE]
+    vec![
+        prandtl::CASE,
+        block::CASE,
+        penalty::CASE,
+        algorithms::CASE,
+        greco::CASE,
+        cattaneo::CASE,
+        rounded_punch::CASE,
+        ring::CASE,
+    ]
 }

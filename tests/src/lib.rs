@@ -7,4 +7,4 @@ pub mod paper;
 pub mod problems;
 pub mod siconos;
 
-pub use outcome::{Case, Check, Figure, Kind, Options, Outcome, Table};
+pub use outcome::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};

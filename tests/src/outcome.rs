@@ -112,10 +112,31 @@ pub struct Options<'a> {
     pub progress: &'a dyn Fn(&str),
 }
 
+/// Part of the report that a case belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Chapter {
+    /// The numerical examples of the paper, its figures and tables.
+    Paper,
+    /// What the paper's theory is written for and its examples leave out.
+    Beyond,
+}
+
+impl Chapter {
+    /// Heading in the report.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Paper => "The paper",
+            Self::Beyond => "Beyond the paper",
+        }
+    }
+}
+
 /// A verification case.
 pub struct Case {
     /// Name on the command line.
     pub name: &'static str,
+    /// Where it stands in the report; the cases of a chapter follow one another.
+    pub chapter: Chapter,
     /// Title in the report.
     pub title: &'static str,
     /// What is computed and why: one paragraph.

@@ -3,6 +3,7 @@
 
 pub mod disguise;
 pub mod fields;
+pub mod greco;
 pub mod limit;
 pub mod patches;
 pub mod punched;

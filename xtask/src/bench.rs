@@ -8,7 +8,7 @@ use std::time::Instant;
 use moreau::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
 use moreau::driver::Settings;
 use moreau::mesh::Integration;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use verification::paper;
 
 /// Arguments of `bench`.
@@ -29,7 +29,7 @@ pub struct Args {
 }
 
 /// How the contact problem is solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Method {
     /// Semismooth Newton, the law itself
@@ -50,17 +50,20 @@ const ALL: [Method; 4] = [
 ];
 
 /// What one run took; times in seconds.
-#[derive(Debug, Clone, Serialize)]
-struct Figures {
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Figures {
     cells: [usize; 2],
     method: Method,
-    unknowns: usize,
+    /// Free displacements.
+    pub unknowns: usize,
     contacts: usize,
     increments: usize,
-    newton_iterations: usize,
+    /// Newton iterations of all increments.
+    pub newton_iterations: usize,
     contact_iterations: usize,
     factorisations: usize,
-    seconds: f64,
+    /// From the mesh to the last increment.
+    pub seconds: f64,
     assembly: f64,
     ordering: f64,
     factorisation: f64,
@@ -75,14 +78,19 @@ struct Figures {
     peak_memory: Option<f64>,
     /// Bipotential gap of the run over its external work.
     relative_gap: f64,
-    punch_load: f64,
+    /// Load of the punch \[N\] at the end.
+    pub punch_load: f64,
 }
 
-/// Total travel of the punch \[mm\], and in how many increments.
+/// Total travel of the punch \[mm\].
 const TRAVEL: f64 = 0.2;
-const INCREMENTS: usize = 10;
+/// In how many increments.
+pub const INCREMENTS: usize = 10;
+/// Coefficient of friction on the foundation.
+pub const FRICTION: f64 = 0.1;
 
-fn size(text: &str) -> Result<[usize; 2], String> {
+/// Reads a number of cells along and across.
+pub fn size(text: &str) -> Result<[usize; 2], String> {
     let wrong = || format!("\"{text}\" is no size: expected cells as 160x64");
     let (n, m) = text.split_once(['x', '×']).ok_or_else(wrong)?;
     let number = |t: &str| t.trim().parse().ok().filter(|n| *n > 0);
@@ -143,7 +151,7 @@ fn measure(cells: [usize; 2], method: Method) -> Result<Figures, Box<dyn Error>>
         ..Settings::default()
     };
     let clock = Instant::now();
-    let mut driver = paper::block(cells, 0.1, Integration::Reduced, settings)?;
+    let mut driver = paper::block(cells, FRICTION, Integration::Reduced, settings)?;
     let reports = driver.run(&paper::block_step(TRAVEL), INCREMENTS, |_, _| {})?;
     let seconds = clock.elapsed().as_secs_f64();
     let sum = |f: fn(&moreau::driver::StepReport) -> usize| reports.iter().map(f).sum::<usize>();

@@ -2,6 +2,7 @@
 
 mod bench;
 mod contact_bench;
+mod peers;
 #[cfg(test)]
 mod scratch;
 mod tidy;
@@ -33,6 +34,8 @@ enum Task {
     Bench(bench::Args),
     /// Run all contact solvers over a folder of discrete frictional contact problems
     ContactBench(contact_bench::Args),
+    /// Time the punched block by other systems that are installed, beside ours
+    Peers(peers::Args),
     /// Check the architecture of the workspace from its manifests and sources
     Tidy,
 }
@@ -42,6 +45,7 @@ fn main() -> ExitCode {
         Task::Verify(args) => verify::run(&args),
         Task::Bench(args) => bench::run(&args),
         Task::ContactBench(args) => contact_bench::run(&args),
+        Task::Peers(args) => peers::run(&args),
         Task::Tidy => tidy::run(),
     };
     match done {

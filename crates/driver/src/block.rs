@@ -2,7 +2,7 @@
 //! of their material; not their assembly.
 
 use crate::cells::{Cells, MAX_POINTS};
-use moreau_laws::{BulkLaw, Numbers};
+use moreau_laws::{BulkLaw, FlowPower, Numbers};
 use moreau_mandel::{Sym2, Sym4};
 use rayon::prelude::*;
 
@@ -81,6 +81,10 @@ pub trait Block<const D: usize>: Send + Sync {
 
     /// Energies of the candidate that the last evaluation left.
     fn energy(&self) -> BlockEnergy;
+
+    /// ∫ D(ε̇) dΩ of the strain rates of the velocities `v` (one entry a degree of freedom of the
+    /// mesh), in the committed states; `None` of a law that has none.
+    fn flow_power(&self, v: &[f64]) -> Option<FlowPower>;
 
     /// Makes the candidate the state at the start of the next step.
     fn commit(&mut self);
@@ -279,6 +283,21 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
             }
         }
         sum
+    }
+
+    fn flow_power(&self, v: &[f64]) -> Option<FlowPower> {
+        let count = self.cells.points_per_cell();
+        let mut rates = [Sym2::zeros(); MAX_POINTS];
+        let mut sum = FlowPower::default();
+        for k in 0..self.cells.count() {
+            self.cells.strain(k, v, &mut rates[..count]);
+            for (g, rate) in rates[..count].iter().enumerate() {
+                let point = k * count + g;
+                let part = self.law.flow_power(&self.old[point], rate)?;
+                sum = sum.with(self.cells.weight(point), part);
+            }
+        }
+        Some(sum)
     }
 
     fn commit(&mut self) {

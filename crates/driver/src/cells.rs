@@ -52,6 +52,8 @@ pub(crate) struct ElementCells<E, H, const D: usize, const N: usize> {
     /// Shape functions at the points of the reference cell.
     shapes: Vec<[f64; N]>,
     points: Vec<Point<D, N>>,
+    /// Trace b̄_a of the operators B_a, averaged over each cell; none where it is not.
+    dilatation: Vec<[[f64; D]; N]>,
     kind: PhantomData<fn() -> (E, H)>,
 }
 
@@ -89,25 +91,58 @@ where
                 });
             }
         }
-        Self {
+        let mut new = Self {
             nodes,
             shapes,
             points,
+            dilatation: Vec::new(),
             kind: PhantomData,
+        };
+        if integration == Integration::BBar {
+            new.dilatation = (0..new.count()).map(|k| new.mean_dilatation(k)).collect();
         }
+        new
     }
 
-    /// Points of a cell, and their operators B_a of \[77\].
+    /// ∫ b_a dΩ / ∫ dΩ over a cell, with b_a the trace of B_a.
+    fn mean_dilatation(&self, k: usize) -> [[f64; D]; N] {
+        let mut sum = [[0.0; D]; N];
+        let mut volume = 0.0;
+        for (point, operator) in self.operators(k) {
+            volume += point.weight;
+            for a in 0..N {
+                for i in 0..D {
+                    sum[a][i] += point.weight * dilatation(&operator[a], i);
+                }
+            }
+        }
+        sum.map(|row| row.map(|b| b / volume))
+    }
+
+    /// Points of a cell, and their operators B_a of \[77\], or B̄_a with the mean dilatation.
     fn operators(&self, k: usize) -> impl Iterator<Item = (&Point<D, N>, [SMatrix<f64, 6, D>; N])> {
         let count = self.shapes.len();
         let points = &self.points[k * count..(k + 1) * count];
-        points.iter().zip(&self.shapes).map(|(point, shape)| {
+        let mean = self.dilatation.get(k);
+        points.iter().zip(&self.shapes).map(move |(point, shape)| {
             let operator = std::array::from_fn(|a| {
-                H::strain_operator(shape[a], &point.gradient[a], &point.position)
+                let mut b = H::strain_operator(shape[a], &point.gradient[a], &point.position);
+                if let Some(mean) = mean {
+                    for i in 0..D {
+                        let third = (mean[a][i] - dilatation(&b, i)) / 3.0;
+                        (0..3).for_each(|j| b[(j, i)] += third);
+                    }
+                }
+                b
             });
             (point, operator)
         })
     }
+}
+
+/// Trace of the strain by a unit displacement along axis i.
+fn dilatation<const D: usize>(b: &SMatrix<f64, 6, D>, i: usize) -> f64 {
+    b[(0, i)] + b[(1, i)] + b[(2, i)]
 }
 
 impl<E, H, const D: usize, const N: usize> Cells<D> for ElementCells<E, H, D, N>

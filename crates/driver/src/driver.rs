@@ -11,7 +11,7 @@ use crate::timings::Timings;
 use moreau_contact::{ContactSolution, ContactSolver, SemismoothNewton};
 use moreau_laws::{Local, Status};
 use moreau_mesh::Mesh;
-use nalgebra::{DMatrix, SVector};
+use nalgebra::SVector;
 use std::collections::BTreeMap;
 
 /// Where the contact problem is solved.
@@ -87,8 +87,9 @@ pub struct Driver<const D: usize> {
     pub(crate) settings: Settings<D>,
     pub(crate) state: State<D>,
     pub(crate) system: Option<System>,
-    measure: Box<dyn Measure<D>>,
+    pub(crate) measure: Box<dyn Measure<D>>,
     contacts: Vec<Contact>,
+    materials: Vec<usize>,
 }
 
 impl<const D: usize> Driver<D> {
@@ -128,6 +129,8 @@ impl<const D: usize> Driver<D> {
         };
         let mut driver = Self {
             measure: Box::new(model.hypothesis),
+            // All cells have one: it was checked.
+            materials: model.material.into_iter().flatten().collect(),
             mesh: model.mesh,
             blocks: model.blocks,
             tools: model.tools,
@@ -143,15 +146,15 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Finds what the contact points stand on, at the committed positions.
-    fn pair(&mut self) -> Result<(), ModelError> {
+    pub(crate) fn pair(&mut self) -> Result<(), ModelError> {
         let on_tool = |p: &ContactPoint<D>| match p.tool {
-            Some(_) => Footing::on_tool(p.node, p.area),
+            Some(_) => Footing::on_tool(p),
             None => Footing::default(),
         };
         let mut footings: Vec<Footing<D>> = self.points.iter().map(on_tool).collect();
         if self.contacts.iter().any(|c| c.pairing.is_some()) {
             let nodes = self.mesh.nodes();
-            let position = |a: usize| (SVector::from(nodes[a]) + self.displacement(a)).into();
+            let position = |a: usize| self.position(a).into();
             let positions: Vec<[f64; D]> = (0..nodes.len()).map(position).collect();
             for (k, contact) in self.contacts.iter().enumerate() {
                 let Some(pairing) = contact.pairing else {
@@ -178,9 +181,19 @@ impl<const D: usize> Driver<D> {
         Ok(())
     }
 
+    /// Where a node is \[mm\].
+    pub(crate) fn position(&self, node: usize) -> SVector<f64, D> {
+        SVector::from(self.mesh.nodes()[node]) + self.displacement(node)
+    }
+
     /// The mesh.
     pub fn mesh(&self) -> &Mesh<D> {
         &self.mesh
+    }
+
+    /// Number of the material of every cell, in the order in which the model was given them.
+    pub fn materials(&self) -> &[usize] {
+        &self.materials
     }
 
     /// Displacement of a node since the virgin state \[mm\].
@@ -391,7 +404,7 @@ impl<const D: usize> Driver<D> {
     ) -> Result<StepReport, StepError> {
         end.check()?;
         self.pair()?;
-        let mut system = self.prepare(end)?;
+        let mut system = self.prepare(end, None)?;
         let start = self.start_of(end);
         let outcome = match self.settings.nesting {
             Nesting::Inside => self.increment(&mut system, &start, end, &mut |_, now| watch(now)),
@@ -404,180 +417,41 @@ impl<const D: usize> Driver<D> {
         outcome
     }
 
-    /// The linear system for the prescribed degrees of freedom of a loading: the one at hand, or
-    /// a new one if they have changed.
-    pub(crate) fn prepare(&mut self, loading: &Loading<D>) -> Result<System, ModelError> {
+    /// The linear system for the prescribed degrees of freedom of a loading and a pivot: the one at
+    /// hand, or a new one if they have changed.
+    pub(crate) fn prepare(
+        &mut self,
+        loading: &Loading<D>,
+        pivot: Option<usize>,
+    ) -> Result<System, ModelError> {
         let fixed = |dof: usize| loading.displacement.contains_key(&dof);
         let dofs = self.state.displacement.len();
         if let Some(system) = self
             .system
-            .take_if(|s| (0..dofs).all(|d| s.is_free(d) != fixed(d)))
+            .take_if(|s| s.pivot == pivot && (0..dofs).all(|d| s.is_free(d) != fixed(d)))
         {
             return Ok(system);
         }
-        self.check_rigid_motions(&fixed)?;
-        self.elastic_system(loading)
+        self.check_rigid_motions(loading)?;
+        self.elastic_system(loading, pivot)
     }
 
     /// A new linear system for a loading, with the elastic stiffness assembled.
-    pub(crate) fn elastic_system(&mut self, loading: &Loading<D>) -> Result<System, ModelError> {
+    pub(crate) fn elastic_system(
+        &mut self,
+        loading: &Loading<D>,
+        pivot: Option<usize>,
+    ) -> Result<System, ModelError> {
         let fixed = |dof: usize| loading.displacement.contains_key(&dof);
         let mut interface: Vec<usize> = self.points.iter().map(|p| p.node).collect();
         for contact in self.contacts.iter().filter(|c| c.pairing.is_some()) {
             interface.extend(self.mesh.node_group(&contact.opposite)?);
         }
-        let mut system = System::new(&self.mesh, &self.blocks, fixed, &interface)?;
+        let mut system = System::new(&self.mesh, &self.blocks, fixed, &interface, pivot)?;
         system.timings += self.timings();
         let zero = vec![0.0; self.state.displacement.len()];
         system.assemble(&mut self.blocks, &zero, &zero, Stiffness::Blended(1.0));
         system.scale(self.settings.nesting == Nesting::Inside);
         Ok(system)
     }
-
-    /// Checks that every rigid motion of the bodies is resisted by the prescribed displacements of a
-    /// loading, by a contact normal, or by friction; nothing is solved.
-    ///
-    /// # Errors
-    /// [`ModelError::FreeRigidMotion`].
-    pub fn check_supports(&self, loading: &Loading<D>) -> Result<(), ModelError> {
-        self.check_rigid_motions(&|dof| loading.displacement.contains_key(&dof))
-    }
-
-    /// Every rigid motion of the bodies must be resisted by a prescribed displacement, by a contact
-    /// normal, or by friction.
-    fn check_rigid_motions(&self, fixed: &impl Fn(usize) -> bool) -> Result<(), ModelError> {
-        let size = self.mesh.size();
-        let mut body_of = vec![usize::MAX; self.mesh.nodes().len()];
-        let bodies = self.mesh.bodies();
-        for (b, cells) in bodies.iter().enumerate() {
-            for &cell in cells {
-                for &node in self.mesh.cell_nodes(cell) {
-                    body_of[node] = b;
-                }
-            }
-        }
-        // Modes about a point of the body, in the size of the mesh: numbers of order one.
-        let center = |b: usize| self.mesh.nodes()[self.mesh.cell_nodes(bodies[b][0])[0]];
-        let modes = |node: usize| -> Vec<SVector<f64, D>> {
-            let (x, center) = (self.mesh.nodes()[node], center(body_of[node]));
-            let relative = std::array::from_fn(|i| (x[i] - center[i]) / size);
-            let modes = self.measure.rigid_modes(&relative);
-            modes.into_iter().map(SVector::from).collect()
-        };
-        let count = modes(0).len();
-        let mut gram = DMatrix::<f64>::zeros(count * bodies.len(), count * bodies.len());
-        // Motions that move a combination of nodes along a direction are resisted there.
-        let mut resist = |weights: &[(usize, f64)], direction: &SVector<f64, D>| {
-            let row: Vec<(usize, f64)> = weights
-                .iter()
-                .flat_map(|&(node, w)| {
-                    let first = count * body_of[node];
-                    let along = modes(node).into_iter().map(move |m| w * m.dot(direction));
-                    (first..).zip(along.collect::<Vec<_>>())
-                })
-                .collect();
-            for &(i, a) in &row {
-                for &(j, b) in &row {
-                    gram[(i, j)] += a * b;
-                }
-            }
-        };
-        for node in 0..body_of.len() {
-            for i in (0..D).filter(|i| fixed(D * node + i)) {
-                let mut axis = SVector::<f64, D>::zeros();
-                axis[i] = 1.0;
-                resist(&[(node, 1.0)], &axis);
-            }
-        }
-        for (point, footing) in self.points.iter().zip(&self.footings) {
-            let normal = match point.tool {
-                Some(tool) => {
-                    let x = SVector::from(self.mesh.nodes()[point.node])
-                        + self.displacement(point.node)
-                        - self.state.loading.tools[tool];
-                    self.tools[tool].obstacle.normal(&x)
-                }
-                None => match footing.plane(&SVector::zeros()) {
-                    Some((normal, _)) => normal,
-                    None => continue,
-                },
-            };
-            let weights: Vec<(usize, f64)> = footing.weights().collect();
-            let q = moreau_contact::frame(&normal);
-            let columns = if point.law.resists_slip() { D } else { 1 };
-            for k in 0..columns {
-                resist(&weights, &q.column(k).into_owned());
-            }
-        }
-        // Bodies that do not touch others are judged each by itself, in their order.
-        for group in linked(&gram, count) {
-            let indices: Vec<usize> = group
-                .iter()
-                .flat_map(|&b| count * b..count * (b + 1))
-                .collect();
-            let part = gram.select_rows(&indices).select_columns(&indices);
-            let eigen = part.symmetric_eigen();
-            let weakest = eigen.eigenvalues.imin();
-            if eigen.eigenvalues[weakest] <= 1e-10 * eigen.eigenvalues.amax().max(1.0) {
-                let mode = eigen.eigenvectors.column(weakest);
-                // The body that moves most.
-                let part = |k: usize| mode.rows(count * k, count);
-                let most = |a: &usize, b: &usize| part(*a).norm().total_cmp(&part(*b).norm());
-                let k = (0..group.len()).rev().max_by(most).unwrap_or(0);
-                let motion = describe::<D>(part(k).into_owned().as_slice());
-                return Err(ModelError::FreeRigidMotion {
-                    cell: bodies[group[k]][0],
-                    motion,
-                });
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Groups of bodies, each with `count` modes, that a matrix of their motions couples.
-fn linked(gram: &DMatrix<f64>, count: usize) -> Vec<Vec<usize>> {
-    let bodies = gram.nrows() / count.max(1);
-    let coupled = |a: usize, b: usize| {
-        gram.view((count * a, count * b), (count, count))
-            .iter()
-            .any(|&v| v != 0.0)
-    };
-    let mut seen = vec![false; bodies];
-    let mut groups = Vec::new();
-    for first in 0..bodies {
-        if seen[first] {
-            continue;
-        }
-        seen[first] = true;
-        let mut group = vec![first];
-        let mut next = 0;
-        while next < group.len() {
-            let body = group[next];
-            for b in (0..bodies).filter(|&b| coupled(body, b)) {
-                if !std::mem::replace(&mut seen[b], true) {
-                    group.push(b);
-                }
-            }
-            next += 1;
-        }
-        groups.push(group);
-    }
-    groups
-}
-
-/// A rigid motion in words, from its components on translations first, rotations after.
-fn describe<const D: usize>(mode: &[f64]) -> String {
-    let largest = mode.iter().map(|c| c.abs()).fold(0.0, f64::max);
-    let name = |k: usize| match k {
-        _ if mode.len() == 1 => "translation along y".into(),
-        k if k < D => format!("translation along {}", axis_letter(k)),
-        k if D == 3 => format!("rotation about {}", axis_letter(k - D)),
-        _ => "rotation in the plane".into(),
-    };
-    let parts: Vec<String> = (0..mode.len())
-        .filter(|&k| mode[k].abs() > 0.1 * largest)
-        .map(name)
-        .collect();
-    parts.join(" with ")
 }

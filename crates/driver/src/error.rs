@@ -1,5 +1,6 @@
 //! Errors of the driver: of setting up a model and of a step; facts with numbers.
 
+use crate::collapse::Collapse;
 use moreau_contact::ContactError;
 use moreau_mesh::MeshError;
 
@@ -203,6 +204,15 @@ pub enum StepError {
         axis: char,
         /// Position of the node \[mm\].
         position: Vec<f64>,
+    },
+    /// The structure does not carry the loads of the step: an answer, not a failure. The state is
+    /// that of the mechanism, in equilibrium with what the structure carries.
+    #[error("step {step:?}: {collapse}, in parts of its loads: the structure does not carry more")]
+    Collapse {
+        /// Name of the step.
+        step: String,
+        /// The load factor and its bound.
+        collapse: Collapse,
     },
     /// The step was cut as far as allowed.
     #[error(

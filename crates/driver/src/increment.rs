@@ -3,6 +3,7 @@
 
 use crate::block::Stiffness;
 use crate::condensation::Condensation;
+use crate::control::Control;
 use crate::driver::{Driver, State};
 use crate::error::{Imbalance, StepError};
 use crate::interface::{ContactPoint, Footing, Kinematics};
@@ -13,6 +14,7 @@ use crate::system::{Assembly, System};
 use moreau_contact::{Certificate, ContactError, ContactSolution};
 use moreau_laws::{Local, Status};
 use nalgebra::SVector;
+use std::borrow::Cow;
 use std::time::Instant;
 
 /// What an increment has counted.
@@ -46,9 +48,8 @@ pub(crate) struct Iterate {
     pub(crate) assembly: Assembly,
     /// Contact forces at every degree of freedom \[N\].
     pub(crate) contact: Vec<f64>,
-    /// Whether displacements and contact forces are those of a full Newton step, which obeys the
-    /// contact law.
-    pub(crate) full: bool,
+    /// Part of the last Newton step that was taken: of a full one, which obeys the contact law, 1.
+    pub(crate) part: f64,
 }
 
 /// Where an increment begins.
@@ -90,12 +91,28 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
         watch: &mut dyn FnMut(&Self, &Iteration<'_>),
     ) -> Result<StepReport, StepError> {
+        let guess = self.predictor(start, end);
+        let candidate = self.balance(system, (start, end), guess, None, watch)?;
+        Ok(self.commit(start, end, candidate))
+    }
+
+    /// Finds the equilibrium at the end of an increment from a first guess of its displacements.
+    /// Under control the loading at the end is a first guess too.
+    pub(crate) fn balance(
+        &mut self,
+        system: &mut System,
+        (start, end): (&Loading<D>, &Loading<D>),
+        guess: Vec<f64>,
+        mut control: Option<&mut Control<'_>>,
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>),
+    ) -> Result<Candidate<D>, StepError> {
+        let mut end = Cow::Borrowed(end);
         let Start {
             free,
             mut missing,
             mut now,
             factorisations,
-        } = self.first_iterate(system, start, end);
+        } = self.first_iterate(system, (start, &end), guess);
         let mut counts = Counts {
             solves: 1,
             ..Counts::default()
@@ -104,16 +121,16 @@ impl<const D: usize> Driver<D> {
         loop {
             // The step to come makes up for what is missing.
             let reached: Vec<f64> = now.d_u.iter().zip(&missing).map(|(u, m)| u + m).collect();
-            let kinematics = self.kinematics(system, start, end, &reached);
-            if now.full
+            let kinematics = self.kinematics(system, start, &end, &reached);
+            if now.part >= 1.0
                 && let Some(s) = &solution
             {
                 // The normals may have turned with the step.
                 now.contact = self.contact_forces(&kinematics, &s.force);
             }
-            let residual = now.imbalance(end, &free);
+            let residual = now.imbalance(&end, &free);
             let out_of_balance = largest(residual.iter().copied());
-            let scale = force_scale(&now.assembly, end, &now.contact);
+            let scale = force_scale(&now.assembly, &end, &now.contact);
             if counts.newton > 0 {
                 counts.residuals.push(out_of_balance);
             }
@@ -134,7 +151,7 @@ impl<const D: usize> Driver<D> {
                 .as_ref()
                 .map_or(0.0, |s| CONTACT_SLACK * s.residual);
             let target = self.target(system, scale, &now.d_u) + left;
-            let balanced = now.full && out_of_balance <= target;
+            let balanced = now.part >= 1.0 && out_of_balance <= target;
             if balanced
                 && let Some(s) = solution.take_if(|s| self.law_holds(system, &kinematics, s, scale))
             {
@@ -147,7 +164,7 @@ impl<const D: usize> Driver<D> {
                     out_of_balance,
                     counts,
                 };
-                return Ok(self.commit(start, end, candidate));
+                return Ok(candidate);
             }
             if counts.newton >= self.settings.iterations || !out_of_balance.is_finite() {
                 return Err(self.not_converged(&residual, counts.newton, target));
@@ -158,7 +175,12 @@ impl<const D: usize> Driver<D> {
             let load =
                 |d: usize| end.force[d] - now.assembly.internal[d] - now.assembly.coupling[d];
             let load: Vec<f64> = (0..now.d_u.len()).map(load).collect();
-            let condensed = system.condense(&load);
+            let mut condensed = system.condense(&load);
+            let complete = missing.iter().all(|&m| m == 0.0);
+            let border = control.as_ref().map(|c| {
+                let equation = (c.compliance, c.missing(&now.d_u));
+                system.border(&mut condensed, c.load, equation)
+            });
             let iteration = counts.newton;
             let contact = |source: ContactError| StepError::Contact { iteration, source };
             let previous = self.previous_forces(&kinematics);
@@ -174,15 +196,16 @@ impl<const D: usize> Driver<D> {
             system.timings.contact += clock.elapsed();
             counts.contact += solved.iterations;
             counts.last_contact = solved.iterations;
-            let complete = missing.iter().all(|&m| m == 0.0);
             let mut step = std::mem::replace(&mut missing, vec![0.0; now.d_u.len()]);
             let x = condensation.interface(&solved.displacement);
+            let growth = border.map_or(0.0, |b| system.factor(&b, &mut condensed, &x));
             system.expand(condensed, &x, &mut step);
             let target = self.contact_forces(&kinematics, &solved.force);
             let slack = CONTACT_SLACK * solved.residual;
             solution = Some(solved);
             let line = Line {
-                end,
+                end: &end,
+                growth: control.as_ref().map_or_else(Vec::new, |c| c.scaled(growth)),
                 free: &free,
                 step: &step,
                 target: &target,
@@ -190,18 +213,22 @@ impl<const D: usize> Driver<D> {
                 slack,
             };
             now = self.search(system, &line, now);
-            counts.shortened += usize::from(!now.full);
+            counts.shortened += usize::from(now.part < 1.0);
+            if let Some(control) = &mut control {
+                control.factor += now.part * growth;
+                end = Cow::Owned(control.loading(start));
+            }
         }
     }
 
-    /// The predictor as the first iterate, under the committed contact forces.
+    /// The first iterate, at a guess of the displacement increments and under the committed contact
+    /// forces.
     pub(crate) fn first_iterate(
         &mut self,
         system: &mut System,
-        start: &Loading<D>,
-        end: &Loading<D>,
+        (start, end): (&Loading<D>, &Loading<D>),
+        d_u: Vec<f64>,
     ) -> Start {
-        let d_u = self.predictor(start, end);
         let missing = self.missing(start, end, &d_u);
         Start {
             free: system.free_dofs(),
@@ -209,7 +236,7 @@ impl<const D: usize> Driver<D> {
                 assembly: system.assemble(&mut self.blocks, &d_u, &missing, Stiffness::Consistent),
                 d_u,
                 contact: self.state.contact.clone(),
-                full: false,
+                part: 0.0,
             },
             missing,
             factorisations: system.factorisations,
@@ -295,8 +322,7 @@ impl<const D: usize> Driver<D> {
                 };
             };
             let obstacle = &self.tools[tool].obstacle;
-            let x = SVector::from(self.mesh.nodes()[p.node]) + self.displacement(p.node);
-            let x = x + slip - end.tools[tool];
+            let x = footing.relative(|a| self.position(a)) + slip - end.tools[tool];
             let slip = slip - (end.tools[tool] - start.tools[tool]);
             let gap = obstacle.distance(&x) - p.offset;
             Kinematics::new(&obstacle.normal(&x), gap, &slip, free)
@@ -440,7 +466,8 @@ impl<const D: usize> Driver<D> {
                 .sum::<f64>();
             penalty -= 0.5 * self.state.contacts[i].t[0] * self.state.contacts[i].spring[0];
             irreversible.push(obeying);
-            let held = !(1..D).all(|j| k.active[j]);
+            // A point that is held along one tangent of a surface in space slips along the other.
+            let held = !(1..D).any(|j| k.active[j]);
             let status = match solution.status[i] {
                 Status::Slip if held => Status::Stick,
                 other => other,

@@ -3,8 +3,9 @@
 use crate::ModelError;
 use moreau_contact::{Obstacle, frame};
 use moreau_laws::{Friction, Local};
-use moreau_mesh::{Coupling, NodeKind, nearest};
+use moreau_mesh::{Coupling, Facet, FacetKind, Mesh, NodeKind, Share, nearest};
 use nalgebra::{SMatrix, SVector};
+use std::collections::BTreeMap;
 
 /// A rigid tool.
 pub(crate) struct Tool<const D: usize> {
@@ -41,13 +42,81 @@ pub(crate) struct ContactPoint<const D: usize> {
     /// Share of the surface \[mm²\], to turn a force into a traction.
     pub(crate) area: f64,
     pub(crate) kind: NodeKind,
+    /// The corners of the edge that the node halves, where the edge carries a changed basis.
+    pub(crate) edge: Option<[usize; 2]>,
+}
+
+/// Part α of the shape function of a mid-side node that goes to either corner of its edge.
+///
+/// The integrals of the shape functions over the faces of serendipity hexahedra are negative at
+/// corners, −A/12, and those of quadratic tetrahedra zero: no law of unilateral contact can hold
+/// there node by node. The basis Ñ_c = N_c + α Σ N_m, Ñ_m = (1 − 2α) N_m spans the same functions,
+/// and its integrals are A/20 and A/5, or 2A/15 and A/5. The displacement of a mid-side point is
+/// then ũ_m = (u_m − α Σ u_c) / (1 − 2α), and that of a corner its own.
+///
+/// Source: A. Popp, B. Wohlmuth, M. Gee and W. Wall, *SIAM Journal on Scientific Computing* 34
+/// (2012) B421-B446.
+const TO_CORNERS: f64 = 0.2;
+
+/// The shares of the nodes of a surface, in the changed basis on the edges of its facets that need
+/// one; with the corners of these edges.
+pub(crate) fn positive_shares<const D: usize>(
+    mesh: &Mesh<D>,
+    facets: &[Facet],
+    mut shares: Vec<Share<D>>,
+) -> Vec<(Share<D>, Option<[usize; 2]>)> {
+    let mut edges: BTreeMap<usize, [usize; 2]> = BTreeMap::new();
+    for &facet in facets {
+        let kind = mesh.facet_kind(facet);
+        if matches!(kind, FacetKind::Tri6 | FacetKind::Quad8) {
+            let nodes: Vec<usize> = mesh.facet_nodes(facet).collect();
+            let (corners, midsides) = nodes.split_at(kind.corner_count());
+            for (k, &midside) in midsides.iter().enumerate() {
+                edges.insert(midside, [corners[k], corners[(k + 1) % corners.len()]]);
+            }
+        }
+    }
+    let index: BTreeMap<usize, usize> = shares.iter().map(|s| s.node).zip(0..).collect();
+    for (midside, corners) in &edges {
+        let Some(&m) = index.get(midside) else {
+            continue;
+        };
+        let given = shares[m].area * TO_CORNERS;
+        shares[m].area -= 2.0 * given;
+        for c in corners.iter().filter_map(|c| index.get(c)) {
+            shares[*c].area += given;
+        }
+    }
+    let edge = |share: Share<D>| (share, edges.get(&share.node).copied());
+    shares.into_iter().map(edge).collect()
+}
+
+impl<const D: usize> ContactPoint<D> {
+    /// Nodes whose displacements, with these weights, are that of the point; they add up to 1.
+    pub(crate) fn own(&self) -> Vec<(usize, f64)> {
+        let rest = 1.0 - 2.0 * TO_CORNERS;
+        match self.edge {
+            None => vec![(self.node, 1.0)],
+            Some([a, b]) => vec![
+                (self.node, 1.0 / rest),
+                (a, -TO_CORNERS / rest),
+                (b, -TO_CORNERS / rest),
+            ],
+        }
+    }
+
+    /// Its place, from those of the nodes \[mm\].
+    pub(crate) fn place(&self, x: impl Fn(usize) -> SVector<f64, D>) -> SVector<f64, D> {
+        self.own().into_iter().map(|(a, w)| x(a) * w).sum()
+    }
 }
 
 /// Whose displacements make the relative displacement of a contact point during an increment:
 /// Σ own·v − Σ opposite·v. Forces go back with the same weights.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Footing<const D: usize> {
-    /// The node, and those that share its multiplier at the edge of an overlap.
+    /// The node, and those that share its multiplier at the edge of an overlap or its shape function
+    /// in a changed basis.
     pub(crate) own: Vec<(usize, f64)>,
     /// Nodes of the surface opposite; none for a tool.
     pub(crate) opposite: Vec<(usize, f64)>,
@@ -59,10 +128,10 @@ pub(crate) struct Footing<const D: usize> {
 
 impl<const D: usize> Footing<D> {
     /// On a tool, which moves on its own.
-    pub(crate) fn on_tool(node: usize, area: f64) -> Self {
+    pub(crate) fn on_tool(point: &ContactPoint<D>) -> Self {
         Self {
-            own: vec![(node, 1.0)],
-            area,
+            own: point.own(),
+            area: point.area,
             ..Self::default()
         }
     }

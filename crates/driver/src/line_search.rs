@@ -15,6 +15,8 @@ const ACCEPTED_SLOPE: f64 = 0.5;
 /// A Newton step from an iterate.
 pub(crate) struct Line<'a, const D: usize> {
     pub(crate) end: &'a Loading<D>,
+    /// What the step adds to the applied forces, at every degree of freedom; empty if nothing.
+    pub(crate) growth: Vec<f64>,
     /// The free degrees of freedom.
     pub(crate) free: &'a [usize],
     /// Displacements of the step, at every degree of freedom.
@@ -45,26 +47,29 @@ impl<const D: usize> Line<'_, D> {
             .collect()
     }
 
-    /// Internal minus applied and contact forces on the free degrees of freedom.
+    /// Internal minus applied and contact forces on the free degrees of freedom, at the part s of
+    /// the step.
     fn imbalance<'a>(
         &'a self,
         internal: &'a [f64],
         contact: &'a [f64],
+        s: f64,
     ) -> impl Iterator<Item = (usize, f64)> + 'a {
-        let at = move |&d: &usize| (d, internal[d] - self.end.force[d] - contact[d]);
+        let growth = move |d: usize| self.growth.get(d).map_or(0.0, |g| s * g);
+        let at = move |&d: &usize| (d, internal[d] - self.end.force[d] - growth(d) - contact[d]);
         self.free.iter().map(at)
     }
 
     /// Slope of ΔΦ along the step.
-    fn slope(&self, internal: &[f64], contact: &[f64]) -> f64 {
-        self.imbalance(internal, contact)
+    fn slope(&self, internal: &[f64], contact: &[f64], s: f64) -> f64 {
+        self.imbalance(internal, contact, s)
             .map(|(d, r)| self.step[d] * r)
             .sum()
     }
 
     /// Norm of the imbalance.
-    fn norm(&self, internal: &[f64], contact: &[f64]) -> f64 {
-        self.imbalance(internal, contact)
+    fn norm(&self, internal: &[f64], contact: &[f64], s: f64) -> f64 {
+        self.imbalance(internal, contact, s)
             .map(|(_, r)| r * r)
             .sum::<f64>()
             .sqrt()
@@ -86,14 +91,14 @@ impl<const D: usize> Driver<D> {
         let assembly = system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent);
         let internal = &assembly.internal;
         let scale = force_scale(&assembly, line.end, line.target);
-        let left = largest(line.imbalance(internal, line.target).map(|(_, r)| r));
-        let at_start = line.slope(&now.assembly.internal, &now.contact);
-        let at_end = line.slope(internal, line.target);
+        let left = largest(line.imbalance(internal, line.target, 1.0).map(|(_, r)| r));
+        let at_start = line.slope(&now.assembly.internal, &now.contact, 0.0);
+        let at_end = line.slope(internal, line.target, 1.0);
         let overshoots = if at_start < 0.0 {
             at_end > ACCEPTED_SLOPE * at_start.abs()
         } else {
-            let before = line.norm(&now.assembly.internal, &now.contact);
-            line.norm(internal, line.target) > before
+            let before = line.norm(&now.assembly.internal, &now.contact, 0.0);
+            line.norm(internal, line.target, 1.0) > before
         };
         // While prescribed displacements are missing, ΔΦ is not what the step minimises; in balance
         // its slope is rounding.
@@ -102,7 +107,7 @@ impl<const D: usize> Driver<D> {
                 d_u,
                 assembly,
                 contact: line.target.to_vec(),
-                full: true,
+                part: 1.0,
             };
         }
         let s = if at_start < 0.0 {
@@ -115,7 +120,7 @@ impl<const D: usize> Driver<D> {
             assembly: system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent),
             d_u,
             contact: line.contact(&now, s),
-            full: false,
+            part: s,
         }
     }
 
@@ -139,7 +144,7 @@ impl<const D: usize> Driver<D> {
             s = s.clamp(low.0 + margin, high.0 - margin);
             let trial = line.displacement(now, s);
             let at = system.assemble(&mut self.blocks, &trial, &none, Stiffness::None);
-            let slope = line.slope(&at.internal, &line.contact(now, s));
+            let slope = line.slope(&at.internal, &line.contact(now, s), s);
             if slope.abs() <= ACCEPTED_SLOPE * at_start.abs() {
                 break;
             }
@@ -159,13 +164,13 @@ impl<const D: usize> Driver<D> {
     /// Step length at which the norm of the imbalance has decreased.
     fn backtrack(&mut self, system: &mut System, line: &Line<'_, D>, now: &Iterate) -> f64 {
         let none = vec![0.0; line.step.len()];
-        let before = line.norm(&now.assembly.internal, &now.contact);
+        let before = line.norm(&now.assembly.internal, &now.contact, 0.0);
         let mut s = 1.0;
         for _ in 0..TRIALS {
             s *= 0.5;
             let trial = line.displacement(now, s);
             let at = system.assemble(&mut self.blocks, &trial, &none, Stiffness::None);
-            if line.norm(&at.internal, &line.contact(now, s)) < before {
+            if line.norm(&at.internal, &line.contact(now, s), s) < before {
                 break;
             }
         }
@@ -215,7 +220,7 @@ mod tests {
         let end = pull(&driver, 258.0);
         let mut start = end.clone();
         start.force.fill(0.0);
-        let mut system = driver.prepare(&end).expect("held");
+        let mut system = driver.prepare(&end, None).expect("held");
         let mut potentials = Vec::new();
         let report = driver
             .increment(&mut system, &start, &end, &mut |driver, now| {
@@ -237,7 +242,7 @@ mod tests {
     fn a_step_that_overshoots_is_shortened_to_where_the_potential_is_least() {
         let mut driver = strip();
         let end = pull(&driver, 200.0);
-        let mut system = driver.prepare(&end).expect("held");
+        let mut system = driver.prepare(&end, None).expect("held");
         let none = vec![0.0; end.force.len()];
         let assembly = system.assemble(&mut driver.blocks, &none, &none, Stiffness::Consistent);
         system.factorise(true).expect("elastic");
@@ -249,11 +254,12 @@ mod tests {
             d_u: none.clone(),
             assembly,
             contact: none.clone(),
-            full: false,
+            part: 0.0,
         };
         let free = system.free_dofs();
         let line = Line {
             end: &end,
+            growth: Vec::new(),
             free: &free,
             step: &step,
             target: &none,
@@ -261,7 +267,7 @@ mod tests {
             slack: 0.0,
         };
         let next = driver.search(&mut system, &line, now);
-        assert!(!next.full);
+        assert!(next.part < 1.0);
         let length = next.d_u.iter().zip(&step).map(|(u, s)| u * s).sum::<f64>()
             / step.iter().map(|s| s * s).sum::<f64>();
         assert!(length > 0.1 && length < 0.6, "{length}");

@@ -3,12 +3,13 @@
 use crate::ModelError;
 use crate::block::{Block, SolidBlock};
 use crate::cells::{Cells, ElementCells};
-use crate::interface::{ContactPoint, Tool, tool_index};
+use crate::interface::{ContactPoint, Tool, positive_shares, tool_index};
 use moreau_contact::Obstacle;
 use moreau_laws::{BulkLaw, Friction};
 use moreau_mesh::{
-    Axisymmetric, CellKind, Coupling, Element, Facet, Hex8, Hypothesis, Integration, Mesh, Pairing,
-    PlaneStrain, Quad4, Quad8, Quad9, Share, Solid, Tet4, Tri3, Tri6, nearest,
+    Axisymmetric, CellKind, Coupling, Element, Facet, Hex8, Hex20, Hex27, Hypothesis, Integration,
+    Mesh, Pairing, PlaneStrain, Quad4, Quad8, Quad9, Share, Solid, Tet4, Tet10, Tri3, Tri6,
+    nearest,
 };
 use std::collections::BTreeMap;
 
@@ -56,7 +57,7 @@ fn plane<H: Hypothesis<2>>(
         CellKind::Quad4 => cells::<Quad4, H, 2, 4>(h, mesh, of, rule),
         CellKind::Quad8 => cells::<Quad8, H, 2, 8>(h, mesh, of, rule),
         CellKind::Quad9 => cells::<Quad9, H, 2, 9>(h, mesh, of, rule),
-        CellKind::Tet4 | CellKind::Hex8 => return None,
+        _ => return None,
     })
 }
 
@@ -70,7 +71,10 @@ fn space<H: Hypothesis<3>>(
 ) -> Option<Box<dyn Cells<3>>> {
     Some(match kind {
         CellKind::Tet4 => cells::<Tet4, H, 3, 4>(h, mesh, of, rule),
+        CellKind::Tet10 => cells::<Tet10, H, 3, 10>(h, mesh, of, rule),
         CellKind::Hex8 => cells::<Hex8, H, 3, 8>(h, mesh, of, rule),
+        CellKind::Hex20 => cells::<Hex20, H, 3, 20>(h, mesh, of, rule),
+        CellKind::Hex27 => cells::<Hex27, H, 3, 27>(h, mesh, of, rule),
         _ => return None,
     })
 }
@@ -159,14 +163,17 @@ pub struct Model<const D: usize, H> {
     pub(crate) tools: Vec<Tool<D>>,
     pub(crate) contacts: Vec<Contact>,
     pub(crate) points: Vec<ContactPoint<D>>,
-    has_material: Vec<bool>,
+    /// Number of the material of every cell, in the order in which they were given.
+    pub(crate) material: Vec<Option<usize>>,
+    materials: usize,
 }
 
 impl<const D: usize, H: Analysis<D>> Model<D, H> {
     /// A model of a mesh under a hypothesis, without materials.
     pub fn new(mesh: Mesh<D>, hypothesis: H) -> Self {
         Self {
-            has_material: vec![false; mesh.cell_count()],
+            material: vec![None; mesh.cell_count()],
+            materials: 0,
             mesh,
             hypothesis,
             blocks: Vec::new(),
@@ -188,7 +195,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     ) -> Result<Self, ModelError> {
         let mut by_kind: BTreeMap<CellKind, Vec<usize>> = BTreeMap::new();
         for &cell in self.mesh.cell_group(group)? {
-            if std::mem::replace(&mut self.has_material[cell], true) {
+            if self.material[cell].replace(self.materials).is_some() {
                 return Err(ModelError::TwoMaterials {
                     cell,
                     group: group.into(),
@@ -196,6 +203,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             }
             by_kind.entry(self.mesh.kind(cell)).or_default().push(cell);
         }
+        self.materials += 1;
         for (kind, cells) in by_kind {
             let own = self.hypothesis.cells(&self.mesh, kind, &cells, integration);
             // A mesh of dimension D has no cells of another dimension.
@@ -307,7 +315,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     ) -> Result<(), ModelError> {
         let facets = self.mesh.facet_group(surface)?;
         let shares = self.mesh.facet_shares(facets, &self.hypothesis);
-        for share in shares {
+        for (share, edge) in positive_shares(&self.mesh, facets, shares) {
             if let Some(other) = self.points.iter().find(|p| p.node == share.node) {
                 return Err(ModelError::SharedContactNode {
                     node: share.node,
@@ -324,6 +332,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 offset: 0.0,
                 area: share.area,
                 kind: share.kind,
+                edge,
             });
         }
         Ok(())
@@ -362,7 +371,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         }
         let last = self.contacts.len();
         for point in self.points.iter_mut().filter(|p| p.contact + 1 == last) {
-            let x = self.mesh.nodes()[point.node].into();
+            let x = point.place(|a| self.mesh.nodes()[a].into());
             let Some(tool) = point.tool else { continue };
             let gap = self.tools[tool].obstacle.distance(&x) - point.offset;
             if gap.abs() <= tolerance {
@@ -380,7 +389,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     /// # Errors
     /// [`ModelError::MissingMaterial`].
     pub(crate) fn check(&self) -> Result<(), ModelError> {
-        let mut bare = (0..self.has_material.len()).filter(|&c| !self.has_material[c]);
+        let mut bare = (0..self.material.len()).filter(|&c| self.material[c].is_none());
         match bare.next() {
             Some(first) => Err(ModelError::MissingMaterial {
                 count: 1 + bare.count(),

@@ -31,7 +31,7 @@ impl<const D: usize> Driver<D> {
             mut missing,
             mut now,
             factorisations,
-        } = self.first_iterate(system, start, end);
+        } = self.first_iterate(system, (start, end), self.predictor(start, end));
         let mut counts = Counts::default();
         let kinematics = self.kinematics(system, start, end, &now.d_u);
         let mut t = self.previous_forces(&kinematics);
@@ -162,6 +162,7 @@ impl<const D: usize> Driver<D> {
             let target = now.contact.clone();
             let line = Line {
                 end,
+                growth: Vec::new(),
                 free,
                 step: &step,
                 target: &target,

@@ -1,8 +1,11 @@
 //! A step under way: increments in sequence, halved where they fail; not the increment itself.
 
 use crate::ModelError;
-use crate::driver::Driver;
+use crate::collapse::Collapse;
+use crate::control::Control;
+use crate::driver::{Driver, Nesting};
 use crate::error::StepError;
+use crate::increment::largest;
 use crate::increments::Increments;
 use crate::load::{Loading, Step};
 use crate::report::{Iteration, StepReport};
@@ -26,7 +29,32 @@ pub struct Ramp<const D: usize> {
     cuts: usize,
     /// Plastic fraction of the last converged increment.
     plastic_fraction: f64,
+    /// Work of the loads at the end of the step on the displacements of the step so far \[N·mm\].
+    work: f64,
+    /// The load factor as an unknown, once that is what it takes.
+    path: Option<Path>,
 }
+
+/// How the path of equilibria is followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Path {
+    /// Compliance of the spring that the loads are applied through \[N·mm\].
+    compliance: f64,
+    /// Motion of its far end in the next attempt \[N·mm\].
+    length: f64,
+    /// Δλ of the last increment.
+    last: f64,
+    /// The largest λ so far.
+    peak: f64,
+    /// [`Collapse::growth`] in the last increment; infinite before the first.
+    growth: f64,
+    /// Whether that was the end.
+    ended: bool,
+}
+
+/// Compliance of the spring, over that of the structure: small, to stay on the path where the
+/// structure softens.
+const SPRING: f64 = 1e-2;
 
 impl<const D: usize> Ramp<D> {
     /// Part of the step that has been done, in [0, 1].
@@ -45,6 +73,11 @@ impl<const D: usize> Ramp<D> {
         write_loading(&self.end, out);
         out.extend([self.whole as f64, self.done, self.length]);
         out.extend([self.easy as f64, self.cuts as f64, self.plastic_fraction]);
+        out.extend([self.work, f64::from(u8::from(self.path.is_some()))]);
+        if let Some(p) = &self.path {
+            out.extend([p.compliance, p.length, p.last, p.peak, p.growth]);
+            out.push(f64::from(u8::from(p.ended)));
+        }
     }
 
     /// The ramp of a step in the increments that it began with, as [`Ramp::write`] left it.
@@ -67,8 +100,57 @@ impl<const D: usize> Ramp<D> {
             easy: from.count()?,
             cuts: from.count()?,
             plastic_fraction: from.number()?,
+            work: from.number()?,
+            path: match from.count()? {
+                0 => None,
+                _ => Some(Path {
+                    compliance: from.number()?,
+                    length: from.number()?,
+                    last: from.number()?,
+                    peak: from.number()?,
+                    growth: from.number()?,
+                    ended: from.count()? == 1,
+                }),
+            },
         })
     }
+}
+
+impl<const D: usize> Ramp<D> {
+    /// The loads of the whole step, at every degree of freedom \[N\].
+    fn load(&self) -> Vec<f64> {
+        let pairs = self.end.force.iter().zip(&self.start.force);
+        pairs.map(|(end, start)| end - start).collect()
+    }
+
+    /// Takes note of an increment and of the work that the loads of the whole step did in it.
+    fn converged(&mut self, report: &StepReport, work: f64) {
+        self.cuts = 0;
+        self.plastic_fraction = report.plastic_fraction;
+        self.work += work;
+    }
+
+    /// The error of a step that has been cut as far as allowed.
+    fn stopped(&self, cause: StepError, smallest: f64) -> StepError {
+        let last = self.plastic_fraction;
+        let plastic_fraction = match &cause {
+            StepError::NotConverged {
+                plastic_fraction, ..
+            } => plastic_fraction.max(last),
+            _ => last,
+        };
+        StepError::Stopped {
+            step: self.step.clone(),
+            reached: self.done,
+            smallest,
+            plastic_fraction,
+            cause: Box::new(cause),
+        }
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl<const D: usize> Driver<D> {
@@ -94,13 +176,20 @@ impl<const D: usize> Driver<D> {
             easy: 0,
             cuts: 0,
             plastic_fraction: 0.0,
+            work: 0.0,
+            path: None,
         })
     }
 
     /// Applies the next increment of a step, halving it as often as it takes, and doubling again
     /// after one that converges, as [`Increments`] say; `watch` sees every iterate of every attempt.
     ///
+    /// Where only loads grow and an increment of theirs fails, their factor becomes an unknown: the
+    /// step goes along the path of equilibria, on to its end or to collapse.
+    /// [`StepReport::fraction`] is then that factor.
+    ///
     /// # Errors
+    /// [`StepError::Collapse`] where displacements grow at a constant load;
     /// [`StepError::Stopped`] when the increment has been halved as often as the settings allow;
     /// what converged before is kept. [`StepError::Model`] for a step that makes no sense.
     pub fn proceed(
@@ -113,6 +202,9 @@ impl<const D: usize> Driver<D> {
         let fewest = ramp.increments.start * 0.5f64.powi(self.settings.cuts as i32);
         let smallest = ramp.increments.min.unwrap_or(fewest);
         loop {
+            if let Some(path) = ramp.path {
+                return self.follow(ramp, path, watch);
+            }
             let next = (ramp.whole + 1) as f64 * base;
             let at_end = ramp.done + ramp.length >= next - 1e-9 * base;
             let target = match at_end {
@@ -133,8 +225,7 @@ impl<const D: usize> Driver<D> {
                     ramp.length = ramp
                         .increments
                         .next(ramp.length, &mut ramp.easy, iterations);
-                    ramp.cuts = 0;
-                    ramp.plastic_fraction = report.plastic_fraction;
+                    ramp.converged(&report, self.last_work(&ramp.load()));
                     return Ok(report);
                 }
                 Err(error @ StepError::Model(_)) => return Err(error),
@@ -145,25 +236,122 @@ impl<const D: usize> Driver<D> {
                         ramp.length *= 0.5;
                     }
                     ramp.cuts += 1;
-                    if ramp.length < smallest {
-                        let last = ramp.plastic_fraction;
-                        let plastic_fraction = match &cause {
-                            StepError::NotConverged {
-                                plastic_fraction, ..
-                            } => plastic_fraction.max(last),
-                            _ => last,
-                        };
-                        return Err(StepError::Stopped {
-                            step: ramp.step.clone(),
-                            reached: ramp.done,
-                            smallest: 2.0 * ramp.length,
-                            plastic_fraction,
-                            cause: Box::new(cause),
-                        });
+                    ramp.path = self.path(ramp);
+                    if ramp.path.is_none() && ramp.length < smallest {
+                        return Err(ramp.stopped(cause, 2.0 * ramp.length));
                     }
                 }
             }
         }
+    }
+
+    /// The path of a step that moves nothing, from after its first increment on.
+    fn path(&self, ramp: &Ramp<D>) -> Option<Path> {
+        let moves = ramp.start.displacement != ramp.end.displacement;
+        let (last, before) = self.state.last.as_ref()?;
+        let load = ramp.load();
+        let square = dot(&load, &load);
+        if moves
+            || ramp.start.tools != ramp.end.tools
+            || self.settings.nesting != Nesting::Inside
+            || !(ramp.done > 0.0 && square > 0.0 && ramp.work > 0.0)
+        {
+            return None;
+        }
+        let factor = dot(&before.force, &load) / square;
+        let compliance = SPRING * ramp.work / ramp.done;
+        let length = dot(&load, last) + compliance * factor;
+        (length > 0.0).then_some(Path {
+            compliance,
+            length,
+            last: factor,
+            peak: ramp.done,
+            growth: f64::INFINITY,
+            ended: false,
+        })
+    }
+
+    /// Applies the next increment along a path, halved as often as it takes.
+    fn follow(
+        &mut self,
+        ramp: &mut Ramp<D>,
+        mut path: Path,
+        watch: &mut dyn FnMut(&Iteration<'_>),
+    ) -> Result<StepReport, StepError> {
+        let load = ramp.load();
+        if path.ended {
+            return Err(StepError::Collapse {
+                step: ramp.step.clone(),
+                collapse: Collapse {
+                    load_factor: path.peak,
+                    growth: path.growth,
+                    upper_bound: self.upper_bound(&load, ramp.done),
+                },
+            });
+        }
+        let mut halved = 0;
+        loop {
+            let mut control = Control {
+                factor: ramp.done,
+                load: &load,
+                start: ramp.done,
+                last: path.last,
+                compliance: path.compliance,
+                length: path.length,
+            };
+            let cuts = ramp.cuts;
+            let watch = &mut |i: &Iteration<'_>| watch(&Iteration { cuts, ..*i });
+            let mut outcome = self.advance_along(&mut control, watch);
+            let done = control.factor;
+            if let Ok(None) = outcome {
+                // The path passes the end of the step: to the end, then.
+                let end = ramp.end.clone();
+                outcome = self.advance_watched(&end, watch).map(|mut report| {
+                    report.fraction = 1.0;
+                    ramp.whole = ramp.increments.pieces();
+                    Some(report)
+                });
+            } else if let Ok(Some(report)) = &mut outcome {
+                report.fraction = done;
+            }
+            match outcome {
+                Ok(Some(mut report)) => {
+                    report.cuts = cuts;
+                    let work = self.last_work(&load);
+                    let before = std::mem::replace(&mut ramp.done, report.fraction);
+                    ramp.converged(&report, work);
+                    path.last = report.fraction - before;
+                    path.peak = path.peak.max(report.fraction);
+                    path.growth = path.last * (ramp.work / work).abs() / path.peak;
+                    let motion = largest(self.state.displacement.iter().copied());
+                    path.ended = path.growth <= Collapse::FLAT || motion > self.mesh.size();
+                    if report.newton_iterations <= 2 * Increments::EASY && halved == 0 {
+                        path.length *= 2.0;
+                    }
+                    ramp.path = Some(path);
+                    return Ok(report);
+                }
+                Err(error @ StepError::Model(_)) => return Err(error),
+                Ok(None) => {}
+                Err(cause) => {
+                    path.length *= 0.5;
+                    ramp.path = Some(path);
+                    ramp.cuts += 1;
+                    halved += 1;
+                    if halved > self.settings.cuts {
+                        return Err(ramp.stopped(cause, path.last.abs()));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Work of loads on the displacements of the last increment \[N·mm\].
+    fn last_work(&self, load: &[f64]) -> f64 {
+        self.state
+            .last
+            .as_ref()
+            .map_or(0.0, |(d_u, _)| dot(load, d_u))
     }
 
     /// Applies a step in a number of equal increments or in [`Increments`] to its end, as [`Driver::proceed`] does. `observe` sees

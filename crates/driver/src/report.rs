@@ -125,7 +125,8 @@ pub struct ContactRecord<const D: usize> {
     /// Force on the body in space \[N\].
     pub force: SVector<f64, D>,
     /// Consistent share of the surface \[mm²\], between bodies that of the overlap: t over it is a
-    /// traction.
+    /// traction. On faces of serendipity hexahedra and quadratic tetrahedra shares and forces are
+    /// those of a basis with positive integrals, not of the nodes.
     pub area: f64,
     /// Status; for a point held along the surface, `Open` or `Stick`.
     pub status: Status,

@@ -167,6 +167,8 @@ impl<const D: usize> Driver<D> {
         let elastic = held.is_some_and(crate::system::System::holds_elastic_factor);
         out.push(f64::from(u8::from(held.is_some())));
         out.push(f64::from(u8::from(elastic)));
+        let pivot = held.and_then(|s| s.pivot);
+        out.push(pivot.map_or(-1.0, |node| node as f64));
     }
 
     /// Takes over a state that [`Driver::write`] left of a driver of the same model.
@@ -241,6 +243,11 @@ impl<const D: usize> Driver<D> {
             }
         }
         let (held, elastic) = (from.count()? == 1, from.count()? == 1);
+        let nodes = 0..self.mesh.nodes().len();
+        let pivot = Some(from.number()?)
+            .filter(|&n| n >= 0.0)
+            .map(|n| n as usize);
+        let pivot = pivot.filter(|node| nodes.contains(node));
         self.state = State {
             increment,
             displacement,
@@ -255,7 +262,7 @@ impl<const D: usize> Driver<D> {
         self.system = None;
         if held {
             let loading = self.state.loading.clone();
-            let mut system = self.elastic_system(&loading)?;
+            let mut system = self.elastic_system(&loading, pivot)?;
             if elastic {
                 // The elastic stiffness was positive definite when it was first factorised.
                 let _ = system.factorise(true);

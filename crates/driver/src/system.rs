@@ -26,6 +26,8 @@ pub(crate) struct System {
     dofs: Vec<usize>,
     /// Number of interface unknowns: the last of the system.
     interface: usize,
+    /// A node of the interface that no contact point needs.
+    pub(crate) pivot: Option<usize>,
     /// Where the cells of every block go.
     scatter: Vec<Scatter>,
     values: Vec<f64>,
@@ -61,6 +63,20 @@ pub(crate) struct Assembly {
     pub(crate) flows: bool,
 }
 
+/// A load q of unknown factor in a condensed system, and the equation that decides it:
+/// q·u + c λ = m.
+#[derive(Debug)]
+pub(crate) struct Border {
+    /// L⁻¹ q.
+    forward: Vec<f64>,
+    /// q̃, q condensed on the interface \[N\].
+    load: DVector<f64>,
+    /// c + q·u of the interior under q alone, the interface held \[N·mm\].
+    compliance: f64,
+    /// m less what the interior does under the other loads, the interface held \[N·mm\].
+    missing: f64,
+}
+
 /// The system condensed on its interface: S = L_cc L_ccᵀ − σ 1 and the condensed load.
 #[derive(Debug)]
 pub(crate) struct Condensed {
@@ -74,19 +90,21 @@ pub(crate) struct Condensed {
 }
 
 impl System {
-    /// Numbers the free degrees of freedom, orders them and does the symbolic factorisation.
+    /// Numbers the free degrees of freedom, orders them and does the symbolic factorisation. The
+    /// interface is that of the contact points, and the node `pivot` if there is one.
     pub(crate) fn new<const D: usize>(
         mesh: &Mesh<D>,
         blocks: &[Box<dyn Block<D>>],
         fixed: impl Fn(usize) -> bool,
         interface_nodes: &[usize],
+        pivot: Option<usize>,
     ) -> Result<Self, ModelError> {
         let clock = Instant::now();
         let nodes = mesh.nodes().len();
         let adjacency = adjacency(mesh);
         let neighbours = |a: usize| &adjacency.entries[adjacency.start[a]..adjacency.start[a + 1]];
         let mut is_interface = vec![false; nodes];
-        for &a in interface_nodes {
+        for &a in interface_nodes.iter().chain(&pivot) {
             is_interface[a] = true;
         }
         let interior: Vec<usize> = (0..nodes).filter(|&a| !is_interface[a]).collect();
@@ -131,6 +149,7 @@ impl System {
             position,
             dofs,
             interface,
+            pivot,
             scatter,
             values,
             shift: 0.0,
@@ -300,6 +319,55 @@ impl System {
             load,
             forward,
         }
+    }
+
+    /// Borders the condensed system with the load q of unknown factor λ and the equation
+    /// q·u + c λ = m; λ is eliminated, which leaves the system as symmetric as it was:
+    /// S + q̃ q̃ᵀ / (c + κ) with κ = q_i·K_ii⁻¹ q_i.
+    pub(crate) fn border(
+        &mut self,
+        condensed: &mut Condensed,
+        load: &[f64],
+        (compliance, missing): (f64, f64),
+    ) -> Border {
+        let mut forward: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
+        timed(&mut self.timings.solution, || {
+            self.cholesky.forward(&mut forward)
+        });
+        let first = self.size() - self.interface;
+        let interior = |a: &[f64], b: &[f64]| -> f64 {
+            let pairs = a[..first].iter().zip(&b[..first]);
+            pairs.map(|(a, b)| a * b).sum()
+        };
+        let border = Border {
+            load: &condensed.factor * DVector::from_column_slice(&forward[first..]),
+            compliance: compliance + interior(&forward, &forward),
+            missing: missing - interior(&forward, &condensed.forward),
+            forward,
+        };
+        let scale = 1.0 / border.compliance;
+        condensed
+            .stiffness
+            .ger(scale, &border.load, &border.load, 1.0);
+        condensed
+            .load
+            .axpy(scale * border.missing, &border.load, 1.0);
+        border
+    }
+
+    /// The factor of the load of a bordered system for the interface displacements x; the load
+    /// takes its part in what [`System::expand`] makes of them.
+    pub(crate) fn factor(
+        &self,
+        border: &Border,
+        condensed: &mut Condensed,
+        x: &DVector<f64>,
+    ) -> f64 {
+        let factor = (border.missing - border.load.dot(x)) / border.compliance;
+        let interior = self.size() - self.interface;
+        let pairs = condensed.forward.iter_mut().zip(&border.forward);
+        pairs.take(interior).for_each(|(f, w)| *f += factor * w);
+        factor
     }
 
     /// Solves the factorised system, without a shift, for a load at every degree of freedom \[N\];

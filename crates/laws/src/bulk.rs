@@ -27,6 +27,29 @@ pub struct Response<S> {
     pub state: S,
 }
 
+/// Greatest power that admissible stresses have on a strain rate, D(ε̇) = sup σ : ε̇ over the stresses
+/// on the yield surface as it is \[N·mm/mm³ per unit of time; N·mm when summed over a body\].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FlowPower {
+    /// D(ε̇), with what is said of `elastic`.
+    pub total: f64,
+    /// The part of the strain rate that no stress on the yield surface bounds, a change of volume or
+    /// all of it where a law is elastic, counts in `total` with the present stress; this is the
+    /// absolute value of what it counts.
+    pub elastic: f64,
+}
+
+impl FlowPower {
+    /// The sum with a part of a body of this volume \[mm³\].
+    #[must_use]
+    pub fn with(self, volume: f64, part: Self) -> Self {
+        Self {
+            total: self.total + volume * part.total,
+            elastic: self.elastic + volume * part.elastic,
+        }
+    }
+}
+
 /// A law of the bulk in R³, integrated by backward Euler over the step.
 ///
 /// A law is pure: it maps the state at the start of the step and the strain increment of the
@@ -61,6 +84,13 @@ pub trait BulkLaw: 'static + Clone + Send + Sync {
     /// It is the work done beyond σ₀ : Δε, stored and dissipated, \[48\]:
     /// ΔV = ψ₁ − ψ₀ + D − σ₀ : Δε with the stored energy ψ and the dissipation D of the step.
     fn potential(&self, _old: &Self::State, _d_eps: &Sym2) -> Option<f64> {
+        None
+    }
+
+    /// D(ε̇) in a state: convex and homogeneous of degree 1 in the strain rate, up to what counts as
+    /// elastic, and at least σ : ε̇ with the present stress σ; equal to it where ε̇ is the flow of σ.
+    /// `None` of a law whose flow is not associated: it has no such function.
+    fn flow_power(&self, _state: &Self::State, _rate: &Sym2) -> Option<FlowPower> {
         None
     }
 }

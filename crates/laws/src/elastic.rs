@@ -1,6 +1,6 @@
 //! Isotropic linear elasticity, \[58\]-\[59\]; not a law with memory: its state is its strain.
 
-use crate::bulk::{BulkLaw, Response};
+use crate::bulk::{BulkLaw, FlowPower, Response};
 use crate::error::{LawError, positive};
 use moreau_mandel::{Sym2, Sym4, deviator, deviatoric_projector, identity, trace};
 
@@ -109,6 +109,13 @@ impl BulkLaw for Elastic {
 
     fn equivalent_plastic_strain(&self, _state: &Sym2) -> f64 {
         0.0
+    }
+
+    /// All of it elastic.
+    fn flow_power(&self, state: &Sym2, rate: &Sym2) -> Option<FlowPower> {
+        let total = self.stress(state).dot(rate);
+        let elastic = total.abs();
+        Some(FlowPower { total, elastic })
     }
 
     /// ΔV = ½ Δε·S·Δε, \[58\].

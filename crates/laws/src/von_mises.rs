@@ -1,7 +1,7 @@
 //! Von Mises plasticity with isotropic and kinematic hardening, \[5\]-\[9\] and \[57\]-\[65\]; not
 //! a law of finite strain, though logarithmic strains may be fed to it.
 
-use crate::bulk::{BulkLaw, Numbers, Response};
+use crate::bulk::{BulkLaw, FlowPower, Numbers, Response};
 use crate::duality::{Superpotential, at_most, indicator, restricted};
 use crate::elastic::Elastic;
 use crate::error::{LawError, non_negative, positive};
@@ -437,6 +437,19 @@ impl BulkLaw for VonMises {
 
     fn equivalent_plastic_strain(&self, state: &VonMisesState) -> f64 {
         state.p
+    }
+
+    /// √(2/3) (σ_y + R(p)) ‖ė‖ + X : ė; a change of volume is elastic, σ_m tr ε̇.
+    fn flow_power(&self, state: &VonMisesState, rate: &Sym2) -> Option<FlowPower> {
+        let e = deviator(rate);
+        let yield_stress = self.yield_stress + self.isotropic.stress(state.p);
+        let flow = yield_stress * equivalent_strain(&e) + self.back_stress(state).dot(&e);
+        let volume = trace(&self.stress(state)) * trace(rate) / 3.0;
+        let elastic = volume.abs();
+        Some(FlowPower {
+            total: flow + volume,
+            elastic,
+        })
     }
 
     /// ΔV = ½ K_c (Δe_m)² + G ‖Δe‖² − (f_trial + R(p)) Δp + ½ (3G + H_k) Δp² + ψ(p + Δp) − ψ(p): the

@@ -4,7 +4,7 @@ mod cells;
 mod keyword;
 mod sets;
 
-use crate::read::{Cell, Draft, Place, ReadError, Side};
+use crate::read::{Cell, Draft, Loss, Place, ReadError, Side};
 use crate::{CellKind, Facet, GroupKind, Mesh};
 use keyword::{Block, blocks, fields, number, unexpected};
 use sets::Sets;
@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// | keyword | what is read |
 /// |---|---|
 /// | `*NODE` | nodes; `NSET=` |
-/// | `*ELEMENT` | cells: in the plane `CPE`, `CPS` or `CAX` with 3, 4, 6 or 8 nodes, in space `C3D4` and `C3D8`; `ELSET=` |
+/// | `*ELEMENT` | cells: in the plane `CPE`, `CPS` or `CAX` with 3, 4, 6 or 8 nodes, in space `C3D` with 4, 8, 10 or 20 nodes; `ELSET=` |
 /// | `*NSET`, `*ELSET` | groups of nodes and cells: numbers, names of earlier sets, `GENERATE`; `*NSET, ELSET=` |
 /// | `*SURFACE` | groups of facets: an element or a set and `S1` … `S6`, or no side for all that belong to one cell only; with `TYPE=NODE` groups of nodes |
 ///
@@ -60,6 +60,14 @@ use std::collections::{BTreeMap, BTreeSet};
 /// # }
 /// ```
 pub fn read_abaqus<const D: usize>(text: &str) -> Result<Mesh<D>, ReadError> {
+    Ok(read_abaqus_noting(text)?.0)
+}
+
+/// [`read_abaqus`], with what the file says and the mesh does not have.
+///
+/// # Errors
+/// Those of [`read_abaqus`].
+pub fn read_abaqus_noting<const D: usize>(text: &str) -> Result<(Mesh<D>, Vec<Loss>), ReadError> {
     const { assert!(D == 2 || D == 3) };
     let blocks = blocks(text)?;
     let mut file = File::new();
@@ -128,6 +136,7 @@ struct File {
     surfaces: BTreeMap<String, (String, BTreeSet<Side>)>,
     /// Surfaces of nodes, likewise.
     node_surfaces: BTreeMap<String, (String, BTreeSet<u64>)>,
+    losses: Vec<Loss>,
 }
 
 impl File {
@@ -141,6 +150,7 @@ impl File {
             element_sets: Sets::new(GroupKind::Cells),
             surfaces: BTreeMap::new(),
             node_surfaces: BTreeMap::new(),
+            losses: Vec::new(),
         }
     }
 
@@ -200,10 +210,14 @@ impl File {
                 let expected = format!("a {name} with {} nodes", kind.nodes());
                 return Err(unexpected(line, &found, &expected));
             }
+            let nodes = match cells::places(kind) {
+                Some(places) => places.iter().map(|&k| nodes[k]).collect(),
+                None => nodes.to_vec(),
+            };
             self.cells.push(Cell {
                 element,
                 kind,
-                nodes: nodes.to_vec(),
+                nodes,
             });
             numbers.clear();
         }
@@ -294,7 +308,10 @@ impl File {
                     .1
                     .extend(members);
             }
-            _ => {}
+            _ => self.losses.push(Loss::Group {
+                name: named,
+                reason: "its type is neither ELEMENT nor NODE",
+            }),
         }
         Ok(())
     }
@@ -359,6 +376,7 @@ impl File {
         draft.facet_groups = surfaces
             .map(|(name, sides)| (name, sides.into_iter().collect()))
             .collect();
+        draft.losses = self.losses;
         draft.nodes = self.nodes;
         draft.cells = self.cells;
         Ok(draft)

@@ -1,7 +1,10 @@
 //! Kinds of cells and facets, known at run time; the mathematics is in [`element`](crate::element).
 
 use crate::nearest::edit_distance;
-use crate::{Element, Hex8, MeshError, Quad4, Quad8, Quad9, Tet4, Tri3, Tri6};
+use crate::{
+    Element, Hex8, Hex20, Hex27, Integration, MeshError, Quad4, Quad8, Quad9, Tet4, Tet10, Tri3,
+    Tri6,
+};
 use std::{fmt, slice, str};
 
 /// Kind of a cell; each is the [`Element`] of the same name.
@@ -21,8 +24,14 @@ pub enum CellKind {
     Quad9,
     /// Linear tetrahedron, [`Tet4`].
     Tet4,
+    /// Quadratic tetrahedron, [`Tet10`].
+    Tet10,
     /// Trilinear hexahedron, [`Hex8`].
     Hex8,
+    /// Serendipity hexahedron, [`Hex20`].
+    Hex20,
+    /// Triquadratic hexahedron, [`Hex27`].
+    Hex27,
 }
 
 /// Kind of a facet, a side of a cell; each is the [`Element`] of the same name, of dimension D − 1.
@@ -34,8 +43,14 @@ pub enum FacetKind {
     Line3,
     /// Linear triangle, [`Tri3`].
     Tri3,
+    /// Quadratic triangle, [`Tri6`].
+    Tri6,
     /// Bilinear quadrilateral, [`Quad4`].
     Quad4,
+    /// Serendipity quadrilateral, [`Quad8`].
+    Quad8,
+    /// Biquadratic quadrilateral, [`Quad9`].
+    Quad9,
 }
 
 /// What an element type knows, as values.
@@ -66,14 +81,17 @@ const fn data<const D: usize, const N: usize, E: Element<D, N>>(
 
 impl CellKind {
     /// Every kind, in order.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 10] = [
         Self::Tri3,
         Self::Tri6,
         Self::Quad4,
         Self::Quad8,
         Self::Quad9,
         Self::Tet4,
+        Self::Tet10,
         Self::Hex8,
+        Self::Hex20,
+        Self::Hex27,
     ];
 
     const fn data(self) -> Data {
@@ -84,7 +102,10 @@ impl CellKind {
             Self::Quad8 => data::<2, 8, Quad8>("quad8", 4, FacetKind::Line3),
             Self::Quad9 => data::<2, 9, Quad9>("quad9", 4, FacetKind::Line3),
             Self::Tet4 => data::<3, 4, Tet4>("tet4", 4, FacetKind::Tri3),
+            Self::Tet10 => data::<3, 10, Tet10>("tet10", 4, FacetKind::Tri6),
             Self::Hex8 => data::<3, 8, Hex8>("hex8", 8, FacetKind::Quad4),
+            Self::Hex20 => data::<3, 20, Hex20>("hex20", 8, FacetKind::Quad8),
+            Self::Hex27 => data::<3, 27, Hex27>("hex27", 8, FacetKind::Quad9),
         }
     }
 
@@ -118,6 +139,29 @@ impl CellKind {
         self.data().facet_kind
     }
 
+    /// The rule to take where none is asked for: the one that locks least in plastic flow without
+    /// modes that pass from cell to cell. Those of biquadratic and triquadratic cells under the
+    /// reduced rule do.
+    ///
+    /// Linear triangles and tetrahedra have none that does not lock: see [`CellKind::locks`].
+    pub const fn integration(self) -> Integration {
+        match self {
+            Self::Tri3 | Self::Tet4 | Self::Quad9 | Self::Hex27 => Integration::Full,
+            Self::Quad4 | Self::Hex8 => Integration::BBar,
+            Self::Tri6 | Self::Quad8 | Self::Tet10 | Self::Hex20 => Integration::Reduced,
+        }
+    }
+
+    /// Whether cells of this kind and rule cannot flow at constant volume: their limit loads are
+    /// too high by far, or there are none.
+    pub const fn locks(self, integration: Integration) -> bool {
+        match self {
+            Self::Tri3 | Self::Tet4 => true,
+            Self::Quad4 | Self::Hex8 => matches!(integration, Integration::Full),
+            _ => false,
+        }
+    }
+
     /// Reference coordinates of the nodes, D each: [`Element::NODES`].
     pub fn reference_nodes(self) -> slice::ChunksExact<'static, f64> {
         self.data().nodes.chunks_exact(self.dimension())
@@ -131,6 +175,9 @@ impl FacetKind {
             Self::Line2 => 2,
             Self::Line3 | Self::Tri3 => 3,
             Self::Quad4 => 4,
+            Self::Tri6 => 6,
+            Self::Quad8 => 8,
+            Self::Quad9 => 9,
         }
     }
 
@@ -138,8 +185,8 @@ impl FacetKind {
     pub const fn corner_count(self) -> usize {
         match self {
             Self::Line2 | Self::Line3 => 2,
-            Self::Tri3 => 3,
-            Self::Quad4 => 4,
+            Self::Tri3 | Self::Tri6 => 3,
+            Self::Quad4 | Self::Quad8 | Self::Quad9 => 4,
         }
     }
 }

@@ -1,23 +1,29 @@
 //! Nodal elements on reference cells, one a file; not the cells of a mesh, which choose one of
 //! these at run time by their [`CellKind`](crate::CellKind).
 
+mod hex20;
+mod hex27;
 mod hex8;
 mod line2;
 mod line3;
 mod quad4;
 mod quad8;
 mod quad9;
+mod tet10;
 mod tet4;
 mod tri3;
 mod tri6;
 
 pub use hex8::Hex8;
+pub use hex20::Hex20;
+pub use hex27::Hex27;
 pub use line2::Line2;
 pub use line3::Line3;
 pub use quad4::Quad4;
 pub use quad8::Quad8;
 pub use quad9::Quad9;
 pub use tet4::Tet4;
+pub use tet10::Tet10;
 pub use tri3::Tri3;
 pub use tri6::Tri6;
 
@@ -32,7 +38,8 @@ pub trait Element<const D: usize, const N: usize>: 'static + Send + Sync {
     /// Reference coordinates ξ_a of the nodes, corners first.
     const NODES: [[f64; D]; N];
 
-    /// Nodes of the facets: end nodes first, then mid-side nodes.
+    /// Nodes of the facets: corners first, then mid-side nodes, each after the corner of the same
+    /// place, then the middle.
     ///
     /// Facets are oriented outwards: walking a facet of the plane from its first to its second
     /// node, the cell is on the left; seen from outside, a facet in space turns anticlockwise.

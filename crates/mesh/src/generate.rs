@@ -102,7 +102,10 @@ pub fn block3(
         &[[0, 0, 0], [0, 0, 1], [1, 1, 1], [0, 1, 1]],
         &[[0, 0, 0], [0, 1, 0], [1, 1, 1], [1, 1, 0]],
     ];
-    let cut = if kind == CellKind::Tet4 { PATHS } else { BOX };
+    let cut = match kind {
+        CellKind::Tet4 | CellKind::Tet10 => PATHS,
+        _ => BOX,
+    };
     block(name, kind, [x, y, z], [cut; 2])
 }
 
@@ -191,26 +194,32 @@ fn check_lines(axis: char, lines: &[f64]) -> Result<(), MeshError> {
     }
 }
 
-/// Grid points of a cell with the given corners, relative to its box.
+/// Grid points of a cell with the given corners, relative to its box: the image of the reference
+/// nodes by the affine map that takes the reference corners to these.
 fn offsets<const D: usize>(
     kind: CellKind,
     corners: &[[usize; D]],
     order: usize,
 ) -> Vec<[usize; D]> {
-    let mut offsets: Vec<_> = corners.iter().map(|c| c.map(|k| order * k)).collect();
-    if order == 2 {
-        let next = corners.iter().cycle().skip(1);
-        offsets.extend(
-            corners
-                .iter()
-                .zip(next)
-                .map(|(a, b)| from_fn(|i| a[i] + b[i])),
-        );
-    }
-    if kind == CellKind::Quad9 {
-        offsets.push([1; D]);
-    }
-    offsets
+    let reference: Vec<&[f64]> = kind.reference_nodes().collect();
+    let origin = reference[0];
+    // The corner at the other end of the edge from the first one along each reference axis.
+    let along = |axis: usize| {
+        let beside = |x: &&[f64]| (0..D).all(|i| (x[i] == origin[i]) != (i == axis));
+        let corner = reference.iter().take(corners.len()).position(beside);
+        corner.unwrap_or_default()
+    };
+    let ends: [usize; D] = from_fn(along);
+    let place = |x: &&[f64]| {
+        from_fn(|i| {
+            let moved = (0..D).map(|j| {
+                let part = (x[j] - origin[j]) / (reference[ends[j]][j] - origin[j]);
+                part * (corners[ends[j]][i] as f64 - corners[0][i] as f64)
+            });
+            (order as f64 * (corners[0][i] as f64 + moved.sum::<f64>())).round() as usize
+        })
+    };
+    reference.iter().map(place).collect()
 }
 
 /// Position of an index in a grid of the given extents, the first coordinate running fastest.

@@ -9,10 +9,10 @@ mod write;
 pub use write::write_gmsh;
 
 use crate::Mesh;
-use crate::read::{Cell, Draft, ReadError, Side};
+use crate::read::{Cell, Draft, Loss, ReadError, Side};
 use input::{Coding, Input};
 use kind::Kind;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// A mesh of dimension D from the bytes of an MSH file, version 2.2 or 4.1, in text or binary of
 /// either byte order.
@@ -75,6 +75,14 @@ use std::collections::{BTreeMap, HashMap};
 /// # }
 /// ```
 pub fn read_gmsh<const D: usize>(bytes: &[u8]) -> Result<Mesh<D>, ReadError> {
+    Ok(read_gmsh_noting(bytes)?.0)
+}
+
+/// [`read_gmsh`], with what the file says and the mesh does not have.
+///
+/// # Errors
+/// Those of [`read_gmsh`].
+pub fn read_gmsh_noting<const D: usize>(bytes: &[u8]) -> Result<(Mesh<D>, Vec<Loss>), ReadError> {
     const { assert!(D == 2 || D == 3) };
     read(bytes)?.draft::<D>()?.finish()
 }
@@ -274,7 +282,26 @@ impl File {
             }
         }
         self.cells::<D>(&mut draft)?;
+        self.unused_names(&mut draft);
         Ok(draft)
+    }
+
+    /// Notes names of physical groups that no element has.
+    fn unused_names(&self, draft: &mut Draft) {
+        let used: HashSet<(usize, u32)> = self
+            .elements
+            .iter()
+            .flat_map(|e| self.physicals(e).iter().map(|&tag| (e.kind.dimension, tag)))
+            .collect();
+        let unused = self.names.iter().filter(|(key, _)| !used.contains(key));
+        let mut names: Vec<&String> = unused.map(|(_, name)| name).collect();
+        names.sort_unstable();
+        draft
+            .losses
+            .extend(names.into_iter().map(|name| Loss::Group {
+                name: name.clone(),
+                reason: "no element of the file is in it",
+            }));
     }
 
     /// The cells and their groups.
@@ -293,6 +320,13 @@ impl File {
             return Err(ReadError::NoCells {
                 dimension: D,
                 elements: self.elements.len(),
+            });
+        }
+        let mut left = all().filter(|e| grouped && self.physicals(e).is_empty());
+        if let Some(first) = left.next() {
+            draft.losses.push(Loss::Ungrouped {
+                elements: 1 + left.count(),
+                first: first.number,
             });
         }
         // Stable: of elements with the same nodes, the first one gives the cell.

@@ -3,7 +3,7 @@
 //!
 //! | to … | use |
 //! |---|---|
-//! | interpolate in a cell, `u = N U` \[76\] | [`Element`]: [`Tri3`], [`Tri6`], [`Quad4`], [`Quad8`], [`Quad9`], [`Tet4`], [`Hex8`] |
+//! | interpolate in a cell, `u = N U` \[76\] | [`Element`]: [`Tri3`], [`Tri6`], [`Quad4`], [`Quad8`], [`Quad9`], [`Tet4`], [`Tet10`], [`Hex8`], [`Hex20`], [`Hex27`] |
 //! | integrate over it, \[78\] | [`Element::rule`], [`Rule`], [`Integration`] |
 //! | strain it, `ε = B U` \[77\] | [`Hypothesis`]: [`PlaneStrain`], [`Axisymmetric`], [`Solid`] |
 //! | hold nodes, cells and named groups | [`Mesh`], always valid once constructed |
@@ -58,15 +58,17 @@ pub mod quadrature;
 pub mod read;
 mod sample;
 
-pub use abaqus::read_abaqus;
+pub use abaqus::{read_abaqus, read_abaqus_noting};
 pub use cell::{CellKind, FacetKind};
-pub use element::{Element, Hex8, Line2, Line3, Mapped, Quad4, Quad8, Quad9, Tet4, Tri3, Tri6};
+pub use element::{
+    Element, Hex8, Hex20, Hex27, Line2, Line3, Mapped, Quad4, Quad8, Quad9, Tet4, Tet10, Tri3, Tri6,
+};
 pub use error::{GroupKind, MeshError};
 pub use generate::{block2, block3, geometric, refine, uniform};
-pub use gmsh::{read_gmsh, write_gmsh};
+pub use gmsh::{read_gmsh, read_gmsh_noting, write_gmsh};
 pub use hypothesis::{Axisymmetric, Hypothesis, PlaneStrain, Solid};
 pub use mesh::{Facet, Mesh, NodeKind, Share};
 pub use nearest::nearest;
 pub use pairing::{Coupling, Pairing};
 pub use quadrature::{Integration, Point, Rule, gauss};
-pub use read::{Place, ReadError};
+pub use read::{Loss, Place, ReadError};

@@ -6,6 +6,7 @@ mod integrals;
 mod topology;
 
 pub use integrals::{NodeKind, Share};
+pub(crate) use topology::facet_key;
 
 use crate::geometry::{bounds, diagonal};
 use crate::sample::{CellSamples, Sample, cell_samples};

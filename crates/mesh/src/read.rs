@@ -3,6 +3,8 @@
 
 mod draft;
 mod error;
+mod loss;
 
 pub(crate) use draft::{Cell, Draft, Side};
 pub use error::{Place, ReadError};
+pub use loss::Loss;

@@ -4,7 +4,8 @@
 use crate::geometry::{basis, cofactors, dot, interpolate};
 use crate::quadrature::{Integration, Point, Rule};
 use crate::{
-    CellKind, Element, FacetKind, Hex8, Line2, Line3, Quad4, Quad8, Quad9, Tet4, Tri3, Tri6,
+    CellKind, Element, FacetKind, Hex8, Hex20, Hex27, Line2, Line3, Quad4, Quad8, Quad9, Tet4,
+    Tet10, Tri3, Tri6,
 };
 
 /// Shape functions at one point of a reference cell or facet.
@@ -57,7 +58,10 @@ pub(crate) fn facet_samples<const D: usize>(kind: FacetKind) -> Vec<Sample<D>> {
         FacetKind::Line2 => tabulate_facet::<D, 1, 2, Line2>(),
         FacetKind::Line3 => tabulate_facet::<D, 1, 3, Line3>(),
         FacetKind::Tri3 => tabulate_facet::<D, 2, 3, Tri3>(),
+        FacetKind::Tri6 => tabulate_facet::<D, 2, 6, Tri6>(),
         FacetKind::Quad4 => tabulate_facet::<D, 2, 4, Quad4>(),
+        FacetKind::Quad8 => tabulate_facet::<D, 2, 8, Quad8>(),
+        FacetKind::Quad9 => tabulate_facet::<D, 2, 9, Quad9>(),
     }
 }
 
@@ -89,6 +93,9 @@ pub(crate) fn cell_samples<const D: usize>(kind: CellKind) -> CellSamples<D> {
         CellKind::Quad8 => tabulate_cell::<D, 8, 2, Quad8>(Quad8::rule(full)),
         CellKind::Quad9 => tabulate_cell::<D, 9, 2, Quad9>(Quad9::rule(full)),
         CellKind::Tet4 => tabulate_cell::<D, 4, 3, Tet4>(Tet4::rule(full)),
+        CellKind::Tet10 => tabulate_cell::<D, 10, 3, Tet10>(Tet10::rule(full)),
         CellKind::Hex8 => tabulate_cell::<D, 8, 3, Hex8>(Hex8::rule(full)),
+        CellKind::Hex20 => tabulate_cell::<D, 20, 3, Hex20>(Hex20::rule(full)),
+        CellKind::Hex27 => tabulate_cell::<D, 27, 3, Hex27>(Hex27::rule(full)),
     }
 }

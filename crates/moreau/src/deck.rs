@@ -50,6 +50,7 @@ pub use entries::{
 pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;
 
+use crate::columns::columns;
 use std::path::Path;
 
 /// JSON schema of decks, for editors: `docs/deck.schema.json`.
@@ -67,13 +68,14 @@ pub fn open_in(text: &str, folder: &Path) -> (Deck, Option<Problem>, Findings) {
     let problem = build::build(&mut deck, &mut findings);
     if let Some(problem) = &problem {
         let columns = match problem {
-            Problem::Plane(setup) => crate::run::columns(setup),
-            Problem::Solid(setup) => crate::run::columns(setup),
+            Problem::Plane(setup) => columns(setup),
+            Problem::Solid(setup) => columns(setup),
         };
         for expectation in &deck.expectations {
             let column = &expectation.column;
-            if !columns.contains(&column.value) {
-                let near = finding::did_you_mean(&column.value, columns.iter().map(String::as_str));
+            if !columns.iter().any(|(name, _)| *name == column.value) {
+                let names = columns.iter().map(|(name, _)| name.as_str());
+                let near = finding::did_you_mean(&column.value, names);
                 let message = format!("no result is called \"{}\"{near}", column.value);
                 findings
                     .error(&column.span, message, "not a column of history.csv")

@@ -1,6 +1,8 @@
 //! Mesh files on disk: read and written by the ending of their names; no mesh is changed.
 
-use crate::mesh::{Mesh, ReadError, nearest, read_abaqus, read_gmsh, write_gmsh};
+use crate::mesh::{
+    Loss, Mesh, ReadError, nearest, read_abaqus_noting, read_gmsh_noting, write_gmsh,
+};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -91,14 +93,14 @@ fn ending(path: &Path) -> String {
         .map_or_else(String::new, |e| e.to_string_lossy().to_lowercase())
 }
 
-/// The mesh of a file: `.msh` (Gmsh) or `.inp` (Abaqus, CalculiX).
+/// The mesh of a file, `.msh` (Gmsh) or `.inp` (Abaqus, CalculiX), and what of the file is not in it.
 ///
 /// # Errors
 /// [`FileError`], with the file of the folder whose name is nearest if there is no such file.
-pub fn read_mesh<const D: usize>(path: &Path) -> Result<Mesh<D>, FileError> {
+pub fn read_mesh<const D: usize>(path: &Path) -> Result<(Mesh<D>, Vec<Loss>), FileError> {
     let mesh = match ending(path).as_str() {
-        "msh" => read_gmsh(&bytes(path)?),
-        "inp" => read_abaqus(&String::from_utf8_lossy(&bytes(path)?)),
+        "msh" => read_gmsh_noting(&bytes(path)?),
+        "inp" => read_abaqus_noting(&String::from_utf8_lossy(&bytes(path)?)),
         _ => {
             return Err(FileError::Format {
                 path: path.into(),

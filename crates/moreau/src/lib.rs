@@ -9,6 +9,7 @@
 //! | contact problem and solvers | `moreau-contact` | [`contact`] |
 //! | steps and reports | `moreau-driver` | [`driver`] |
 //! | charts and pictures | | [`plot`] |
+//! | stresses at nodes | | [`recovery`] |
 //! | problems in text files | | [`deck`] |
 //! | mesh files | | [`files`] |
 //! | their results | | [`run`] |
@@ -28,9 +29,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod columns;
 pub mod deck;
 pub mod files;
 pub mod plot;
+pub mod recovery;
 pub mod run;
 
 pub use moreau_contact as contact;

@@ -2,6 +2,7 @@
 //! as they come; nothing is printed, and no deck is read. What is in memory does not grow with the
 //! number of increments.
 
+mod body;
 mod checkpoint;
 mod contact;
 mod diagnosis;
@@ -16,9 +17,8 @@ mod view;
 mod vtu;
 
 pub use diagnosis::{Diagnosis, Flip};
-pub use history::columns;
 pub use outcome::{Outcome, RunStatus, Verdict};
-pub use view::{NodalField, View};
+pub use view::View;
 pub(crate) use vtu::vtu_of_mesh;
 
 use crate::deck::{Deck, Setup, Vtu};
@@ -241,11 +241,11 @@ where
     };
     write("history.svg".into(), pictures::forces(&history, deck))?;
     if let Some(mesh) = driver.plane() {
-        let contacts = pictures::contact_table(directory, number)?;
+        let contacts = pictures::contact_table(directory, &[number])?;
         let at = drawing.increment.map_or(String::new(), |n| format!("-{n}"));
         write(
             format!("contact{at}.svg"),
-            pictures::tractions(&contacts, deck),
+            pictures::tractions(&contacts, number, deck),
         )?;
         let files = vtu::bodies(directory);
         let arrays = match files.iter().find(|f| f.0 == number) {
@@ -263,7 +263,7 @@ where
         if let Some(arrays) = arrays {
             let name = field.unwrap_or(pictures::usual_field(deck));
             if pictures::field(&arrays, name).is_none() {
-                let all: Vec<&str> = arrays.iter().map(|a| a.name.as_str()).collect();
+                let all = pictures::fields(&arrays);
                 return Err(RunError::Unknown {
                     what: format!("the field \"{name}\""),
                     expected: all.join(", "),
@@ -273,7 +273,7 @@ where
             write(format!("deformed{asked}.svg"), svg)?;
         }
     }
-    let page = report::report(driver.mesh(), deck, directory, last)?;
+    let page = report::report(driver, deck, directory, last)?;
     write("report.html".into(), Some(page))?;
     Ok(written)
 }
@@ -313,7 +313,7 @@ where
 {
     fn unopened(setup: Setup<D>, deck: &'a Deck, directory: &'a Path, resolved: String) -> Self {
         Self {
-            history: History::new(deck.units, D, setup.held.clone(), setup.tools.clone()),
+            history: History::new(deck.units, &setup),
             tally: Tally::new(&setup.driver),
             setup,
             deck,
@@ -444,7 +444,7 @@ where
         let json = outcome.json();
         write_file(&self.directory.join("run.json"), json.as_bytes())?;
         if driver.increments() > 0 {
-            let last = vtu::nodal(driver);
+            let last = body::body(driver).0.point_data;
             let drawing = Drawing::default();
             pictures_of(driver, self.deck, self.directory, Some(&last), &drawing)?;
         }

@@ -771,6 +771,21 @@ fn a_run_is_drawn_again_from_its_files() {
     assert_eq!(data["faces"].as_array().map(Vec::len), Some(20));
     let punch = data["frames"][19]["values"]["displacement.y"]["low"].as_f64();
     assert!((punch.expect("a number") + 0.2).abs() < 1e-12);
+    // The contact line of every frame: pressures and shears of the floor at 21 points.
+    let contact = &data["contact"];
+    assert_eq!(contact["frames"].as_array().map(Vec::len), Some(20));
+    assert_eq!(contact["surfaces"][0]["name"], "block.bottom");
+    let most = |frame: usize| contact["frames"][frame][0][0]["high"].as_f64();
+    let rows = fs::read_to_string(results.join("contact.csv")).expect("contacts");
+    for frame in [0, 19] {
+        let field = |line: &str, k: usize| line.split(',').nth(k).map(str::to_owned);
+        let own = (frame + 1).to_string();
+        let found = rows.lines().filter(|l| field(l, 1) == Some(own.clone()));
+        let pressures = found.filter_map(|l| field(l, 14)?.parse::<f64>().ok());
+        let found = pressures.reduce(f64::max).expect("a pressure");
+        let shown = most(frame).expect("a number");
+        assert!((shown / found - 1.0).abs() < 1e-12, "{shown} {found}");
+    }
     assert!(page.contains("Certificate of every increment") && page.contains("force.punch.y"));
     assert!(page.contains("[[mesh.block]]"));
 }

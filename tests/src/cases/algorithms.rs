@@ -5,7 +5,7 @@ use super::compare::{
     History, along, certificate_row, certificate_table, digits, record, scientific,
 };
 use crate::paper::{BLOCK_INCREMENTS, BLOCK_TRAVEL, block, block_punch_load, block_step};
-use crate::{Case, Check, Figure, Kind, Options, Outcome, Table};
+use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
 use moreau::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
 use moreau::driver::{Driver, Nesting, Settings};
 use moreau::mesh::{Integration, NodeKind};
@@ -16,6 +16,7 @@ use std::time::Instant;
 /// The case.
 pub(super) const CASE: Case = Case {
     name: "algorithms",
+    chapter: Chapter::Paper,
     title: "Comparison of the algorithms (paper 8.2.2, figures 15–17)",
     description: "The punched block with a friction of 0.1, 20 cells, 2×2 quadrature, under the \
         penalty method (k = 10⁸ N/mm), under three exact methods inside Newton's iteration \

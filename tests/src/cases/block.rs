@@ -7,7 +7,7 @@ use super::compare::{
 use crate::paper::{
     BLOCK_INCREMENTS, BLOCK_TRAVEL, block, block_punch_load, block_step, reference,
 };
-use crate::{Case, Check, Figure, Kind, Options, Outcome, Table};
+use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
 use moreau::driver::{Driver, Settings};
 use moreau::laws::Status;
 use moreau::mesh::{Integration, NodeKind};
@@ -17,6 +17,7 @@ use std::error::Error;
 /// The case.
 pub(super) const CASE: Case = Case {
     name: "block",
+    chapter: Chapter::Paper,
     title: "Punched block with Coulomb friction (paper 8.2, figures 9–11)",
     description: "Half of a steel block, 50 mm × 20 mm, on a rigid foundation with Coulomb \
         friction, punched by 0.2 mm over half of its top in 20 increments; elastic perfectly \

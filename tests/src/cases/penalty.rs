@@ -2,7 +2,7 @@
 
 use super::compare::{History, along, digits, record, scientific};
 use crate::paper::{BLOCK_INCREMENTS, BLOCK_TRAVEL, block, block_punch_load, block_step};
-use crate::{Case, Check, Figure, Kind, Options, Outcome, Table};
+use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
 use moreau::contact::{ContactSolver, Penalty, SemismoothNewton};
 use moreau::driver::Settings;
 use moreau::mesh::{Integration, NodeKind};
@@ -12,6 +12,7 @@ use std::error::Error;
 /// The case.
 pub(super) const CASE: Case = Case {
     name: "penalty",
+    chapter: Chapter::Paper,
     title: "Convergence of the penalty method (paper 8.2.1, figures 12–14)",
     description: "The punched block with a friction of 0.05 under the penalty method, equal \
         factors normal and tangential, from 10² to 10¹⁶ N/mm, on meshes of 20, 40 and 60 cells. \

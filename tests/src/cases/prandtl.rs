@@ -9,7 +9,7 @@ use crate::paper::{
     PRANDTL_INCREMENTS, PRANDTL_TRAVEL, prandtl, prandtl_load, prandtl_punch_load, prandtl_step,
     reference,
 };
-use crate::{Case, Check, Figure, Kind, Options, Outcome, Table};
+use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
 use moreau::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
 use moreau::driver::{Driver, Settings};
 use moreau::mesh::Integration;
@@ -19,6 +19,7 @@ use std::error::Error;
 /// The case.
 pub(super) const CASE: Case = Case {
     name: "prandtl",
+    chapter: Chapter::Paper,
     title: "Indentation of a half-space (paper 8.1, figures 6–8)",
     description: "A rigid, flat, smooth punch of 20 mm width is pressed 0.4 mm into an elastic \
         perfectly plastic block in plane strain, 40 increments, unilateral contact without \
@@ -45,7 +46,7 @@ const LOADS: [(usize, Integration, f64); 8] = [
 fn name(refinement: usize, integration: Integration) -> String {
     let rule = match integration {
         Integration::Reduced => "2×2",
-        Integration::Full => "3×3",
+        Integration::Full | Integration::BBar => "3×3",
     };
     format!("{} cells, {rule}", 56 * refinement * refinement)
 }

@@ -1,6 +1,6 @@
 //! Blocks mapped to the shapes of the benchmarks; not their loads.
 
-use moreau::mesh::{CellKind, Mesh, MeshError, block2, geometric, uniform};
+use moreau::mesh::{CellKind, Mesh, MeshError, block2, block3, geometric, uniform};
 use std::f64::consts::FRAC_PI_2;
 
 /// From radius and angle.
@@ -67,27 +67,61 @@ pub fn holed_plate(
         &uniform(0.0, 1.0, n),
         &uniform(0.0, 2.0, 2 * n),
     )?;
-    let (w, l, r) = (0.5 * width, 0.5 * length, 0.5 * hole);
-    let mut mesh = mesh.map(|[s, t]| {
-        // Up the right edge, then along the top to the axis.
-        let rectangle = |a: f64, b: f64| {
-            if t <= 1.0 {
-                [a, b * t]
-            } else {
-                [a * (2.0 - t), b]
-            }
-        };
-        let inner = match shape {
-            Hole::Square => rectangle(r, r),
-            Hole::Round if t == 2.0 => [0.0, r],
-            Hole::Round => polar([r, 0.5 * t * FRAC_PI_2]),
-        };
-        let outer = rectangle(w, l);
-        [0, 1].map(|i| inner[i] + s * (outer[i] - inner[i]))
-    })?;
+    let mut mesh = mesh.map(|x| around_hole(shape, (width, length, hole), x))?;
+    let w = 0.5 * width;
     mesh.facet_group_where("plate.right", "body.right", |x| x[0] > w * (1.0 - 1e-12))?;
-    mesh.facet_group_where("plate.top", "body.right", |x| x[1] > l * (1.0 - 1e-12))?;
+    mesh.facet_group_where("plate.top", "body.right", |x| {
+        x[1] > 0.5 * length * (1.0 - 1e-12)
+    })?;
     Ok(mesh)
+}
+
+/// The quarter of [`holed_plate`] as one layer of solid cells, z from 0 to the thickness.
+///
+/// # Errors
+/// Those of [`block3`].
+pub fn holed_slab(
+    kind: CellKind,
+    shape: Hole,
+    (width, length, hole): (f64, f64, f64),
+    thickness: f64,
+    n: usize,
+) -> Result<Mesh<3>, MeshError> {
+    let mesh = block3(
+        "body",
+        kind,
+        &uniform(0.0, 1.0, n),
+        &uniform(0.0, 2.0, 2 * n),
+        &uniform(0.0, thickness, 1),
+    )?;
+    let mut mesh = mesh.map(|[s, t, z]| {
+        let [x, y] = around_hole(shape, (width, length, hole), [s, t]);
+        [x, y, z]
+    })?;
+    mesh.facet_group_where("plate.top", "body.right", |x| {
+        x[1] > 0.5 * length * (1.0 - 1e-12)
+    })?;
+    Ok(mesh)
+}
+
+/// From s across the plate, 0 to 1, and t around the hole, 0 to 2.
+fn around_hole(shape: Hole, (width, length, hole): (f64, f64, f64), [s, t]: [f64; 2]) -> [f64; 2] {
+    let (w, l, r) = (0.5 * width, 0.5 * length, 0.5 * hole);
+    // Up the right edge, then along the top to the axis.
+    let rectangle = |a: f64, b: f64| {
+        if t <= 1.0 {
+            [a, b * t]
+        } else {
+            [a * (2.0 - t), b]
+        }
+    };
+    let inner = match shape {
+        Hole::Square => rectangle(r, r),
+        Hole::Round if t == 2.0 => [0.0, r],
+        Hole::Round => polar([r, 0.5 * t * FRAC_PI_2]),
+    };
+    let outer = rectangle(w, l);
+    [0, 1].map(|i| inner[i] + s * (outer[i] - inner[i]))
 }
 
 /// A quarter of a plate with a deep notch from each edge that leaves a ligament of width 1 of 10,

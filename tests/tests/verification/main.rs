@@ -15,6 +15,7 @@ mod hole;
 mod incline;
 mod invariance;
 mod laws;
+mod locking;
 mod modes;
 mod newton;
 mod notch;

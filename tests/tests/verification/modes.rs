@@ -76,6 +76,30 @@ fn triangle(kind: CellKind) -> Fallible<Mesh<2>> {
     )?)
 }
 
+/// One quadratic solid cell on its reference nodes, distorted.
+fn quadratic_cell(kind: CellKind) -> Fallible<Mesh<3>> {
+    let nodes = kind.reference_nodes().map(|xi| [xi[0], xi[1], xi[2]]);
+    let all = (0..kind.nodes()).collect();
+    let mesh = Mesh::new(nodes.collect(), vec![(kind, all)])?;
+    let bend = |[x, y, z]: [f64; 3]| [x + 0.1 * y * z, y + 0.2 * x, z - 0.1 * x * y];
+    Ok(mesh.map(bend)?)
+}
+
+/// The mean dilatation costs no rank.
+#[test]
+fn b_bar_leaves_the_rigid_motions_only() -> Fallible {
+    use Integration::BBar;
+    let plane = PlaneStrain::default();
+    let square = plane_block(CellKind::Quad4, 1)?;
+    assert_eq!(zero_modes(&square, &plane, BBar)?, 3);
+    assert_eq!(zero_modes(&square, &Axisymmetric, BBar)?, 1);
+    let line = uniform(0.0, 1.0, 1);
+    let cube = block3("cell", CellKind::Hex8, &line, &line, &line)?;
+    let cube = cube.map(|[x, y, z]| [x + 0.1 * y * z, y + 0.2 * x, z - 0.1 * x * y])?;
+    assert_eq!(zero_modes(&cube, &Solid, BBar)?, 6);
+    Ok(())
+}
+
 #[test]
 fn full_rules_leave_the_rigid_motions_only() -> Fallible {
     use Integration::Full;
@@ -122,6 +146,13 @@ fn full_rules_leave_the_rigid_motions_only() -> Fallible {
     ];
     let tetrahedron = Mesh::new(corners, vec![(CellKind::Tet4, vec![0, 1, 2, 3])])?;
     assert_eq!(zero_modes(&tetrahedron, &Solid, Full)?, 6);
+    for kind in [CellKind::Tet10, CellKind::Hex20, CellKind::Hex27] {
+        assert_eq!(
+            zero_modes(&quadratic_cell(kind)?, &Solid, Full)?,
+            6,
+            "{kind}"
+        );
+    }
     Ok(())
 }
 
@@ -144,6 +175,13 @@ fn reduced_rules_leave_their_known_spurious_modes() -> Fallible {
     let line = uniform(0.0, 1.0, 1);
     let cube = block3("cell", CellKind::Hex8, &line, &line, &line)?;
     assert_eq!(zero_modes(&cube, &Solid, Reduced)?, 24 - 6);
+    let cell = quadratic_cell;
+    assert_eq!(zero_modes(&cell(CellKind::Tet10)?, &Solid, Reduced)?, 6);
+    assert_eq!(zero_modes(&cell(CellKind::Hex20)?, &Solid, Reduced)?, 12);
+    assert_eq!(
+        zero_modes(&cell(CellKind::Hex27)?, &Solid, Reduced)?,
+        81 - 48
+    );
     Ok(())
 }
 

@@ -12,7 +12,7 @@ use nalgebra::Vector2;
 use std::f64::consts::PI;
 use verification::problems::Fallible;
 use verification::problems::fields::prescribed;
-use verification::problems::limit::final_slope;
+use verification::problems::limit::{collapse_of, final_slope};
 use verification::problems::shapes::quarter_ring;
 
 const A: f64 = 100.0;
@@ -219,5 +219,23 @@ fn hollow_sphere_reaches_its_limit_pressure() -> Fallible {
         "no plateau: {}",
         final_slope(&curve)
     );
+    Ok(())
+}
+
+/// Pressed beyond its limit: the exact limit pressure, from the path and from the mechanism.
+#[test]
+fn hollow_sphere_collapses_at_its_limit_pressure_under_load_control() -> Fallible {
+    let exact = 2.0 * YIELD * (B / A).ln();
+    close("limit pressure", exact, 332.7106467, 1e-9);
+    let mut driver = sphere(steel()?)?;
+    let step = supported("too much").pressure("body.left", 2.0 * exact);
+    let found = collapse_of(&mut driver, &step, 10)?;
+    close("limit pressure", 2.0 * found.load_factor, 1.0, 2e-4);
+    let bound = found
+        .upper_bound
+        .ok_or("von Mises has a bound")?
+        .load_factor;
+    close("bound", bound, found.load_factor, 1e-5);
+    assert!(2.0 * bound > 1.0 - 2e-4);
     Ok(())
 }

@@ -21,6 +21,8 @@ const LONG: usize = 16;
 
 #[derive(Serialize)]
 struct Section<'a> {
+    /// Heading of a chapter that begins with this case.
+    chapter: Option<&'static str>,
     name: &'a str,
     title: &'a str,
     description: &'a str,
@@ -82,7 +84,10 @@ pub fn html(
     setting: Setting,
     verdict: &Verdict,
 ) -> Result<String, minijinja::Error> {
-    let sections: Vec<Section<'_>> = runs.iter().map(section).collect();
+    let mut sections: Vec<Section<'_>> = runs.iter().map(section).collect();
+    for chapter in sections.chunk_by_mut(|a, b| a.chapter == b.chapter) {
+        chapter.iter_mut().skip(1).for_each(|s| s.chapter = None);
+    }
     let mut environment = Environment::new();
     let syntax = SyntaxConfig::builder()
         .trim_blocks(true)
@@ -103,6 +108,7 @@ pub fn html(
 fn section<'a>(run: &'a Run<'_>) -> Section<'a> {
     let name = run.case.name;
     Section {
+        chapter: Some(run.case.chapter.title()),
         name,
         title: run.case.title,
         description: run.case.description,

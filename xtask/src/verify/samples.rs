@@ -3,12 +3,13 @@
 use std::error::Error;
 use std::fmt;
 
-use verification::{Case, Check, Figure, Kind, Options, Outcome, Table};
+use verification::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
 
 /// A case that passes, one whose checks fail, one that errs and one that panics.
 pub fn cases() -> Vec<Case> {
     let case = |name, run| Case {
         name,
+        chapter: Chapter::Paper,
         title: "A made-up <case>",
         description: "Why & how.",
         run,

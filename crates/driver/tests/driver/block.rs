@@ -62,9 +62,19 @@ fn displacement<const D: usize>(mesh: &Mesh<D>, size: f64, phase: f64) -> Vec<f6
 }
 
 fn contract<H: Analysis<D>, L: BulkLaw, const D: usize>(mesh: &Mesh<D>, hypothesis: H, law: L) {
+    obeys(mesh, &hypothesis, Integration::Full, law.clone());
+    obeys(mesh, &hypothesis, mesh.kind(0).integration(), law);
+}
+
+fn obeys<H: Analysis<D>, L: BulkLaw, const D: usize>(
+    mesh: &Mesh<D>,
+    hypothesis: &H,
+    rule: Integration,
+    law: L,
+) {
     let members: Vec<usize> = (0..mesh.cell_count()).collect();
     let cells = hypothesis
-        .cells(mesh, mesh.kind(0), &members, Integration::Full)
+        .cells(mesh, mesh.kind(0), &members, rule)
         .expect("an element of this dimension");
     let mut block = SolidBlock::new(members, cells, law);
     // From a plastic state on, with a step that loads some points and unloads others.
@@ -130,6 +140,7 @@ fn plane_strain_blocks() {
 #[test]
 fn axisymmetric_blocks() {
     contract(&plane(CellKind::Quad8), Axisymmetric, steel());
+    contract(&plane(CellKind::Quad4), Axisymmetric, steel());
     let elastic = Elastic::new(210e3, 0.3).expect("valid");
     contract(&plane(CellKind::Tri6), Axisymmetric, elastic);
 }
@@ -143,4 +154,7 @@ fn solid_blocks() {
     };
     contract(&mesh(CellKind::Hex8), Solid, steel());
     contract(&mesh(CellKind::Tet4), Solid, steel());
+    for kind in [CellKind::Tet10, CellKind::Hex20, CellKind::Hex27] {
+        contract(&mesh(kind), Solid, steel());
+    }
 }

@@ -1,4 +1,5 @@
 //! Contracts of the driver's public items.
 
 mod block;
+mod collapse;
 mod steps;

@@ -514,7 +514,8 @@ fn easy_increments_grow() {
     }
 }
 
-/// Beyond the limit load, increments are cut down to the least length, and no further.
+/// Where Newton is given too few iterations, increments are cut down to the least length, and no
+/// further.
 #[test]
 fn increments_are_cut_to_the_least() {
     let increments = Increments {
@@ -522,15 +523,19 @@ fn increments_are_cut_to_the_least() {
         min: Some(1e-3),
         max: 0.2,
     };
-    let mut driver = on_floor([6, 2], 0.0, 0.3, Settings::default());
+    let settings = Settings {
+        iterations: 1,
+        ..Settings::default()
+    };
+    let mut driver = on_floor([6, 2], 0.0, 0.3, settings);
     let step = Step::new("load")
         .fix("block.left", &[Axis::X])
-        .pressure("block.top", 2000.0);
+        .displace("punch", Axis::Y, -0.2);
     match driver.run(&step, increments, |_, _| {}) {
         Err(StepError::Stopped {
             reached, smallest, ..
         }) => {
-            assert!((0.1..0.9).contains(&reached), "{reached}");
+            assert!(reached < 0.9, "{reached}");
             assert!((1e-3..2e-3).contains(&smallest), "{smallest}");
         }
         other => panic!("{other:?}"),

@@ -6,7 +6,7 @@ use crate::CellKind;
 pub(super) const fn supported(dimension: usize) -> &'static str {
     match dimension {
         2 => "CPE3, CPE4, CPE6, CPE8, or CAX or CPS instead of CPE,",
-        _ => "C3D4 or C3D8,",
+        _ => "C3D4, C3D8, C3D10 or C3D20,",
     }
 }
 
@@ -18,6 +18,8 @@ pub(super) fn kind(name: &str) -> Option<CellKind> {
     match base {
         "C3D4" => Some(CellKind::Tet4),
         "C3D8" => Some(CellKind::Hex8),
+        "C3D10" => Some(CellKind::Tet10),
+        "C3D20" => Some(CellKind::Hex20),
         _ => {
             let family = ["CPE", "CAX", "CPS"];
             let nodes = family.iter().find_map(|family| base.strip_prefix(family))?;
@@ -32,6 +34,18 @@ pub(super) fn kind(name: &str) -> Option<CellKind> {
     }
 }
 
+/// Where each node of the kind stands in an element of the file: the edges of solids come in another
+/// order there. A hexahedron has those below, above and upright, a tetrahedron 1-4, 2-4 and 3-4 last.
+pub(super) const fn places(kind: CellKind) -> Option<&'static [usize]> {
+    match kind {
+        CellKind::Tet10 => Some(&[0, 1, 2, 3, 4, 5, 6, 7, 9, 8]),
+        CellKind::Hex20 => Some(&[
+            0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14,
+        ]),
+        _ => None,
+    }
+}
+
 /// The index in [`CellKind::facets`] of each side S1, S2, ….
 ///
 /// Plane sides run from node 1 as here. A tetrahedron has S1 = 1-2-3, S2 = 1-4-2, S3 = 2-4-3,
@@ -41,8 +55,8 @@ const fn sides(kind: CellKind) -> &'static [usize] {
     match kind {
         CellKind::Tri3 | CellKind::Tri6 => &[0, 1, 2],
         CellKind::Quad4 | CellKind::Quad8 | CellKind::Quad9 => &[0, 1, 2, 3],
-        CellKind::Tet4 => &[0, 1, 3, 2],
-        CellKind::Hex8 => &[0, 5, 1, 2, 3, 4],
+        CellKind::Tet4 | CellKind::Tet10 => &[0, 1, 3, 2],
+        CellKind::Hex8 | CellKind::Hex20 | CellKind::Hex27 => &[0, 5, 1, 2, 3, 4],
     }
 }
 

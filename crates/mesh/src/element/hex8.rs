@@ -52,7 +52,7 @@ impl Element<3, 8> for Hex8 {
     fn rule(integration: Integration) -> Rule<3> {
         match integration {
             Integration::Reduced => Rule::hexahedron(1),
-            Integration::Full => Rule::hexahedron(2),
+            Integration::Full | Integration::BBar => Rule::hexahedron(2),
         }
     }
 }

@@ -28,7 +28,7 @@ impl Element<1, 2> for Line2 {
     fn rule(integration: Integration) -> Rule<1> {
         match integration {
             Integration::Reduced => gauss(1),
-            Integration::Full => gauss(2),
+            Integration::Full | Integration::BBar => gauss(2),
         }
     }
 }

@@ -28,7 +28,7 @@ impl Element<1, 3> for Line3 {
     fn rule(integration: Integration) -> Rule<1> {
         match integration {
             Integration::Reduced => gauss(2),
-            Integration::Full => gauss(3),
+            Integration::Full | Integration::BBar => gauss(3),
         }
     }
 }

@@ -32,7 +32,7 @@ impl Element<2, 4> for Quad4 {
     fn rule(integration: Integration) -> Rule<2> {
         match integration {
             Integration::Reduced => Rule::quadrilateral(1),
-            Integration::Full => Rule::quadrilateral(2),
+            Integration::Full | Integration::BBar => Rule::quadrilateral(2),
         }
     }
 }

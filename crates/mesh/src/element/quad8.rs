@@ -53,7 +53,7 @@ impl Element<2, 8> for Quad8 {
     fn rule(integration: Integration) -> Rule<2> {
         match integration {
             Integration::Reduced => Rule::quadrilateral(2),
-            Integration::Full => Rule::quadrilateral(3),
+            Integration::Full | Integration::BBar => Rule::quadrilateral(3),
         }
     }
 }

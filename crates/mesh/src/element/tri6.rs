@@ -55,7 +55,7 @@ impl Element<2, 6> for Tri6 {
     fn rule(integration: Integration) -> Rule<2> {
         match integration {
             Integration::Reduced => Rule::triangle(2),
-            Integration::Full => Rule::triangle(4),
+            Integration::Full | Integration::BBar => Rule::triangle(4),
         }
     }
 }

@@ -32,7 +32,7 @@ const fn thin(number: i32, dimension: usize, nodes: usize) -> Kind {
 }
 
 /// The types that are read; nodes are numbered as in [`CellKind`].
-const KINDS: [Kind; 10] = [
+const KINDS: [Kind; 13] = [
     thin(15, 0, 1),
     thin(1, 1, 2),
     thin(8, 1, 3),
@@ -42,13 +42,16 @@ const KINDS: [Kind; 10] = [
     cell(16, CellKind::Quad8),
     cell(10, CellKind::Quad9),
     cell(4, CellKind::Tet4),
+    cell(11, CellKind::Tet10),
     cell(5, CellKind::Hex8),
+    cell(17, CellKind::Hex20),
+    cell(12, CellKind::Hex27),
 ];
 
 /// The types that are read, in words.
 pub(super) const SUPPORTED: &str = "points (15), lines of 2 (1) and 3 nodes (8), triangles of 3 (2) \
-     and 6 nodes (9), quadrangles of 4 (3), 8 (16) and 9 nodes (10), tetrahedra of 4 (4) and \
-     hexahedra of 8 nodes (5)";
+     and 6 nodes (9), quadrangles of 4 (3), 8 (16) and 9 nodes (10), tetrahedra of 4 (4) and 10 \
+     nodes (11), hexahedra of 8 (5), 20 (17) and 27 nodes (12)";
 
 /// The type of a number, if it is read.
 pub(super) fn kind(number: i32) -> Option<Kind> {
@@ -67,11 +70,8 @@ pub(super) fn name(number: i32) -> String {
     let name = match number {
         6 => "prism of 6 nodes",
         7 => "pyramid of 5 nodes",
-        11 => "tetrahedron of 10 nodes",
-        12 => "hexahedron of 27 nodes",
         13 => "prism of 18 nodes",
         14 => "pyramid of 14 nodes",
-        17 => "hexahedron of 20 nodes",
         18 => "prism of 15 nodes",
         19 => "pyramid of 13 nodes",
         20 | 22 | 24 => "incomplete triangle of high order",

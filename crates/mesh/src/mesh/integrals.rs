@@ -14,6 +14,8 @@ pub enum NodeKind {
     Corner,
     /// In the middle of an edge of a quadratic facet.
     Midside,
+    /// In the middle of a biquadratic facet.
+    Face,
 }
 
 /// Share of one node in a surface: what turns a pressure into nodal forces, and back.
@@ -25,7 +27,7 @@ pub struct Share<const D: usize> {
     pub area: f64,
     /// ∫ N_a n dS \[mm²\], n the outward unit normal: −p times this is the force of a pressure p.
     pub normal: [f64; D],
-    /// Corner or mid-side.
+    /// Place of the node on the facets.
     pub kind: NodeKind,
 }
 
@@ -88,15 +90,16 @@ impl<const D: usize> Mesh<D> {
                 let area = dot(&vector, &vector).sqrt();
                 let factor = sample.weight * hypothesis.measure(&sample.position(&positions));
                 for (local, (node, n)) in nodes.clone().zip(&sample.shape).enumerate() {
-                    let corner = local < kind.corner_count();
+                    // A facet has as many edges as corners; one of the plane is its own edge.
+                    let corners = kind.corner_count();
                     let share = shares.entry(node).or_insert(Share {
                         node,
                         area: 0.0,
                         normal: [0.0; D],
-                        kind: if corner {
-                            NodeKind::Corner
-                        } else {
-                            NodeKind::Midside
+                        kind: match local / corners {
+                            0 => NodeKind::Corner,
+                            1 => NodeKind::Midside,
+                            _ => NodeKind::Face,
                         },
                     });
                     share.area += n * factor * area;

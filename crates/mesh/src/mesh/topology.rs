@@ -4,6 +4,19 @@
 use super::{Facet, Mesh};
 use crate::MeshError;
 
+/// Nodes of a facet in increasing order: the same for the facets of both of its cells.
+pub(crate) type FacetKey = [usize; 9];
+
+/// `None` for more nodes than any facet has.
+pub(crate) fn facet_key(nodes: impl IntoIterator<Item = usize>) -> Option<FacetKey> {
+    let mut key = [usize::MAX; 9];
+    for (i, node) in nodes.into_iter().enumerate() {
+        *key.get_mut(i)? = node;
+    }
+    key.sort_unstable();
+    Some(key)
+}
+
 impl<const D: usize> Mesh<D> {
     /// Facets that belong to one cell only, sorted; two facets are the same if they have the same
     /// nodes.
@@ -11,15 +24,8 @@ impl<const D: usize> Mesh<D> {
         let facets = (0..self.cell_count()).flat_map(|cell| {
             (0..self.kind(cell).facets().len()).map(move |facet| Facet { cell, facet })
         });
-        let mut keyed: Vec<([usize; 4], Facet)> = facets
-            .map(|facet| {
-                let mut key = [usize::MAX; 4];
-                for (slot, node) in key.iter_mut().zip(self.facet_nodes(facet)) {
-                    *slot = node;
-                }
-                key.sort_unstable();
-                (key, facet)
-            })
+        let mut keyed: Vec<(FacetKey, Facet)> = facets
+            .filter_map(|facet| Some((facet_key(self.facet_nodes(facet))?, facet)))
             .collect();
         keyed.sort_unstable();
         let mut boundary: Vec<Facet> = keyed

@@ -1,7 +1,8 @@
 //! Nodes, cells and groups by the numbers of a file, made into a mesh; knows no file format.
 
 use crate::geometry::diagonal;
-use crate::read::ReadError;
+use crate::mesh::facet_key as key;
+use crate::read::{Loss, ReadError};
 use crate::sample::cell_samples;
 use crate::{CellKind, Facet, Mesh, MeshError};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -18,6 +19,8 @@ pub(crate) struct Draft {
     pub(crate) facet_groups: BTreeMap<String, Vec<Side>>,
     /// Numbers of nodes.
     pub(crate) node_groups: BTreeMap<String, Vec<u64>>,
+    /// What has been left out already.
+    pub(crate) losses: Vec<Loss>,
 }
 
 /// A cell, its nodes by number and in the order of its kind, of either orientation.
@@ -81,9 +84,10 @@ impl Draft {
     /// The mesh: nodes by increasing number, those of no cell left out, cells in their order here
     /// and turned round where their orientation is negative.
     ///
-    /// Groups left without member are left out; a name that also serves cells (or facets) gets
+    /// Groups left without member are left out and noted; a name that also serves cells (or facets) gets
     /// `.boundary` for facets and `.nodes` for nodes.
-    pub(crate) fn finish<const D: usize>(self) -> Result<Mesh<D>, ReadError> {
+    pub(crate) fn finish<const D: usize>(self) -> Result<(Mesh<D>, Vec<Loss>), ReadError> {
+        let mut losses = self.losses;
         let numbering = Numbering::new(self.nodes)?;
         let mut elements = Vec::with_capacity(self.cells.len());
         let mut cells = Vec::with_capacity(self.cells.len());
@@ -127,10 +131,20 @@ impl Draft {
             let position = numbering.position_for(element, node)?;
             Ok(places[position])
         })?;
-        let nodes = self.node_groups.into_iter().map(|(name, numbers)| {
-            let nodes = numbers.into_iter().filter_map(place).collect();
+        let nodes = self.node_groups.into_iter().map(|(name, mut numbers)| {
+            numbers.sort_unstable();
+            numbers.dedup();
+            let of = numbers.len();
+            let nodes: Vec<usize> = numbers.into_iter().filter_map(place).collect();
+            if !nodes.is_empty() && nodes.len() < of {
+                let lost = of - nodes.len();
+                let name = name.clone();
+                losses.push(Loss::Nodes { name, lost, of });
+            }
             (name, Members::Nodes(nodes))
         });
+        // Those of nodes are noted before groups that are lost as a whole.
+        let nodes: Vec<_> = nodes.collect();
         let cells = self
             .cell_groups
             .into_iter()
@@ -138,11 +152,12 @@ impl Draft {
         let facets = facets
             .into_iter()
             .map(|(name, facets)| (name, Members::Facets(facets)));
-        add(&mut mesh, cells.chain(facets).chain(nodes)).map_err(|source| ReadError::Mesh {
+        let groups = cells.chain(facets).chain(nodes);
+        add(&mut mesh, groups, &mut losses).map_err(|source| ReadError::Mesh {
             element: None,
             source,
         })?;
-        Ok(mesh)
+        Ok((mesh, losses))
     }
 }
 
@@ -174,7 +189,15 @@ const fn mirrored(kind: CellKind) -> &'static [usize] {
         CellKind::Quad8 => &[0, 3, 2, 1, 7, 6, 5, 4],
         CellKind::Quad9 => &[0, 3, 2, 1, 7, 6, 5, 4, 8],
         CellKind::Tet4 => &[0, 2, 1, 3],
+        CellKind::Tet10 => &[0, 2, 1, 3, 6, 5, 4, 7, 9, 8],
         CellKind::Hex8 => &[0, 3, 2, 1, 4, 7, 6, 5],
+        CellKind::Hex20 => &[
+            0, 3, 2, 1, 4, 7, 6, 5, 9, 8, 10, 13, 15, 11, 14, 12, 17, 16, 19, 18,
+        ],
+        CellKind::Hex27 => &[
+            0, 3, 2, 1, 4, 7, 6, 5, 9, 8, 10, 13, 15, 11, 14, 12, 17, 16, 19, 18, 20, 22, 21, 24,
+            23, 25, 26,
+        ],
     }
 }
 
@@ -279,16 +302,6 @@ fn placed(
     nodes.iter().map(|&node| place(element, node)).collect()
 }
 
-/// Nodes of a facet in increasing order; `None` for more nodes than any facet has.
-fn key(nodes: impl IntoIterator<Item = usize>) -> Option<[usize; 4]> {
-    let mut key = [usize::MAX; 4];
-    for (i, node) in nodes.into_iter().enumerate() {
-        *key.get_mut(i)? = node;
-    }
-    key.sort_unstable();
-    Some(key)
-}
-
 /// The facet of a cell turned round whose nodes are those of `facet` before.
 fn mirrored_facet(kind: CellKind, facet: Facet) -> Facet {
     let mirror = mirrored(kind);
@@ -306,6 +319,7 @@ fn mirrored_facet(kind: CellKind, facet: Facet) -> Facet {
 fn add<const D: usize>(
     mesh: &mut Mesh<D>,
     groups: impl Iterator<Item = (String, Members)>,
+    losses: &mut Vec<Loss>,
 ) -> Result<(), MeshError> {
     let mut taken = BTreeSet::new();
     let mut later = Vec::new();
@@ -315,11 +329,13 @@ fn add<const D: usize>(
         Members::Nodes(nodes) => mesh.add_node_group(name, nodes),
     };
     for (name, members) in groups {
-        let empty = match &members {
-            Members::Cells(items) | Members::Nodes(items) => items.is_empty(),
-            Members::Facets(items) => items.is_empty(),
+        let (empty, reason) = match &members {
+            Members::Cells(items) => (items.is_empty(), "it has no cell"),
+            Members::Facets(items) => (items.is_empty(), "it has no side of a cell"),
+            Members::Nodes(items) => (items.is_empty(), "none of its nodes belongs to a cell"),
         };
         if empty {
+            losses.push(Loss::Group { name, reason });
             continue;
         }
         if taken.insert(name.clone()) {

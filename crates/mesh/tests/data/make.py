@@ -2,7 +2,7 @@
 
     pip install gmsh && python make.py
 
-Every model comes in four encodings: MODEL.2a.msh (MSH 2.2, ASCII), .2b (2.2, binary), .4a (4.1,
+Models come in four encodings, solids of order 2 in the first and the last: MODEL.2a.msh (MSH 2.2, ASCII), .2b (2.2, binary), .4a (4.1,
 ASCII) and .4b (4.1, binary).
 """
 
@@ -149,6 +149,16 @@ def boxes():
         start(model)
         box(hexes)
         write(model)
+    for model, hexes, incomplete in [
+        ("tet10", False, 0),
+        ("hex20", True, 1),
+        ("hex27", True, 0),
+    ]:
+        start(model)
+        box(hexes)
+        gmsh.option.setNumber("Mesh.SecondOrderIncomplete", incomplete)
+        gmsh.model.mesh.setOrder(2)
+        write(model, ["2a", "4b"])
 
 
 def periodic():

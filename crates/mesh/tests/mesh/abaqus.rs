@@ -125,10 +125,40 @@ fn a_deck_of_two_bodies() {
     assert_eq!(mesh.nodes()[2], [2.0, 0.0]);
 }
 
+/// Reference nodes in the order of the manual: corners as here, then the middles of the edges.
+fn listed<const D: usize>(kind: CellKind) -> Vec<[f64; D]> {
+    let edges: &[[usize; 2]] = match kind {
+        CellKind::Tet10 => &[[1, 2], [2, 3], [3, 1], [1, 4], [2, 4], [3, 4]],
+        CellKind::Hex20 => &[
+            [1, 2],
+            [2, 3],
+            [3, 4],
+            [4, 1],
+            [5, 6],
+            [6, 7],
+            [7, 8],
+            [8, 5],
+            [1, 5],
+            [2, 6],
+            [3, 7],
+            [4, 8],
+        ],
+        _ => return reference_cell(kind),
+    };
+    let mut nodes = reference_cell::<D>(kind);
+    nodes.truncate(kind.corner_count());
+    for [a, b] in edges {
+        nodes.push(std::array::from_fn(|i| {
+            0.5 * (nodes[a - 1][i] + nodes[b - 1][i])
+        }));
+    }
+    nodes
+}
+
 /// One cell on its reference nodes, of a given type, in either orientation.
 fn single<const D: usize>(kind: CellKind, element: &str, mirror: bool) -> String {
     let mut text = "*NODE\n".to_owned();
-    for (number, x) in (1..).zip(reference_cell::<D>(kind)) {
+    for (number, x) in (1..).zip(listed::<D>(kind)) {
         let sign = if mirror { -1.0 } else { 1.0 };
         let x: Vec<String> = (0..D)
             .map(|i| (if i == 0 { sign * x[0] } else { x[i] }).to_string())
@@ -177,23 +207,19 @@ fn sides_are_numbered_as_in_the_manual() {
         has_sides::<2>(CellKind::Quad4, &format!("{family}4RH"), quadrangle);
         has_sides::<2>(CellKind::Quad8, &format!("{family}8R"), quadrangle);
     }
-    has_sides::<3>(
-        CellKind::Tet4,
-        "C3D4",
-        &[&[1, 2, 3], &[1, 4, 2], &[2, 4, 3], &[3, 4, 1]],
-    );
-    has_sides::<3>(
-        CellKind::Hex8,
-        "C3D8R",
-        &[
-            &[1, 2, 3, 4],
-            &[5, 8, 7, 6],
-            &[1, 5, 6, 2],
-            &[2, 6, 7, 3],
-            &[3, 7, 8, 4],
-            &[4, 8, 5, 1],
-        ],
-    );
+    let tetrahedron: &[&[usize]] = &[&[1, 2, 3], &[1, 4, 2], &[2, 4, 3], &[3, 4, 1]];
+    has_sides::<3>(CellKind::Tet4, "C3D4", tetrahedron);
+    has_sides::<3>(CellKind::Tet10, "C3D10M", tetrahedron);
+    let hexahedron: &[&[usize]] = &[
+        &[1, 2, 3, 4],
+        &[5, 8, 7, 6],
+        &[1, 5, 6, 2],
+        &[2, 6, 7, 3],
+        &[3, 7, 8, 4],
+        &[4, 8, 5, 1],
+    ];
+    has_sides::<3>(CellKind::Hex8, "C3D8R", hexahedron);
+    has_sides::<3>(CellKind::Hex20, "C3D20RH", hexahedron);
 }
 
 #[test]
@@ -223,9 +249,9 @@ fn what_is_wrong_is_said_with_its_line() {
         assert!(error.ends_with(expected), "{error}");
     }
     assert_eq!(
-        tail("*ELEMENT, TYPE=C3D20R").unwrap_err().to_string(),
+        tail("*ELEMENT, TYPE=C3D15").unwrap_err().to_string(),
         format!(
-            "line {line}: the element type C3D20R is not read here: use CPE3, CPE4, CPE6, CPE8, or \
+            "line {line}: the element type C3D15 is not read here: use CPE3, CPE4, CPE6, CPE8, or \
              CAX or CPS instead of CPE,"
         )
     );

@@ -128,6 +128,41 @@ fn triangles_cut_along_alternating_diagonals() {
     assert_eq!(cells_at_the_centre, 8);
 }
 
+#[test]
+fn nodes_of_solid_cells_are_where_their_reference_is() {
+    let lines = [0.0, 1.0, 4.0];
+    for kind in [CellKind::Hex20, CellKind::Hex27] {
+        let mesh = block3("b", kind, &lines, &lines, &lines).expect("valid");
+        for cell in 0..mesh.cell_count() {
+            let x: Vec<[f64; 3]> = mesh
+                .cell_nodes(cell)
+                .iter()
+                .map(|&a| mesh.nodes()[a])
+                .collect();
+            for (x_a, xi) in x.iter().zip(kind.reference_nodes()) {
+                let (low, high) = (x[0], x[6]);
+                let expected: [f64; 3] =
+                    std::array::from_fn(|i| low[i] + 0.5 * (xi[i] + 1.0) * (high[i] - low[i]));
+                assert_eq!(*x_a, expected);
+            }
+        }
+    }
+    let mesh = block3("b", CellKind::Tet10, &lines, &lines, &lines).expect("valid");
+    for cell in 0..mesh.cell_count() {
+        let x: Vec<[f64; 3]> = mesh
+            .cell_nodes(cell)
+            .iter()
+            .map(|&a| mesh.nodes()[a])
+            .collect();
+        for (x_a, xi) in x.iter().zip(CellKind::Tet10.reference_nodes()) {
+            let expected: [f64; 3] = std::array::from_fn(|i| {
+                x[0][i] + (0..3).map(|j| xi[j] * (x[j + 1][i] - x[0][i])).sum::<f64>()
+            });
+            assert_eq!(*x_a, expected);
+        }
+    }
+}
+
 /// Every facet belongs to one cell, on the boundary, or to two.
 fn assert_conforming<const D: usize>(mesh: &Mesh<D>) {
     let mut owners: BTreeMap<Vec<usize>, usize> = BTreeMap::new();
@@ -156,10 +191,18 @@ fn blocks_conform() {
     for kind in kinds(2) {
         assert_conforming(&block2("b", kind, &lines[0], &lines[1]).expect("valid"));
     }
-    for (kind, cells) in [(CellKind::Tet4, 72), (CellKind::Hex8, 12)] {
+    // 3 × 2 × 2 boxes.
+    for (kind, cells, nodes) in [
+        (CellKind::Tet4, 72, 36),
+        (CellKind::Tet10, 72, 175),
+        (CellKind::Hex8, 12, 36),
+        (CellKind::Hex20, 12, 111),
+        (CellKind::Hex27, 12, 175),
+    ] {
         let mesh = block3("b", kind, &lines[0], &lines[1], &lines[2]).expect("valid");
         assert_conforming(&mesh);
-        assert_eq!((mesh.nodes().len(), mesh.cell_count()), (36, cells));
+        let found = (mesh.nodes().len(), mesh.cell_count());
+        assert_eq!(found, (nodes, cells), "{kind}");
         let volume = mesh.measure(mesh.cell_group("b").expect("named"), &Solid);
         assert_relative_eq!(volume, 2.0 * 0.75 * 2.0, max_relative = 10.0 * ROUND_OFF);
         assert_eq!(mesh.bodies().len(), 1);

@@ -3,8 +3,8 @@
 use crate::ROUND_OFF;
 use approx::assert_abs_diff_eq;
 use moreau_mesh::{
-    CellKind, Element, FacetKind, Hex8, Integration, Line2, Line3, MeshError, Quad4, Quad8, Quad9,
-    Tet4, Tri3, Tri6,
+    CellKind, Element, FacetKind, Hex8, Hex20, Hex27, Integration, Line2, Line3, MeshError, Quad4,
+    Quad8, Quad9, Tet4, Tet10, Tri3, Tri6,
 };
 
 /// Points scattered over [−1, 1]^D; polynomial identities hold outside a reference cell too.
@@ -68,7 +68,7 @@ fn satisfies_the_contract<const D: usize, const N: usize, E: Element<D, N>>(
         "{missing:?} is interpolated"
     );
 
-    for integration in [Integration::Reduced, Integration::Full] {
+    for integration in RULES {
         let sum: f64 = E::rule(integration).points.iter().map(|p| p.weight).sum();
         assert_abs_diff_eq!(sum, volume, epsilon = ROUND_OFF);
     }
@@ -99,6 +99,9 @@ fn facets_are<
         }
     }
 }
+
+/// Every rule.
+const RULES: [Integration; 3] = [Integration::Reduced, Integration::Full, Integration::BBar];
 
 const QUADRATIC: [[i32; 2]; 6] = [[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]];
 
@@ -152,6 +155,46 @@ fn tet4_satisfies_the_contract() {
     facets_are::<3, 4, Tet4, 2, 3, Tri3>();
 }
 
+/// Exponents from 0 to 2 each, of which `keep` holds.
+fn quadratics(keep: impl Fn(&[i32; 3]) -> bool) -> Vec<[i32; 3]> {
+    let all = (0..27).map(|k| [k % 3, k / 3 % 3, k / 9]);
+    all.filter(|powers| keep(powers)).collect()
+}
+
+#[test]
+fn tet10_satisfies_the_contract() {
+    let complete = quadratics(|powers| powers.iter().sum::<i32>() <= 2);
+    assert_eq!(complete.len(), 10);
+    satisfies_the_contract::<3, 10, Tet10>(&complete, [1, 1, 1], 1.0 / 6.0);
+    facets_are::<3, 10, Tet10, 2, 6, Tri6>();
+}
+
+/// Serendipity: one coordinate at most enters with a square.
+#[test]
+fn hex20_satisfies_the_contract() {
+    let complete = quadratics(|powers| powers.iter().filter(|&&k| k == 2).count() <= 1);
+    assert_eq!(complete.len(), 20);
+    satisfies_the_contract::<3, 20, Hex20>(&complete, [2, 2, 0], 8.0);
+    facets_are::<3, 20, Hex20, 2, 8, Quad8>();
+}
+
+#[test]
+fn hex27_satisfies_the_contract() {
+    satisfies_the_contract::<3, 27, Hex27>(&quadratics(|_| true), [0, 3, 0], 8.0);
+    facets_are::<3, 27, Hex27, 2, 9, Quad9>();
+}
+
+/// The rule that is taken where none is asked for never is one that locks, but where there is no
+/// other.
+#[test]
+fn the_rule_of_a_kind_does_not_lock() {
+    for kind in CellKind::ALL {
+        let constant_strain = matches!(kind, CellKind::Tri3 | CellKind::Tet4);
+        assert_eq!(kind.locks(kind.integration()), constant_strain, "{kind}");
+    }
+    assert!(CellKind::Hex8.locks(Integration::Full) && !CellKind::Hex20.locks(Integration::Full));
+}
+
 #[test]
 fn hex8_satisfies_the_contract() {
     let trilinear: Vec<[i32; 3]> = (0..8).map(|k| [k & 1, k >> 1 & 1, k >> 2]).collect();
@@ -162,7 +205,9 @@ fn hex8_satisfies_the_contract() {
 #[test]
 fn rules_have_the_documented_number_of_points() {
     fn counts<const D: usize, const N: usize, E: Element<D, N>>() -> [usize; 2] {
-        [Integration::Reduced, Integration::Full].map(|rule| E::rule(rule).points.len())
+        let [reduced, full, b_bar] = RULES.map(|rule| E::rule(rule).points.len());
+        assert_eq!(b_bar, full, "the mean is that of the full rule");
+        [reduced, full]
     }
     assert_eq!(counts::<1, 2, Line2>(), [1, 2]);
     assert_eq!(counts::<1, 3, Line3>(), [2, 3]);
@@ -172,7 +217,10 @@ fn rules_have_the_documented_number_of_points() {
     assert_eq!(counts::<2, 8, Quad8>(), [4, 9]);
     assert_eq!(counts::<2, 9, Quad9>(), [4, 9]);
     assert_eq!(counts::<3, 4, Tet4>(), [1, 1]);
+    assert_eq!(counts::<3, 10, Tet10>(), [4, 14]);
     assert_eq!(counts::<3, 8, Hex8>(), [1, 8]);
+    assert_eq!(counts::<3, 20, Hex20>(), [8, 27]);
+    assert_eq!(counts::<3, 27, Hex27>(), [8, 27]);
 }
 
 #[test]

@@ -4,8 +4,8 @@
 use crate::ROUND_OFF;
 use approx::assert_abs_diff_eq;
 use moreau_mesh::{
-    CellKind, GroupKind, Hypothesis, Mesh, MeshError, Place, PlaneStrain, ReadError, Solid,
-    read_gmsh,
+    CellKind, Element, GroupKind, Hex8, Hypothesis, Mesh, MeshError, Place, PlaneStrain, ReadError,
+    Solid, Tet4, read_gmsh,
 };
 use std::f64::consts::PI;
 
@@ -187,8 +187,8 @@ fn without_physical_groups_all_is_one() {
     );
 }
 
-/// The box of 2 × 3 × 5 mm, cut at z = 2.
-fn is_the_box(mesh: &Mesh<3>) {
+/// The box of 2 × 3 × 5 mm, cut at z = 2, with so many nodes on its edge below the cut.
+fn is_the_box(mesh: &Mesh<3>, on_edge: usize) {
     assert!(mesh.group_names().eq([
         "base",
         "box",
@@ -220,7 +220,7 @@ fn is_the_box(mesh: &Mesh<3>) {
     };
     assert_eq!(nodes("tip"), [[2.0, 3.0, 5.0]]);
     let edge = nodes("edge");
-    assert_eq!(edge.len(), 3);
+    assert_eq!(edge.len(), on_edge);
     assert!(
         edge.iter()
             .all(|&[x, y, z]| x == 0.0 && y == 0.0 && z <= 2.0)
@@ -231,11 +231,49 @@ fn is_the_box(mesh: &Mesh<3>) {
 fn boxes_of_tetrahedra_and_hexahedra() {
     let tets = mesh(&files!("tet4", "2a", "2b", "4a", "4b"));
     assert!((0..tets.cell_count()).all(|cell| tets.kind(cell) == CellKind::Tet4));
-    is_the_box(&tets);
+    is_the_box(&tets, 3);
     let hexes = mesh(&files!("hex8", "2a", "2b", "4a", "4b"));
     assert!((0..hexes.cell_count()).all(|cell| hexes.kind(cell) == CellKind::Hex8));
     assert_eq!((hexes.cell_count(), hexes.nodes().len()), (16, 45));
-    is_the_box(&hexes);
+    is_the_box(&hexes, 3);
+}
+
+/// The order of the nodes is that of Gmsh: in another one cells of straight sides are inverted, or
+/// their facets are no facets.
+#[test]
+fn boxes_of_quadratic_tetrahedra_and_hexahedra() {
+    for (files, kind, nodes) in [
+        (files!("tet10", "2a", "4b"), CellKind::Tet10, None),
+        (files!("hex20", "2a", "4b"), CellKind::Hex20, Some(141)),
+        (files!("hex27", "2a", "4b"), CellKind::Hex27, Some(225)),
+    ] {
+        let mesh = mesh(&files);
+        assert!((0..mesh.cell_count()).all(|cell| mesh.kind(cell) == kind));
+        assert!(
+            nodes.is_none_or(|count| count == mesh.nodes().len()),
+            "{kind}"
+        );
+        is_the_box(&mesh, 5);
+        // Straight: every node is the image of its reference by the cell's trilinear map.
+        for cell in 0..mesh.cell_count() {
+            let x: Vec<[f64; 3]> = mesh
+                .cell_nodes(cell)
+                .iter()
+                .map(|&a| mesh.nodes()[a])
+                .collect();
+            for (x_a, xi) in x.iter().zip(kind.reference_nodes()) {
+                let xi = [xi[0], xi[1], xi[2]];
+                let corners = match kind {
+                    CellKind::Tet10 => Tet4::shape(xi).to_vec(),
+                    _ => Hex8::shape(xi).to_vec(),
+                };
+                for i in 0..3 {
+                    let straight: f64 = corners.iter().zip(&x).map(|(n, x)| n * x[i]).sum();
+                    assert_abs_diff_eq!(x_a[i], straight, epsilon = PLACING);
+                }
+            }
+        }
+    }
 }
 
 #[test]
@@ -438,12 +476,13 @@ fn what_is_wrong_is_said_with_its_place() {
         })
     );
     assert_eq!(
-        read(&["11 2 1 1 1 2 3 4 5 6 7 1 2 3"])
+        read(&["18 2 1 1 1 2 3 4 5 6 7 1 2 3"])
             .unwrap_err()
             .to_string(),
-        "line 23: the element type 11 (tetrahedron of 10 nodes) is not read here: use points (15), \
+        "line 23: the element type 18 (prism of 15 nodes) is not read here: use points (15), \
          lines of 2 (1) and 3 nodes (8), triangles of 3 (2) and 6 nodes (9), quadrangles of 4 (3), \
-         8 (16) and 9 nodes (10), tetrahedra of 4 (4) and hexahedra of 8 nodes (5)"
+         8 (16) and 9 nodes (10), tetrahedra of 4 (4) and 10 nodes (11), hexahedra of 8 (5), 20 \
+         (17) and 27 nodes (12)"
     );
     assert_eq!(
         read(&["2 2 1 1 1 2 7"]),

@@ -4,8 +4,8 @@ use crate::ROUND_OFF;
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use moreau_mandel::{Sym2, from_matrix};
 use moreau_mesh::{
-    Axisymmetric, Element, Hex8, Hypothesis, MeshError, PlaneStrain, Quad4, Quad8, Quad9, Solid,
-    Tet4, Tri3, Tri6,
+    Axisymmetric, Element, Hex8, Hex20, Hex27, Hypothesis, MeshError, PlaneStrain, Quad4, Quad8,
+    Quad9, Solid, Tet4, Tet10, Tri3, Tri6,
 };
 use nalgebra::{Matrix3, SVector};
 use proptest::prelude::*;
@@ -101,7 +101,10 @@ proptest! {
         rigid_modes_do_not_strain::<2, 3, Tri3, Axisymmetric>(&s);
         rigid_modes_do_not_strain::<2, 8, Quad8, Axisymmetric>(&s);
         rigid_modes_do_not_strain::<3, 4, Tet4, Solid>(&s);
+        rigid_modes_do_not_strain::<3, 10, Tet10, Solid>(&s);
         rigid_modes_do_not_strain::<3, 8, Hex8, Solid>(&s);
+        rigid_modes_do_not_strain::<3, 20, Hex20, Solid>(&s);
+        rigid_modes_do_not_strain::<3, 27, Hex27, Solid>(&s);
     }
 
     #[test]
@@ -112,7 +115,10 @@ proptest! {
         linear_fields_strain_exactly_in_the_plane::<8, Quad8>(&s, &a);
         linear_fields_strain_exactly_in_the_plane::<9, Quad9>(&s, &a);
         linear_fields_strain_exactly_in_space::<4, Tet4>(&s, &a);
+        linear_fields_strain_exactly_in_space::<10, Tet10>(&s, &a);
         linear_fields_strain_exactly_in_space::<8, Hex8>(&s, &a);
+        linear_fields_strain_exactly_in_space::<20, Hex20>(&s, &a);
+        linear_fields_strain_exactly_in_space::<27, Hex27>(&s, &a);
     }
 }
 

@@ -80,6 +80,50 @@ fn a_straight_quadratic_edge_shares_1_4_1() {
     }
 }
 
+/// What a uniform pressure asks of the nodes of a face, by their place: 4.6 of quadratic contact.
+#[test]
+fn a_flat_quadratic_face_shares_as_its_shape_functions_do() {
+    let line = uniform(0.0, 1.0, 1);
+    let shares = |kind| {
+        let mesh = block3("b", kind, &line, &line, &line).expect("valid");
+        let top = mesh.facet_group("b.top").expect("named");
+        mesh.facet_shares(&top[..1], &Solid)
+    };
+    let (corner, midside, face) = (NodeKind::Corner, NodeKind::Midside, NodeKind::Face);
+    for (kind, expected) in [
+        (CellKind::Hex8, vec![(corner, 4, 0.25)]),
+        (
+            CellKind::Hex20,
+            vec![(corner, 4, -1.0 / 12.0), (midside, 4, 1.0 / 3.0)],
+        ),
+        (
+            CellKind::Hex27,
+            vec![
+                (corner, 4, 1.0 / 36.0),
+                (midside, 4, 1.0 / 9.0),
+                (face, 1, 4.0 / 9.0),
+            ],
+        ),
+        // A triangle is half the square.
+        (CellKind::Tet4, vec![(corner, 3, 1.0 / 6.0)]),
+        (
+            CellKind::Tet10,
+            vec![(corner, 3, 0.0), (midside, 3, 1.0 / 6.0)],
+        ),
+    ] {
+        let shares = shares(kind);
+        let count: usize = expected.iter().map(|(_, count, _)| count).sum();
+        assert_eq!(shares.len(), count, "{kind}");
+        for (place, count, area) in expected {
+            let own: Vec<_> = shares.iter().filter(|s| s.kind == place).collect();
+            assert_eq!(own.len(), count, "{kind} {place:?}");
+            for share in own {
+                assert_abs_diff_eq!(share.area, area, epsilon = ROUND_OFF);
+            }
+        }
+    }
+}
+
 #[test]
 fn sides_have_their_area_and_outward_normal() {
     let lines = [

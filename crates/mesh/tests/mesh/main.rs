@@ -9,6 +9,7 @@ mod gmsh;
 mod groups;
 mod hypotheses;
 mod integrals;
+mod losses;
 mod pairing;
 mod pairing_space;
 mod quadrature;

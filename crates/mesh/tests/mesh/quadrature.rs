@@ -126,7 +126,7 @@ fn triangle_rules_are_exact_up_to_their_degree() {
 
 #[test]
 fn tetrahedron_rules_are_exact_up_to_their_degree() {
-    for (degree, count) in [(1, 1), (2, 4)] {
+    for (degree, count) in [(1, 1), (2, 4), (5, 14)] {
         let rule = Rule::tetrahedron(degree);
         assert_eq!(rule.points.len(), count);
         has_degree(&rule, degree as i32);

@@ -56,7 +56,13 @@ fn blocks_come_back_with_their_groups() {
         }
     }
     let z = uniform(0.0, 1.0, 2);
-    for kind in [CellKind::Tet4, CellKind::Hex8] {
+    for kind in [
+        CellKind::Tet4,
+        CellKind::Tet10,
+        CellKind::Hex8,
+        CellKind::Hex20,
+        CellKind::Hex27,
+    ] {
         let mesh = block3("b", kind, &x, &z, &z).expect("valid");
         let read = again(&mesh);
         assert_eq!(read.cell_count(), mesh.cell_count());

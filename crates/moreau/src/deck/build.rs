@@ -10,7 +10,10 @@ mod parts;
 use super::entries::{Analysis, Deck, Method};
 use super::finding::{Class, Findings};
 use crate::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
-use crate::driver::{Analysis as Cells, Driver, Increments, ModelError, Nesting, Settings, Step};
+use crate::driver::{
+    Analysis as Cells, Driver, Increments, ModelError, Nesting, RigidMotion, Settings, Step,
+    Support,
+};
 use crate::mesh::{Axisymmetric, CellKind, Mesh, PlaneStrain, Solid};
 use groups::Groups;
 pub(super) use parts::quadratures;
@@ -40,8 +43,9 @@ pub struct Body {
     pub cells: Vec<(CellKind, usize)>,
     /// Volume, in the units of the deck.
     pub volume: f64,
-    /// What resists its motion in each step: conditions with their directions, and contacts.
-    pub supports: Vec<Vec<String>>,
+    /// What stops each of its rigid motions, by step; groups are those of the deck, contacts counted
+    /// in its order.
+    pub motions: Vec<Vec<RigidMotion>>,
 }
 
 /// A step and how it is cut.
@@ -65,6 +69,9 @@ pub struct Setup<const D: usize> {
     pub held: Vec<[String; 2]>,
     /// Tools, in the order of the deck.
     pub tools: Vec<String>,
+    /// Surfaces of bodies that touch each other and are not held: each once, in the order of the
+    /// contacts.
+    pub surfaces: Vec<String>,
     /// Groups of the mesh.
     pub groups: Vec<GroupFacts>,
     /// Bodies: cells connected through shared nodes.
@@ -152,16 +159,18 @@ fn setup<const D: usize, H: Cells<D>>(
     if !possible {
         return None;
     }
-    free_motions(&driver, deck, &stages, &groups, findings);
+    let supports = supports(&driver, deck, &stages, &groups, findings);
     conditions::doubts(deck, findings);
     conditions::inner_surfaces(deck, &groups, findings);
+    let held = conditions::held(deck, &groups);
     Some(Setup {
         driver,
         stages,
-        held: conditions::held(deck, &groups),
+        surfaces: surfaces(deck, &held),
+        held,
         tools: deck.tools.iter().map(|t| t.name.value.clone()).collect(),
         groups: groups.facts(&hypothesis),
-        bodies: groups.bodies(deck, &hypothesis),
+        bodies: groups.bodies(&hypothesis, &supports),
     })
 }
 
@@ -228,29 +237,45 @@ fn driver<const D: usize>(
     }
 }
 
-/// Notes rigid motions that nothing resists, step by step.
-fn free_motions<const D: usize>(
+/// Surfaces of the contacts between bodies, without those whose name the history has already.
+fn surfaces(deck: &Deck, held: &[[String; 2]]) -> Vec<String> {
+    let is_tool = |name: &String| deck.tools.iter().any(|t| t.name.value == *name);
+    let is_held = |name: &String| held.iter().any(|[n, _]| n == name);
+    let mut list: Vec<String> = Vec::new();
+    for contact in deck.contacts.iter().filter(|c| !is_tool(&c.against.value)) {
+        for name in [&contact.surface.value, &contact.against.value] {
+            if !list.contains(name) && !is_held(name) {
+                list.push(name.clone());
+            }
+        }
+    }
+    list
+}
+
+/// What stops the rigid motions of every body, step by step; motions that nothing stops are errors.
+fn supports<const D: usize>(
     driver: &Driver<D>,
     deck: &Deck,
     stages: &[Stage<D>],
     groups: &Groups<D>,
     findings: &mut Findings,
-) {
+) -> Vec<Vec<Support>> {
+    let mut all = Vec::new();
     for (stage, entry) in stages.iter().zip(&deck.steps) {
-        let Ok(loading) = driver.loading(&stage.step) else {
-            return;
-        };
-        if let Err(error) = driver.check_supports(&loading) {
-            let name = match &error {
-                ModelError::FreeRigidMotion { cell, .. } => {
-                    format!(", body \"{}\"", groups.origin(deck, *cell).0)
-                }
-                _ => String::new(),
+        // The step has been loaded already.
+        let supports = driver.supports(&stage.step).unwrap_or_default();
+        for support in supports.iter().filter(|s| !s.free.is_empty()) {
+            let error = ModelError::FreeRigidMotion {
+                cell: support.cell,
+                motion: support.free.join(", "),
             };
-            let message = format!("step \"{}\"{name}: {error}", entry.name.value);
+            let (name, _) = groups.origin(deck, support.cell);
+            let message = format!("step \"{}\", body \"{name}\": {error}", entry.name.value);
             findings
                 .error(&entry.name.span, message, "in this step")
                 .about(Class::Bodies);
         }
+        all.push(supports);
     }
+    all
 }

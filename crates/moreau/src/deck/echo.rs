@@ -27,6 +27,7 @@ impl Deck {
         match quadratures(material)[..] {
             [(Integration::Reduced, _)] => "reduced",
             [(Integration::Full, _)] => "full",
+            [(Integration::BBar, _)] => "b-bar",
             _ => BY_ELEMENT,
         }
     }

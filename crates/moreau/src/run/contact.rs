@@ -26,6 +26,7 @@ pub(super) fn rows<const D: usize>(
         let kind = match c.kind {
             NodeKind::Corner => "corner",
             NodeKind::Midside => "midside",
+            NodeKind::Face => "face",
         };
         let mut fields = vec![
             stage.to_string(),

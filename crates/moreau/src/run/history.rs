@@ -1,60 +1,9 @@
 //! `history.csv`: a row for each converged increment; contact points have a file of their own.
 
 use super::number;
+use crate::columns::{Unit, columns};
 use crate::deck::{Setup, Units};
 use crate::driver::{Driver, StepReport};
-
-const AXES: [&str; 3] = ["x", "y", "z"];
-
-/// Columns of every history, each with the unit that it has.
-const FIXED: [(&str, Unit); 20] = [
-    ("step", Unit::None),
-    ("increment", Unit::None),
-    ("time", Unit::None),
-    ("newton_iterations", Unit::None),
-    ("contact_iterations", Unit::None),
-    ("cuts", Unit::None),
-    ("open", Unit::None),
-    ("stick", Unit::None),
-    ("slip", Unit::None),
-    ("plastic_fraction", Unit::None),
-    ("external_work", Unit::Energy),
-    ("elastic_energy", Unit::Energy),
-    ("plastic_dissipation", Unit::Energy),
-    ("friction_dissipation", Unit::Energy),
-    ("penalty_energy", Unit::Energy),
-    ("bipotential_gap", Unit::Energy),
-    ("penetration", Unit::Length),
-    ("excess_force", Unit::Force),
-    ("out_of_balance", Unit::Force),
-    ("factorisations", Unit::None),
-];
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Unit {
-    None,
-    Length,
-    Force,
-    Energy,
-}
-
-/// Names of the columns of `history.csv`, without units.
-pub fn columns<const D: usize>(setup: &Setup<D>) -> Vec<String> {
-    let names = setup.held.iter().map(|[n, _]| n).chain(&setup.tools);
-    names_of(D, names).into_iter().map(|(n, _)| n).collect()
-}
-
-fn names_of<'a>(dimension: usize, named: impl Iterator<Item = &'a String>) -> Vec<(String, Unit)> {
-    let mut list: Vec<(String, Unit)> = FIXED.iter().map(|(n, u)| ((*n).into(), *u)).collect();
-    for name in named {
-        for (what, unit) in [("force", Unit::Force), ("u", Unit::Length)] {
-            for axis in &AXES[..dimension] {
-                list.push((format!("{what}.{name}.{axis}"), unit));
-            }
-        }
-    }
-    list
-}
 
 /// Where an increment is.
 pub(super) struct Place<'a> {
@@ -70,34 +19,26 @@ pub(super) struct History {
     columns: Vec<(String, Unit)>,
     held: Vec<[String; 2]>,
     tools: Vec<String>,
+    surfaces: Vec<String>,
     /// The last row; empty before the first.
     pub(super) last: Vec<f64>,
 }
 
 impl History {
-    pub(super) fn new(
-        units: Units,
-        dimension: usize,
-        held: Vec<[String; 2]>,
-        tools: Vec<String>,
-    ) -> Self {
+    pub(super) fn new<const D: usize>(units: Units, setup: &Setup<D>) -> Self {
         Self {
             units,
-            columns: names_of(dimension, held.iter().map(|[n, _]| n).chain(&tools)),
-            held,
-            tools,
+            columns: columns(setup),
+            held: setup.held.clone(),
+            tools: setup.tools.clone(),
+            surfaces: setup.surfaces.clone(),
             last: Vec::new(),
         }
     }
 
     /// The header: a name, and its unit in brackets if it has one.
     pub(super) fn header(&self) -> String {
-        let label = |(name, unit): &(String, Unit)| match unit {
-            Unit::None => name.clone(),
-            Unit::Length => format!("{name} [{}]", self.units.length()),
-            Unit::Force => format!("{name} [{}]", self.units.force()),
-            Unit::Energy => format!("{name} [{}]", self.units.energy()),
-        };
+        let label = |(name, unit): &(String, Unit)| unit.label(name, self.units);
         self.columns.iter().map(label).collect::<Vec<_>>().join(",")
     }
 
@@ -138,16 +79,17 @@ impl History {
                 true => force.map_or(f64::NAN, |f| f[i]),
                 false => 0.0,
             }));
-            let list = driver.mesh().node_group(nodes).unwrap_or_default();
-            row.extend((0..D).map(|i| {
-                let sum: f64 = list.iter().map(|&n| driver.displacement(n)[i]).sum();
-                sum / list.len() as f64
-            }));
+            row.extend(mean_displacement(driver, nodes));
         }
         for (tool, motion) in self.tools.iter().zip(&driver.applied().tools) {
             let force = driver.tool_force(tool).ok();
             row.extend((0..D).map(|i| force.map_or(f64::NAN, |f| f[i])));
             row.extend(motion);
+        }
+        for surface in &self.surfaces {
+            let force = driver.contact_force(surface).ok();
+            row.extend((0..D).map(|i| force.map_or(f64::NAN, |f| f[i])));
+            row.extend(mean_displacement(driver, surface));
         }
         let line: Vec<String> = row.iter().map(|&v| number(v)).collect();
         self.last = row;
@@ -169,4 +111,13 @@ impl History {
         let index = self.names().position(|n| n == name)?;
         self.last.get(index).copied()
     }
+}
+
+/// Mean displacement of the nodes of a group.
+fn mean_displacement<const D: usize>(driver: &Driver<D>, group: &str) -> [f64; D] {
+    let nodes = driver.mesh().node_group(group).unwrap_or_default();
+    std::array::from_fn(|i| {
+        let sum: f64 = nodes.iter().map(|&n| driver.displacement(n)[i]).sum();
+        sum / nodes.len() as f64
+    })
 }

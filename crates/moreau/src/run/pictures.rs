@@ -7,6 +7,7 @@ use super::vtu::Array;
 use crate::deck::{Deck, Units};
 use crate::mesh::Mesh;
 use crate::plot::{Chart, MeshPicture, Style};
+use std::collections::HashSet;
 use std::path::Path;
 
 /// All forces that are not zero throughout, over time; nothing if there is nothing to draw.
@@ -35,39 +36,79 @@ pub(super) fn forces(history: &Table, deck: &Deck) -> Option<String> {
     chart.to_svg().ok()
 }
 
-/// Rows of `contact.csv` of one increment.
-pub(super) fn contact_table(directory: &Path, increment: usize) -> Result<Table, RunError> {
-    let wanted = increment.to_string();
+/// Rows of `contact.csv` of some increments.
+pub(super) fn contact_table(directory: &Path, increments: &[usize]) -> Result<Table, RunError> {
+    let wanted: HashSet<String> = increments.iter().map(usize::to_string).collect();
     Table::read(&directory.join("contact.csv"), |names, fields| {
         let column = names.iter().position(|n| n == "increment");
-        column.is_some_and(|k| fields[k] == wanted)
+        column.is_some_and(|k| wanted.contains(fields[k]))
     })
 }
 
-/// Pressure and shear along the contact surfaces, by the coordinate along which they extend.
-pub(super) fn tractions(contacts: &Table, deck: &Deck) -> Option<String> {
-    let places = [contacts.numbers("x"), contacts.numbers("y")];
-    let extent = |values: &[f64]| {
+/// A contact surface and the coordinate along which it is drawn.
+pub(super) struct ContactLine {
+    /// The surface.
+    pub(super) name: String,
+    /// Coordinate of its points, increasing.
+    pub(super) at: Vec<f64>,
+    /// Pressure and shear there.
+    pub(super) tractions: [Vec<f64>; 2],
+}
+
+/// Names of the tractions of a [`ContactLine`].
+pub(super) const TRACTIONS: [&str; 2] = ["pressure", "shear"];
+
+/// The coordinate along which contact surfaces extend, 0 or 1.
+pub(super) fn contact_axis(contacts: &Table) -> usize {
+    let extent = |name: &str| {
+        let values = contacts.numbers(name);
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
     };
-    let axis = usize::from(extent(&places[1]) > extent(&places[0]));
-    let label = format!("{} [{}]", ["x", "y"][axis], deck.units.length());
-    let traction = format!("traction [{}]", deck.units.stress());
+    usize::from(extent("y") > extent("x"))
+}
+
+/// Tractions along the surfaces in one increment of a table, by a coordinate.
+pub(super) fn contact_lines(contacts: &Table, increment: usize, axis: usize) -> Vec<ContactLine> {
+    let wanted = increment.to_string();
+    let (rows, surfaces) = (contacts.texts("increment"), contacts.texts("contact"));
+    let place = contacts.numbers(["x", "y"][axis]);
+    let values = ["p_n", "p_1"].map(|name| contacts.numbers(name));
+    let own: Vec<usize> = (0..rows.len()).filter(|&k| rows[k] == wanted).collect();
+    let line = |own: &[usize]| {
+        let mut line = own.to_vec();
+        line.sort_by(|&a, &b| place[a].total_cmp(&place[b]));
+        ContactLine {
+            name: surfaces[own[0]].to_owned(),
+            at: line.iter().map(|&k| place[k]).collect(),
+            tractions: values
+                .each_ref()
+                .map(|v| line.iter().map(|&k| v[k]).collect()),
+        }
+    };
+    own.chunk_by(|&a, &b| surfaces[a] == surfaces[b])
+        .map(line)
+        .collect()
+}
+
+/// Labels of the coordinate and of the tractions.
+pub(super) fn contact_labels(axis: usize, units: Units) -> [String; 2] {
+    [
+        format!("{} [{}]", ["x", "y"][axis], units.length()),
+        format!("traction [{}]", units.stress()),
+    ]
+}
+
+/// Pressure and shear along the contact surfaces in one increment.
+pub(super) fn tractions(contacts: &Table, increment: usize, deck: &Deck) -> Option<String> {
+    let axis = contact_axis(contacts);
+    let [label, traction] = contact_labels(axis, deck.units);
     let mut chart = Chart::new(&deck.title, label, traction);
-    let surfaces = contacts.texts("contact");
-    let mut names = surfaces.clone();
-    names.dedup();
-    for surface in names {
-        let mut line: Vec<usize> = (0..surfaces.len())
-            .filter(|&k| surfaces[k] == surface)
-            .collect();
-        line.sort_by(|&a, &b| places[axis][a].total_cmp(&places[axis][b]));
-        for (column, name) in [("p_n", "pressure"), ("p_1", "shear")] {
-            let values = contacts.numbers(column);
-            let points: Vec<[f64; 2]> =
-                line.iter().map(|&k| [places[axis][k], values[k]]).collect();
-            chart = chart.with(format!("{surface}, {name}"), Style::LinePoints, points);
+    for line in contact_lines(contacts, increment, axis) {
+        for (name, values) in TRACTIONS.iter().zip(&line.tractions) {
+            let points: Vec<[f64; 2]> = line.at.iter().zip(values).map(|(&x, &v)| [x, v]).collect();
+            let name = format!("{}, {name}", line.name);
+            chart = chart.with(name, Style::LinePoints, points);
         }
     }
     chart.to_svg().ok()
@@ -99,11 +140,39 @@ pub(super) fn label(name: &str, units: Units) -> String {
     format!("{name} [{unit}]")
 }
 
-/// A field at every node, by name: a scalar; the length of a vector; or a component, as in
-/// `displacement.x`.
+/// Suffixes of the components of vectors, and of stresses in the order of VTK.
+const VECTOR: [&str; 3] = ["x", "y", "z"];
+const TENSOR: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
+
+fn suffixes(array: &Array) -> &'static [&'static str] {
+    match array.components {
+        3 => &VECTOR,
+        6 => &TENSOR,
+        _ => &[],
+    }
+}
+
+/// Names of all that [`field`] finds in some arrays.
+pub(super) fn fields(arrays: &[Array]) -> Vec<String> {
+    let mut names = Vec::new();
+    for array in arrays {
+        if array.components <= 3 {
+            names.push(array.name.clone());
+        }
+        names.extend(
+            suffixes(array)
+                .iter()
+                .map(|s| format!("{}.{s}", array.name)),
+        );
+    }
+    names
+}
+
+/// A field at every point, by name: a scalar; the length of a vector; or a component, as in
+/// `displacement.x` or `stress.xy`. The first points are the nodes of the mesh.
 pub(super) fn field(arrays: &[Array], name: &str) -> Option<Vec<f64>> {
     let of = |name: &str| arrays.iter().find(|a| a.name == name);
-    if let Some(array) = of(name) {
+    if let Some(array) = of(name).filter(|a| a.components <= 3) {
         let length = |v: &[f64]| match v {
             [x] => *x,
             v => v.iter().map(|x| x * x).sum::<f64>().sqrt(),
@@ -112,9 +181,9 @@ pub(super) fn field(arrays: &[Array], name: &str) -> Option<Vec<f64>> {
     }
     let (name, component) = name.rsplit_once('.')?;
     let array = of(name)?;
-    let k = ["x", "y", "z"].iter().position(|c| *c == component)?;
+    let k = suffixes(array).iter().position(|c| *c == component)?;
     let value = |v: &[f64]| v.get(k).copied().unwrap_or(0.0);
-    (k < array.components).then(|| array.values.chunks(array.components).map(value).collect())
+    Some(array.values.chunks(array.components).map(value).collect())
 }
 
 /// Displacement of every node in the plane.
@@ -140,7 +209,10 @@ pub(super) fn deformed(
     name: &str,
     magnification: Option<f64>,
 ) -> Option<String> {
-    let displacement = displacement(arrays)?;
+    let mut displacement = displacement(arrays)?;
+    let mut values = field(arrays, name)?;
+    displacement.truncate(mesh.nodes().len());
+    values.truncate(mesh.nodes().len());
     let largest = displacement
         .iter()
         .map(|u| u[0].hypot(u[1]))
@@ -148,7 +220,7 @@ pub(super) fn deformed(
     let magnification = magnification.unwrap_or(usual_magnification(mesh.size(), largest));
     MeshPicture::new(mesh, &deck.title)
         .deformed(displacement, magnification)
-        .field(label(name, deck.units), field(arrays, name)?)
+        .field(label(name, deck.units), values)
         .outline()
         .to_svg()
         .ok()

@@ -1,12 +1,17 @@
 //! `report.html`: a run on one page that needs nothing but a browser; its template is beside it.
 
 use super::files::read_text;
-use super::pictures::{field, forces, label, tractions, usual_field, usual_magnification};
+use super::pictures::{
+    ContactLine, TRACTIONS, contact_axis, contact_labels, contact_lines, field, fields, forces,
+    label, tractions, usual_field, usual_magnification,
+};
 use super::table::Table;
 use super::vtu::{Array, bodies, read_point_data};
 use super::{RunError, pictures};
 use crate::deck::Deck;
-use crate::mesh::Mesh;
+use crate::driver::Driver;
+use crate::mesh::{Facet, Mesh};
+use crate::recovery::split;
 use minijinja::value::Value;
 use minijinja::{Environment, context};
 use serde_json::{Map, json};
@@ -17,14 +22,15 @@ const MOST_VALUES: usize = 8_000_000;
 
 /// The page of a run. `last` is the end of the run where no file has it.
 pub(super) fn report<const D: usize>(
-    mesh: &Mesh<D>,
+    driver: &Driver<D>,
     deck: &Deck,
     directory: &Path,
     last: Option<&[Array]>,
 ) -> Result<String, RunError> {
     let history = Table::read(&directory.join("history.csv"), |_, _| true)?;
     let increment = history.texts("increment").last().copied().unwrap_or("0");
-    let contacts = pictures::contact_table(directory, increment.parse().unwrap_or(0))?;
+    let increment = increment.parse().unwrap_or(0);
+    let contacts = pictures::contact_table(directory, &[increment])?;
     let resolved = read_text(&directory.join("deck.resolved.toml"))?;
     let run = read_text(&directory.join("run.json"))?;
     let run: serde_json::Value = serde_json::from_str(&run).unwrap_or_default();
@@ -41,9 +47,9 @@ pub(super) fn report<const D: usize>(
         certificate => certificate(&history, deck),
         deck => resolved,
         history => forces(&history, deck),
-        contact => if D == 2 { tractions(&contacts, deck) } else { None },
+        contact => if D == 2 { tractions(&contacts, increment, deck) } else { None },
         // No name in it may end the script.
-        data => viewer(mesh, deck, directory, last)?.to_string().replace("</", "<\\/"),
+        data => viewer(driver, deck, directory, (increment, last))?.to_string().replace("</", "<\\/"),
     };
     let mut environment = Environment::new();
     let html = environment
@@ -166,34 +172,36 @@ fn certificate(history: &Table, deck: &Deck) -> Value {
 /// What the viewer draws: nodes, faces and, for each frame, displacements and fields in 16 bits
 /// between their extremes.
 fn viewer<const D: usize>(
-    mesh: &Mesh<D>,
+    driver: &Driver<D>,
     deck: &Deck,
     directory: &Path,
-    last: Option<&[Array]>,
+    (end, last): (usize, Option<&[Array]>),
 ) -> Result<serde_json::Value, RunError> {
     let all = bodies(directory);
-    let per_frame = mesh.nodes().len() * (D + 4);
+    let mesh = driver.mesh();
+    let (points, cells) = split(mesh, driver.materials());
+    let per_frame = points.len() * (D + 9);
     let stride = (all.len() * per_frame).div_ceil(MOST_VALUES).max(1);
     let mut frames = Vec::new();
     let mut largest = 0.0f64;
     let mut names: Vec<String> = Vec::new();
     let mut add = |label: String, arrays: &[Array]| {
-        let count = mesh.nodes().len();
-        let fits = |a: &Array| a.values.len() == a.components * count;
+        let fits = |a: &Array| a.values.len() == a.components * points.len();
         if !arrays.iter().all(fits) {
             return;
         }
         let mut values = Map::new();
-        for k in 0..D {
-            let axis = ["x", "y", "z"][k];
-            let u = field(arrays, &format!("displacement.{axis}")).unwrap_or_default();
-            largest = u.iter().fold(largest, |m, v| m.max(v.abs()));
-            values.insert(format!("displacement.{axis}"), packed(&u));
-        }
-        for array in arrays {
-            if let Some(v) = field(arrays, &array.name) {
-                values.insert(array.name.clone(), packed(&v));
+        for name in fields(arrays) {
+            // What is always zero in the plane.
+            let out_of_plane = ["displacement.z", "stress.yz", "stress.xz"];
+            if D == 2 && out_of_plane.contains(&name.as_str()) {
+                continue;
             }
+            let v = field(arrays, &name).unwrap_or_default();
+            if name.starts_with("displacement.") {
+                largest = v.iter().fold(largest, |m, v| m.max(v.abs()));
+            }
+            values.insert(name, packed(&v));
         }
         for name in values.keys() {
             if !names.contains(name) {
@@ -203,14 +211,17 @@ fn viewer<const D: usize>(
         frames.push(json!({ "label": label, "values": values }));
     };
     let count = all.len();
+    let mut increments = Vec::new();
     for (k, (number, time, path)) in all.into_iter().enumerate() {
         // The last frame is always there.
         if (count - 1 - k).is_multiple_of(stride) {
             let arrays = read_point_data(&path)?;
+            increments.push(number);
             add(format!("increment {number}, time {time:.4}"), &arrays);
         }
     }
     if let (0, Some(arrays)) = (count, last) {
+        increments.push(end);
         add("end".into(), arrays);
     }
     let labels: Map<String, serde_json::Value> = names
@@ -219,9 +230,9 @@ fn viewer<const D: usize>(
         .collect();
     Ok(json!({
         "dimension": D,
-        "nodes": (0..D).map(|i| packed(&mesh.nodes().iter().map(|x| x[i]).collect::<Vec<_>>()))
+        "nodes": (0..D).map(|i| packed(&points.iter().map(|&n| mesh.nodes()[n][i]).collect::<Vec<_>>()))
             .collect::<Vec<_>>(),
-        "faces": faces(mesh),
+        "faces": faces(mesh, &cells),
         "fields": names,
         "labels": labels,
         "usual": usual_field(deck),
@@ -229,6 +240,32 @@ fn viewer<const D: usize>(
         "colours": crate::plot::colours(),
         "length": deck.units.length(),
         "frames": frames,
+        "contact": if D == 2 { contact(deck, directory, &increments)? } else { json!(null) },
+    }))
+}
+
+/// Tractions along the contact surfaces in every frame; null without contact.
+fn contact(
+    deck: &Deck,
+    directory: &Path,
+    increments: &[usize],
+) -> Result<serde_json::Value, RunError> {
+    let table = pictures::contact_table(directory, increments)?;
+    let axis = contact_axis(&table);
+    let frame = |&increment: &usize| contact_lines(&table, increment, axis);
+    let frames: Vec<Vec<ContactLine>> = increments.iter().map(frame).collect();
+    // The points of a surface are the same in all frames.
+    let Some(first) = frames.first().filter(|lines| !lines.is_empty()) else {
+        return Ok(json!(null));
+    };
+    let surface = |line: &ContactLine| json!({ "name": line.name, "at": packed(&line.at) });
+    let values = |line: &ContactLine| line.tractions.each_ref().map(|v| packed(v));
+    let values = |lines: &Vec<ContactLine>| lines.iter().map(values).collect::<Vec<_>>();
+    Ok(json!({
+        "labels": contact_labels(axis, deck.units),
+        "tractions": TRACTIONS,
+        "surfaces": first.iter().map(surface).collect::<Vec<_>>(),
+        "frames": frames.iter().map(values).collect::<Vec<_>>(),
     }))
 }
 
@@ -269,13 +306,13 @@ fn base64(bytes: &[u8]) -> String {
     text
 }
 
-/// What is seen of the cells: in the plane all of them, in space those of their facets that belong
+/// What is seen of the cells, by their points: in the plane all of them, in space those of their facets that belong
 /// to one cell only. Nodes around each face, mid-side nodes between their corners, and the node in
 /// its middle after them if it has one.
-fn faces<const D: usize>(mesh: &Mesh<D>) -> Vec<Vec<usize>> {
+fn faces<const D: usize>(mesh: &Mesh<D>, cells: &[Vec<usize>]) -> Vec<Vec<usize>> {
     if D == 2 {
         let face = |cell: usize| {
-            let nodes = mesh.cell_nodes(cell);
+            let nodes = &cells[cell];
             let mut face: Vec<usize> = Vec::new();
             for facet in mesh.kind(cell).facets() {
                 face.push(nodes[facet[0]]);
@@ -286,8 +323,9 @@ fn faces<const D: usize>(mesh: &Mesh<D>) -> Vec<Vec<usize>> {
         };
         return (0..mesh.cell_count()).map(face).collect();
     }
-    let face = |facet| {
-        let nodes: Vec<usize> = mesh.facet_nodes(facet).collect();
+    let face = |facet: Facet| {
+        let own = mesh.kind(facet.cell).facets()[facet.facet].iter();
+        let nodes: Vec<usize> = own.map(|&k| cells[facet.cell][k]).collect();
         let corners = if nodes.len().is_multiple_of(3) && nodes.len() < 9 {
             3
         } else {

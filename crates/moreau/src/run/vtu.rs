@@ -2,8 +2,9 @@
 //! binary data, compressed.
 
 use super::RunError;
+use super::body::body;
 use super::files::{Stream, read_text, write_file};
-use super::view::{NodalField, View};
+use super::view::View;
 use crate::driver::{ContactRecord, Driver};
 use crate::laws::Status;
 use crate::mesh::{CellKind, Facet, FacetKind, Mesh};
@@ -79,7 +80,7 @@ impl Collection {
         Driver<D>: View,
     {
         let number = driver.increments();
-        let mut files = vec![(0, format!("body_{number:05}.vtu"), body(driver))];
+        let mut files = vec![(0, format!("body_{number:05}.vtu"), body(driver).0)];
         if let Some(contact) = surface(driver) {
             files.push((1, format!("contact_{number:05}.vtu"), contact));
         }
@@ -112,11 +113,14 @@ impl Collection {
     where
         Driver<D>: View,
     {
-        let mut grid = body(driver);
+        let (mut grid, nodes) = body(driver);
         let vector = |name: &str, values: &[f64]| Array {
             name: name.to_owned(),
             components: 3,
-            values: values.chunks(D).flat_map(three).collect(),
+            values: nodes
+                .iter()
+                .flat_map(|n| three(&values[D * n..][..D]))
+                .collect(),
         };
         grid.point_data[0] = vector("displacement", displacement);
         grid.point_data.push(vector("out_of_balance", residual));
@@ -199,12 +203,12 @@ fn decompressed(bytes: &[u8]) -> Option<Vec<u8>> {
 }
 
 /// An unstructured grid.
-struct Grid {
-    points: Vec<[f64; 3]>,
+pub(super) struct Grid {
+    pub(super) points: Vec<[f64; 3]>,
     /// Nodes and VTK type of every cell.
-    cells: Vec<(Vec<i64>, u8)>,
-    point_data: Vec<Array>,
-    cell_data: Vec<Array>,
+    pub(super) cells: Vec<(Vec<i64>, u8)>,
+    pub(super) point_data: Vec<Array>,
+    pub(super) cell_data: Vec<Array>,
 }
 
 /// Values of points or cells.
@@ -216,16 +220,8 @@ pub(super) struct Array {
 }
 
 /// Fills up with zeros to three components.
-fn three(v: &[f64]) -> [f64; 3] {
+pub(super) fn three(v: &[f64]) -> [f64; 3] {
     std::array::from_fn(|i| v.get(i).copied().unwrap_or(0.0))
-}
-
-/// Values at the nodes of the body of a driver.
-pub(super) fn nodal<const D: usize>(driver: &Driver<D>) -> Vec<Array>
-where
-    Driver<D>: View,
-{
-    body(driver).point_data
 }
 
 /// A mesh without results: its groups as arrays of 0 and 1, of cells for groups of cells and of
@@ -261,43 +257,8 @@ pub(crate) fn vtu_of_mesh<const D: usize>(mesh: &Mesh<D>) -> Vec<u8> {
 
 /// Nodes and VTK type of all cells.
 fn cells<const D: usize>(mesh: &Mesh<D>) -> Vec<(Vec<i64>, u8)> {
-    let cell = |c: usize| {
-        let nodes = mesh.cell_nodes(c).iter().map(|&n| n as i64).collect();
-        (nodes, cell_type(mesh.kind(c)))
-    };
+    let cell = |c: usize| vtk_cell(mesh.kind(c), mesh.cell_nodes(c));
     (0..mesh.cell_count()).map(cell).collect()
-}
-
-fn body<const D: usize>(driver: &Driver<D>) -> Grid
-where
-    Driver<D>: View,
-{
-    let mesh = driver.mesh();
-    let nodes = 0..mesh.nodes().len();
-    let scalar = |name: &str, field| Array {
-        name: name.to_owned(),
-        components: 1,
-        values: driver.nodal(field),
-    };
-    let displacement = nodes.flat_map(|n| three(driver.displacement(n).as_slice()));
-    Grid {
-        points: mesh.nodes().iter().map(|x| three(x)).collect(),
-        cells: cells(mesh),
-        point_data: vec![
-            Array {
-                name: "displacement".into(),
-                components: 3,
-                values: displacement.collect(),
-            },
-            scalar("von_mises", NodalField::VonMises),
-            scalar("equivalent_plastic_strain", NodalField::PlasticStrain),
-        ],
-        cell_data: vec![Array {
-            name: "cell".into(),
-            components: 1,
-            values: (0..mesh.cell_count()).map(|c| c as f64).collect(),
-        }],
-    }
 }
 
 /// All contact surfaces; none without contacts.
@@ -320,7 +281,10 @@ fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
                 FacetKind::Line2 => 3,
                 FacetKind::Line3 => 21,
                 FacetKind::Tri3 => 5,
+                FacetKind::Tri6 => 22,
                 FacetKind::Quad4 => 9,
+                FacetKind::Quad8 => 23,
+                FacetKind::Quad9 => 28,
             };
             cells.push((nodes.collect(), kind));
             contact.push(k as f64);
@@ -364,17 +328,32 @@ fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
     })
 }
 
-fn cell_type(kind: CellKind) -> u8 {
-    match kind.name() {
-        "tri3" => 5,
-        "tri6" => 22,
-        "quad4" => 9,
-        "quad8" => 23,
-        "quad9" => 28,
-        "tet4" => 10,
-        "hex8" => 12,
-        // A polyvertex shows the nodes of a cell that this list does not know.
-        _ => 2,
+/// Nodes of a cell in the order of VTK, and its type there.
+pub(super) fn vtk_cell(kind: CellKind, nodes: &[usize]) -> (Vec<i64>, u8) {
+    let (code, order) = cell_type(kind);
+    let node = |k: usize| nodes[order.map_or(k, |order| order[k])] as i64;
+    ((0..nodes.len()).map(node).collect(), code)
+}
+
+/// VTK type of a kind of cell, and which of its nodes comes at each place there, unless as here: VTK
+/// lists the edges of hexahedra below, above and upright, and their faces along x, y and z.
+fn cell_type(kind: CellKind) -> (u8, Option<&'static [usize]>) {
+    const TET10: [usize; 10] = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8];
+    const HEX27: [usize; 27] = [
+        0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 22, 23, 21, 24, 20,
+        25, 26,
+    ];
+    match kind {
+        CellKind::Tri3 => (5, None),
+        CellKind::Tri6 => (22, None),
+        CellKind::Quad4 => (9, None),
+        CellKind::Quad8 => (23, None),
+        CellKind::Quad9 => (28, None),
+        CellKind::Tet4 => (10, None),
+        CellKind::Tet10 => (24, Some(&TET10)),
+        CellKind::Hex8 => (12, None),
+        CellKind::Hex20 => (25, Some(&HEX27)),
+        CellKind::Hex27 => (29, Some(&HEX27)),
     }
 }
 

@@ -54,12 +54,11 @@ fn physical_names_are_groups() {
     // A rectangle less what the rounding takes.
     let area = 1000.0 - (1.0 - 0.25 * PI) * 144.0;
     assert!((body.volume / area - 1.0).abs() < 1e-5, "{}", body.volume);
-    let supports = [
-        "symmetry along x",
-        "punch along y",
-        "contact with foundation",
-    ];
-    assert_eq!(body.supports, [supports]);
+    let groups: Vec<&str> = body.motions[0]
+        .iter()
+        .map(|m| m.groups[0].0.as_str())
+        .collect();
+    assert_eq!(groups, ["symmetry", "punch", "symmetry"]);
     // The arc is five parabolas of 18° each.
     for (name, measure) in [("bottom", 50.0), ("punch", 20.0), ("round", 6.0 * PI)] {
         let group = setup.groups.iter().find(|g| g.name == name).expect(name);
@@ -295,6 +294,26 @@ fn two_hundred_thousand_cells_are_checked() {
     let setup = plane(&deck);
     assert_eq!(setup.driver.mesh().cell_count(), mesh.cell_count());
     assert!((setup.bodies[0].volume - 1.0).abs() < 1e-9);
-    let again: Mesh<2> = read_mesh(&file).expect("read");
+    let (again, losses): (Mesh<2>, _) = read_mesh(&file).expect("read");
+    assert_eq!(losses, []);
     assert_eq!(again.nodes(), mesh.nodes());
+}
+
+/// Of a mesh file that is not taken over as a whole, what is lost is a warning at its name.
+#[test]
+fn what_a_mesh_file_loses_is_a_warning() {
+    let at = temporary("losses");
+    fs::create_dir_all(&at).expect("a folder");
+    let mesh = fs::read_to_string(folder("docs/examples/punch-on-gmsh-mesh.msh")).expect("a mesh");
+    let ghost = "$PhysicalNames\n6\n2 99 \"ghost\"\n";
+    let lossy = mesh.replace("$PhysicalNames\n5\n", ghost);
+    assert_ne!(lossy, mesh);
+    fs::write(at.join("punch-on-gmsh-mesh.msh"), lossy).expect("a mesh");
+    let text = example();
+    let (_, problem, findings) = open_in(&text, &at);
+    let out = findings.render("deck.toml", &text, false);
+    // The other one is that nothing uses a group of the example.
+    assert!(problem.is_some() && findings.warnings() == 2, "{out}");
+    let said = "the group \"ghost\" is left out: no element";
+    assert!(flat(&out).contains(said), "{out}");
 }

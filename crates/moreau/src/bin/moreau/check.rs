@@ -2,7 +2,10 @@
 
 use super::{INPUT_ERROR, folder, read, report, say};
 use moreau::deck::{Action, Deck, Method, Problem, Setup, Shape, open_in};
+use moreau::driver::{Axis, RigidMotion, Stopper};
 use std::path::Path;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Checks a deck; the exit status.
 pub(crate) fn check(path: &Path) -> u8 {
@@ -61,10 +64,7 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
             cells.join(", "),
             body.volume
         );
-        for (step, supports) in deck.steps.iter().zip(&body.supports) {
-            let held = supports.join("; ");
-            say!("           held in step {} by {held}", step.name.value);
-        }
+        motions(deck, &body.motions);
     }
     for group in &setup.groups {
         let unit = if group.kind == "cells" { "³" } else { "²" };
@@ -153,8 +153,48 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
     say!("solver     {method}");
 }
 
+/// What stops the rigid motions of a body; steps that are as the one before are not repeated.
+fn motions(deck: &Deck, steps: &[Vec<RigidMotion>]) {
+    let mut before = None;
+    for (step, motions) in deck.steps.iter().zip(steps) {
+        if before.replace(motions) == Some(motions) {
+            say!("           step {}: as before", step.name.value);
+            continue;
+        }
+        for motion in motions {
+            let (step, name) = (&step.name.value, &motion.name);
+            let by = stopping(deck, motion);
+            say!("           step {step}: {by} {name}");
+        }
+    }
+}
+
+fn stopping(deck: &Deck, motion: &RigidMotion) -> String {
+    let group = |(name, axes): &(String, Vec<Axis>)| {
+        let axes: Vec<&str> = axes.iter().map(|a| AXES[a.index()]).collect();
+        format!("{name} along {}", axes.join(", "))
+    };
+    let what = match motion.stopper {
+        Some(Stopper::Friction) => "friction",
+        _ => "contact",
+    };
+    let contact = |&k: &usize| {
+        let contact = &deck.contacts[k];
+        let (surface, opposite) = (&contact.surface.value, &contact.against.value);
+        format!("{what} of {surface} with {opposite}")
+    };
+    let mut list: Vec<String> = motion.groups.iter().map(group).collect();
+    list.extend(motion.contacts.iter().map(contact));
+    let only = match motion.stopper {
+        Some(Stopper::Displacement) | None => "",
+        _ if motion.groups.is_empty() => "only ",
+        _ => "",
+    };
+    let verb = if list.len() > 1 { "stop" } else { "stops" };
+    format!("{only}{} {verb}", list.join(" and "))
+}
+
 fn conditions(deck: &Deck) {
-    const AXES: [&str; 3] = ["x", "y", "z"];
     let (length, force, stress) = (deck.units.length(), deck.units.force(), deck.units.stress());
     for step in &deck.steps {
         say!(

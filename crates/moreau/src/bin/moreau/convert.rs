@@ -2,7 +2,7 @@
 
 use super::{INPUT_ERROR, say};
 use moreau::files::{FileError, read_mesh, write_mesh};
-use moreau::mesh::{Mesh, ReadError};
+use moreau::mesh::{Loss, Mesh, ReadError};
 use std::path::{Path, PathBuf};
 
 /// Files to read and to write.
@@ -19,9 +19,9 @@ impl Convert {
     pub(crate) fn run(&self) -> u8 {
         // Of the dimension of its cells: in space, unless there are none.
         let done = match read_mesh::<3>(&self.input) {
-            Ok(mesh) => written(&self.output, &mesh),
+            Ok(read) => written(&self.output, &read),
             Err(error) if is_plane(&error) => {
-                read_mesh::<2>(&self.input).and_then(|mesh| written(&self.output, &mesh))
+                read_mesh::<2>(&self.input).and_then(|read| written(&self.output, &read))
             }
             Err(error) => Err(error),
         };
@@ -49,8 +49,14 @@ fn is_plane(error: &FileError) -> bool {
     )
 }
 
-fn written<const D: usize>(path: &Path, mesh: &Mesh<D>) -> Result<String, FileError> {
+fn written<const D: usize>(
+    path: &Path,
+    (mesh, losses): &(Mesh<D>, Vec<Loss>),
+) -> Result<String, FileError> {
     write_mesh(path, mesh)?;
+    for loss in losses {
+        eprintln!("warning: {loss}");
+    }
     Ok(format!(
         "{} nodes, {} cells, {} groups",
         mesh.nodes().len(),

@@ -1,10 +1,9 @@
 //! The groups of a deck on its mesh: parts by limits and by nearness, and what they measure.
 
-use super::conditions::directions;
 use super::{Body, GroupFacts};
-use crate::deck::entries::{BlockEntry, Deck, GroupEntry, Part, StepEntry};
+use crate::deck::entries::{BlockEntry, Deck, GroupEntry, Part};
 use crate::deck::finding::{Class, Findings, did_you_mean};
-use crate::driver::Analysis;
+use crate::driver::{Analysis, Support};
 use crate::mesh::{CellKind, Facet, Mesh};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -218,41 +217,32 @@ impl<const D: usize> Groups<D> {
         kinds.into_iter().collect()
     }
 
-    /// The bodies, and what holds them.
-    pub(super) fn bodies<H: Analysis<D>>(&self, deck: &Deck, hypothesis: &H) -> Vec<Body> {
+    /// The bodies, with what stops each of them, step by step.
+    pub(super) fn bodies<H: Analysis<D>>(
+        &self,
+        hypothesis: &H,
+        supports: &[Vec<Support>],
+    ) -> Vec<Body> {
         let bodies = self.mesh.bodies();
         let body = |(k, cells): (usize, &Vec<usize>)| {
             let mut count: BTreeMap<CellKind, usize> = BTreeMap::new();
-            let mut own = vec![false; self.mesh.nodes().len()];
             for &cell in cells {
                 *count.entry(self.mesh.kind(cell)).or_default() += 1;
-                for &node in self.mesh.cell_nodes(cell) {
-                    own[node] = true;
-                }
             }
-            let touches = |name: &str| {
-                let nodes = self.mesh.node_group(self.nodes_of(name));
-                nodes.is_ok_and(|nodes| nodes.iter().any(|&n| own[n]))
-            };
-            let contacts = deck.contacts.iter().filter(|c| touches(&c.surface.value));
-            let contacts: Vec<String> = contacts
-                .map(|c| format!("contact with {}", c.against.value))
-                .collect();
-            let supports = |step: &StepEntry| {
-                let held = step.conditions.iter().filter_map(|c| {
-                    let axes = directions(&c.action);
-                    let letters: Vec<&str> = axes.iter().map(|&i| ["x", "y", "z"][i]).collect();
-                    let on = &c.on.value;
-                    (!axes.is_empty() && touches(on))
-                        .then(|| format!("{on} along {}", letters.join(", ")))
-                });
-                held.chain(contacts.iter().cloned()).collect()
-            };
+            let own = supports.iter().map(|step| {
+                let own = step.iter().find(|s| s.cell == cells[0]);
+                let mut motions = own.map_or_else(Vec::new, |s| s.motions.clone());
+                for (group, _) in motions.iter_mut().flat_map(|m| &mut m.groups) {
+                    // A hidden group has the nodes of one of the deck.
+                    group.truncate(group.find(HIDDEN).unwrap_or(group.len()));
+                }
+                motions
+            });
             Body {
                 name: self.body_name(k, cells),
                 cells: count.into_iter().collect(),
                 volume: self.mesh.measure(cells, hypothesis),
-                supports: deck.steps.iter().map(supports).collect(),
+                motions: own.collect(),
             }
         };
         bodies.iter().enumerate().map(body).collect()

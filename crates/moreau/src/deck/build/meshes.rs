@@ -58,7 +58,13 @@ fn joined<const D: usize>(
     let mut mesh: Option<Mesh<D>> = None;
     if let Some(file) = &deck.mesh_file {
         match read_mesh(&file.value) {
-            Ok(read) => mesh = Some(read),
+            Ok((read, losses)) => {
+                for loss in losses {
+                    let label = "not all of this file";
+                    findings.warning(&file.span, loss.to_string(), label);
+                }
+                mesh = Some(read);
+            }
             Err(error) => {
                 let message = error.to_string();
                 match error.help() {

@@ -175,15 +175,10 @@ fn hardening(
     }
 }
 
-/// The rule that does not lock for an element, or the one that the deck asks for.
+/// The rule that the deck asks for, or else the one of the element.
 fn quadrature(kind: CellKind, material: &MaterialEntry) -> Integration {
-    match &material.quadrature {
-        Some(rule) => rule.value,
-        None if matches!(kind, CellKind::Tri6 | CellKind::Quad8 | CellKind::Quad9) => {
-            Integration::Reduced
-        }
-        None => Integration::Full,
-    }
+    let asked = material.quadrature.as_ref().map(|rule| rule.value);
+    asked.unwrap_or(kind.integration())
 }
 
 /// The rules of the cells of a material, each with the kinds that have it.
@@ -204,14 +199,15 @@ fn locking(material: &MaterialEntry, findings: &mut Findings) {
         return;
     };
     for &kind in &material.kinds {
-        let quadratic = matches!(kind, CellKind::Tri6 | CellKind::Quad8 | CellKind::Quad9);
-        let full = quadrature(kind, material) == Integration::Full;
-        if full && !quadratic {
+        if kind.locks(quadrature(kind, material)) {
+            let (rule, remedy) = match kind.locks(kind.integration()) {
+                true => ("", "a quadratic element"),
+                false => (" with full quadrature", "quadrature = \"b-bar\""),
+            };
             findings.warning(
                 &yield_stress.span,
                 format!(
-                    "{kind} with full quadrature locks in plastic flow: loads come out too high; \
-                     use a quadratic element"
+                    "{kind}{rule} locks in plastic flow: loads come out too high; use {remedy}"
                 ),
                 "plastic flow keeps volumes",
             );

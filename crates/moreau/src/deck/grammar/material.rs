@@ -1,6 +1,5 @@
 //! `[[material]]`: moduli as they are given; whether they define a law is for the laws to say.
 
-use super::not_yet;
 use crate::deck::entries::{Hardening, MaterialEntry};
 use crate::deck::finding::At;
 use crate::deck::reader::{self, Log, Table, Value};
@@ -15,14 +14,13 @@ pub(super) fn read(table: Table<'_>) -> Option<MaterialEntry> {
     let isotropic = isotropic(&table);
     let kinematic = kinematic(&table);
     let quadrature = table.choice_if("quadrature", &["reduced", "full", "b-bar"]);
-    let quadrature = quadrature.and_then(|q| match q.value {
-        "reduced" => Some(At::new(Integration::Reduced, q.span)),
-        "full" => Some(At::new(Integration::Full, q.span)),
-        _ => {
-            let instead = "use a quadratic element with quadrature = \"reduced\"";
-            not_yet(log, &q.span, "quadrature = \"b-bar\"", instead);
-            None
-        }
+    let quadrature = quadrature.map(|q| {
+        let rule = match q.value {
+            "reduced" => Integration::Reduced,
+            "full" => Integration::Full,
+            _ => Integration::BBar,
+        };
+        At::new(rule, q.span)
     });
     for key in ["hardening", "kinematic"] {
         if let (Some(given), None) = (table.get(key), table.get("yield-stress")) {

@@ -1,6 +1,5 @@
 //! `[mesh]`, `[[mesh.block]]` and `[[mesh.group]]`; no mesh is made here.
 
-use super::not_yet;
 use crate::deck::entries::{BlockEntry, Grid, GroupEntry, Part};
 use crate::deck::finding::{At, Class};
 use crate::deck::reader::{self, Table, Value};
@@ -11,7 +10,7 @@ use std::path::{Path, PathBuf};
 const MOST_CELLS: f64 = 2e6;
 
 const PLANE: [&str; 5] = ["tri3", "tri6", "quad4", "quad8", "quad9"];
-const SOLID: [&str; 5] = ["tet4", "hex8", "tet10", "hex20", "hex27"];
+const SOLID: [&str; 5] = ["tet4", "tet10", "hex8", "hex20", "hex27"];
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// What a deck says of its mesh.
@@ -130,17 +129,13 @@ fn element(table: &Table<'_>, dimension: usize) -> Option<At<CellKind>> {
     let element = table.choice("element", &all)?;
     let (mine, analysis) = match dimension {
         2 => (&PLANE[..], "a plane analysis"),
-        _ => (&SOLID[..2], "analysis = \"solid\""),
+        _ => (&SOLID[..], "analysis = \"solid\""),
     };
     let kind = CellKind::ALL
         .into_iter()
         .find(|k| k.name() == element.value);
     match kind {
-        None => {
-            let instead = "use tet4 or hex8";
-            not_yet(table.log(), &element.span, element.value, instead);
-            None
-        }
+        None => None,
         Some(kind) if kind.dimension() != dimension => {
             table.log().borrow_mut().error(
                 &element.span,

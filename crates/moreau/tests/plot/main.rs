@@ -1,6 +1,8 @@
 //! Charts, pictures and nodal averages: well-formed, repeatable, exact where they should be, and
 //! errors where nothing can be drawn; not their looks.
 
+mod recovery;
+
 use moreau::driver::PointState;
 use moreau::mesh::{
     CellKind, Element, Integration, Mesh, PlaneStrain, Quad4, Quad8, Tri3, Tri6, block2, uniform,

@@ -1,0 +1,86 @@
+//! Collapse: the load that a structure carries at most, and a bound on it from its mechanism; not
+//! the way there.
+
+use crate::driver::Driver;
+use crate::report::ContactRecord;
+use moreau_laws::{FlowPower, Status};
+
+/// A step whose loads grow in proportion, F₀ + λ q from λ = 0 to 1, and which the structure does
+/// not carry to its end: displacements grow while λ does not.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Collapse {
+    /// The largest λ in equilibrium.
+    pub load_factor: f64,
+    /// Growth of λ, over λ, while the work of the loads doubled: what is left to be gained; at most
+    /// [`Collapse::FLAT`], unless the displacements had grown to the size of the mesh, and negative
+    /// past a maximum.
+    pub growth: f64,
+    /// Kinematic bound from the mechanism; `None` where a law has no dissipation of strain rates
+    /// alone, as where flow is not associated.
+    pub upper_bound: Option<UpperBound>,
+}
+
+/// λ⁺ of a velocity field v, the displacement increment of the last increment:
+///
+/// ```text
+/// λ⁺ = ( Σ ∫ D(ε̇) dΩ + friction − F₀·v ) / q·v,   D(ε̇) = sup σ : ε̇
+/// ```
+///
+/// over the stresses on the yield surface as it has become, so that λ⁺ ≥ λ. Of von Mises,
+/// D = √(2/3) σ_y ‖ė‖ + σ_m tr ε̇: without change of volume λ⁺ bounds the limit load of the mesh
+/// whatever v is, and what elastic changes of volume there are counts at the present mean stress.
+/// Parts that stay elastic count with their present stress; there ε̇ fades on the plateau.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UpperBound {
+    /// λ⁺.
+    pub load_factor: f64,
+    /// What changes of volume and elastic parts have a share in, in parts of q·v: λ⁺ is strict as
+    /// far as this is zero.
+    pub elastic_share: f64,
+    /// Whether friction depends on normal forces somewhere in the mechanism. Coulomb's is not
+    /// associated: λ⁺ then holds for the normal forces at collapse, and is no bound otherwise.
+    pub coulomb: bool,
+}
+
+impl Collapse {
+    /// Growth of λ at which it counts as constant.
+    pub const FLAT: f64 = 1e-6;
+}
+
+impl std::fmt::Display for Collapse {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "collapse at load factor {:.6}", self.load_factor)?;
+        let Some(bound) = &self.upper_bound else {
+            return Ok(());
+        };
+        let what = match bound.coulomb {
+            true => "kinematic estimate (Coulomb friction: no bound)",
+            false => "upper bound",
+        };
+        write!(f, ", {what} {:.6}", bound.load_factor)
+    }
+}
+
+impl<const D: usize> Driver<D> {
+    /// The kinematic bound from the last increment, for the loads λ q with this λ at its end.
+    pub(crate) fn upper_bound(&self, load: &[f64], factor: f64) -> Option<UpperBound> {
+        let (v, _) = self.state.last.as_ref()?;
+        let power = |f: &dyn Fn(usize) -> f64| -> f64 { (0..v.len()).map(|d| f(d) * v[d]).sum() };
+        let proportional = power(&|d| load[d]);
+        let dead = power(&|d| self.state.loading.force[d] - factor * load[d]);
+        let mut flow = FlowPower::default();
+        for block in &self.blocks {
+            flow = flow.with(1.0, block.flow_power(v)?);
+        }
+        let contacts = &self.state.contacts;
+        let slip = |c: &ContactRecord<D>| (1..D).map(|j| -c.t[j] * c.u[j]).sum::<f64>();
+        let friction: f64 = contacts.iter().map(slip).sum();
+        let mut pairs = self.points.iter().zip(contacts);
+        let coulomb = pairs.any(|(p, c)| c.status == Status::Slip && p.law.friction() > 0.0);
+        (proportional > 0.0).then(|| UpperBound {
+            load_factor: (flow.total + friction - dead) / proportional,
+            elastic_share: flow.elastic / proportional,
+            coulomb,
+        })
+    }
+}

@@ -1,0 +1,65 @@
+//! The columns of `history.csv`, which expectations name; not their values.
+
+use crate::deck::{Setup, Units};
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Columns of every history, each with the unit that it has.
+const FIXED: [(&str, Unit); 20] = [
+    ("step", Unit::None),
+    ("increment", Unit::None),
+    ("time", Unit::None),
+    ("newton_iterations", Unit::None),
+    ("contact_iterations", Unit::None),
+    ("cuts", Unit::None),
+    ("open", Unit::None),
+    ("stick", Unit::None),
+    ("slip", Unit::None),
+    ("plastic_fraction", Unit::None),
+    ("external_work", Unit::Energy),
+    ("elastic_energy", Unit::Energy),
+    ("plastic_dissipation", Unit::Energy),
+    ("friction_dissipation", Unit::Energy),
+    ("penalty_energy", Unit::Energy),
+    ("bipotential_gap", Unit::Energy),
+    ("penetration", Unit::Length),
+    ("excess_force", Unit::Force),
+    ("out_of_balance", Unit::Force),
+    ("factorisations", Unit::None),
+];
+
+/// What a column is measured in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Unit {
+    None,
+    Length,
+    Force,
+    Energy,
+}
+
+impl Unit {
+    /// A name with the unit in brackets, if there is one.
+    pub(crate) fn label(self, name: &str, units: Units) -> String {
+        match self {
+            Self::None => name.to_owned(),
+            Self::Length => format!("{name} [{}]", units.length()),
+            Self::Force => format!("{name} [{}]", units.force()),
+            Self::Energy => format!("{name} [{}]", units.energy()),
+        }
+    }
+}
+
+/// Names and units: those of every history, then force and displacement of the groups that are
+/// held or moved, of the tools, and of the surfaces of bodies that touch each other.
+pub(crate) fn columns<const D: usize>(setup: &Setup<D>) -> Vec<(String, Unit)> {
+    let mut list: Vec<(String, Unit)> = FIXED.iter().map(|(n, u)| ((*n).into(), *u)).collect();
+    let held = setup.held.iter().map(|[name, _]| name);
+    for name in held.chain(&setup.tools).chain(&setup.surfaces) {
+        for (what, unit) in [("force", Unit::Force), ("u", Unit::Length)] {
+            for axis in &AXES[..D] {
+                list.push((format!("{what}.{name}.{axis}"), unit));
+            }
+        }
+    }
+    list
+}

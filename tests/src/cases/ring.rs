@@ -1,0 +1,202 @@
+//! Compression of a ring between plates of constant friction: the test by which friction is
+//! measured in forming.
+
+use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
+use moreau::contact::Plane;
+use moreau::driver::{Axis, Driver, Model, Settings, Step};
+use moreau::laws::{Tresca, VonMises};
+use moreau::mesh::{Axisymmetric, CellKind, Integration, block2, uniform};
+use moreau::plot::{Chart, MeshPicture, Style, nodal_average};
+use std::error::Error;
+
+/// The case.
+pub(super) const CASE: Case = Case {
+    name: "ring",
+    chapter: Chapter::Beyond,
+    title: "Ring compression, the calibration of friction (Male and Cockcroft)",
+    description: "A ring of the proportions 6:3:2 (outer, inner diameter, height) is compressed \
+        between plates whose friction is a constant part m of the yield stress in shear. With \
+        little friction the bore opens, with much it closes: its rate at collapse, and the mean \
+        pressure, are compared with the upper bound of a velocity field without bulging. The \
+        pressure must lie below that bound and above that without friction.",
+    run,
+};
+
+const OUTER: f64 = 3.0;
+const INNER: f64 = 1.5;
+/// Half of the height.
+const HALF: f64 = 1.0;
+const YIELD: f64 = 300.0;
+const SOURCE: &str = "upper bound of the parallel velocity field, minimised numerically";
+
+/// Friction m, (dD_i/D_i)/(dH/H) and mean pressure over yield stress of the upper bound.
+const BOUND: [(f64, f64, f64); 9] = [
+    (0.0, -0.5, 1.0),
+    (0.05, -0.4132, 1.0324),
+    (0.1, -0.3253, 1.0623),
+    (0.15, -0.2350, 1.0897),
+    (0.2, -0.1411, 1.1144),
+    (0.3, 0.0279, 1.1555),
+    (0.5, 0.1668, 1.2219),
+    (0.8, 0.2866, 1.3060),
+    (1.0, 0.3371, 1.3572),
+];
+
+/// The ring compressed until its bore moves steadily, and what it says: the rate of the bore and
+/// the mean pressure over the yield stress.
+fn compressed(m: f64, n: usize) -> Result<(Driver<2>, f64, f64), Box<dyn Error>> {
+    let (r, z) = (uniform(INNER, OUTER, 3 * n / 2), uniform(0.0, HALF, n));
+    let mesh = block2("ring", CellKind::Quad8, &r, &z)?;
+    let bore = mesh.node_group("ring.left")?;
+    let model = Model::new(mesh, Axisymmetric)
+        .material(
+            "ring",
+            VonMises::new(210e3, 0.3, YIELD)?,
+            Integration::Reduced,
+        )?
+        .tool("plate", Plane::new([0.0, HALF], [0.0, -1.0])?)?
+        .contact("ring.top", "plate", Tresca::new(m * YIELD / 3f64.sqrt())?)?;
+    let mut driver = Driver::new(model, Settings::default())?;
+    let mean = |driver: &Driver<2>| {
+        bore.iter().map(|a| driver.displacement(*a)[0]).sum::<f64>() / bore.len() as f64
+    };
+    let mut travelled = 0.0;
+    let mut rate = f64::NAN;
+    for travel in [0.015, 0.02] {
+        let before = mean(&driver);
+        let step = Step::new("compress")
+            .fix("ring.bottom", &[Axis::Y])
+            .tool("plate", [0.0, -travel * HALF]);
+        driver.run(&step, 20, |_, _| {})?;
+        rate = (mean(&driver) - before) / INNER / (travelled - travel);
+        travelled = travel;
+    }
+    let area = std::f64::consts::PI * (OUTER * OUTER - INNER * INNER);
+    let pressure = -driver.tool_force("plate")?[1] / area / YIELD;
+    Ok((driver, rate, pressure))
+}
+
+fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
+    let mut outcome = Outcome::default();
+    let n = if options.quick { 6 } else { 12 };
+    let mut rows = Vec::new();
+    let (mut rates, mut pressures) = (Vec::new(), Vec::new());
+    let mut add = |name: String, value: (f64, &str), kind, reference| {
+        let check = Check::new(name, value, kind, reference, SOURCE);
+        outcome.checks.push(check);
+    };
+    for (m, bound_rate, bound) in BOUND {
+        (options.progress)(&format!("m = {m}"));
+        let (driver, rate, pressure) = compressed(m, n)?;
+        let least = pressures.last().map_or(1.0, |p: &[f64; 2]| p[1]);
+        if m == 0.0 {
+            for (what, value, exact) in [
+                ("rate of the bore", rate, bound_rate),
+                ("mean pressure over yield stress", pressure, bound),
+            ] {
+                let name = format!("m = 0: {what}");
+                add(name, (value, "1"), Kind::Relative, (exact, 1e-10));
+            }
+        } else {
+            let name = format!("m = {m}: mean pressure over yield stress, upper bound");
+            add(name, (pressure, "1"), Kind::AtMost, (bound, 0.0));
+            let name = format!("m = {m}: mean pressure over yield stress, that of less friction");
+            add(name, (pressure, "1"), Kind::AtLeast, (least, 0.0));
+        }
+        if (0.05..=0.15).contains(&m) {
+            let name = format!("m = {m}: rate of the bore");
+            add(name, (rate, "1"), Kind::Relative, (bound_rate, 5e-2));
+        }
+        rows.push(
+            [m, rate, bound_rate, pressure, bound]
+                .map(|v| format!("{v:.4}"))
+                .to_vec(),
+        );
+        rates.push([m, rate]);
+        pressures.push([m, pressure]);
+        if m == 1.0 {
+            outcome.figures.push(field(&driver)?);
+        }
+    }
+    // Where the bore neither opens nor closes.
+    let neutral = |curve: &[[f64; 2]]| {
+        let ends = curve.windows(2).find(|w| w[0][1] < 0.0 && w[1][1] >= 0.0);
+        ends.map_or(f64::NAN, |w| {
+            w[0][0] + (w[1][0] - w[0][0]) * w[0][1] / (w[0][1] - w[1][1])
+        })
+    };
+    add(
+        "friction at which the bore keeps its diameter".into(),
+        (neutral(&rates), "1"),
+        Kind::Relative,
+        (0.2703, 0.1),
+    );
+    let bound =
+        |f: fn(&(f64, f64, f64)) -> f64| BOUND.iter().map(|b| [b.0, f(b)]).collect::<Vec<_>>();
+    for (name, label, computed, bound) in [
+        (
+            "ring-bore",
+            "(dD/D)/(dH/H) of the bore [–]",
+            rates,
+            bound(|b| b.1),
+        ),
+        (
+            "ring-pressure",
+            "mean pressure over yield stress [–]",
+            pressures,
+            bound(|b| b.2),
+        ),
+    ] {
+        let chart = Chart::new("Ring 6:3:2 at collapse", "friction m [–]", label)
+            .with("upper bound without bulging", Style::Line, bound)
+            .with(
+                format!("{n} cells in half the height"),
+                Style::Points,
+                computed,
+            );
+        outcome.figures.push(Figure {
+            name: name.into(),
+            caption: format!("{label}, over the friction of the plates."),
+            svg: chart.to_svg()?,
+        });
+    }
+    let header = [
+        "m",
+        "rate of the bore",
+        "upper bound's",
+        "pressure over yield stress",
+        "upper bound's",
+    ];
+    outcome.tables.push(Table {
+        name: "ring".into(),
+        title: "Ring compression at collapse".into(),
+        header: header.map(String::from).to_vec(),
+        rows,
+    });
+    outcome.notes.push(
+        "Beyond m = 0.2 the wall of the ring bulges and its points at the plates stick: the load \
+         stays further below the bound, whose velocity field cannot bulge, and the bore closes \
+         faster."
+            .into(),
+    );
+    Ok(outcome)
+}
+
+fn field(driver: &Driver<2>) -> Result<Figure, Box<dyn Error>> {
+    let nodes = 0..driver.mesh().nodes().len();
+    let displacement = nodes.map(|a| driver.displacement(a).into()).collect();
+    let p = nodal_average(driver.mesh(), &driver.points(), |s| {
+        s.plastic_strain.min(0.06)
+    });
+    let picture = MeshPicture::new(driver.mesh(), "Equivalent plastic strain, m = 1")
+        .deformed(displacement, 5.0)
+        .field("equivalent plastic strain p, cut at 0.06 [–]", p)
+        .outline();
+    Ok(Figure {
+        name: "ring-plastic-strain".into(),
+        caption: "A quarter of the ring's section after 2 % of compression between rough plates, \
+            displacements five times enlarged: it bulges on both sides."
+            .into(),
+        svg: picture.to_svg()?,
+    })
+}
