@@ -3,13 +3,16 @@
 
 use crate::geometry::{basis, bounds, cofactors, diagonal, dot, interpolate};
 use crate::mesh::NodeKind;
-use crate::{Element, FacetKind, Line2, Line3, Quad4, Tri3};
+use crate::{Element, FacetKind, Line2, Line3, Quad4, Quad8, Quad9, Tri3, Tri6};
 
 /// A box, by its least and greatest corner.
 pub(super) type Box<const D: usize> = ([f64; D], [f64; D]);
 
 /// Most nodes of a facet.
-const NODES: usize = 4;
+const NODES: usize = 9;
+
+/// The part of a middle's shape function that each corner beside it takes.
+const LIFT: f64 = 0.2;
 
 /// Values of all nodes of a facet; those of nodes that are not there are zero.
 pub(super) type Values = [f64; NODES];
@@ -43,10 +46,11 @@ impl<const D: usize> Face<D> {
     }
 
     pub(super) fn node_kind(&self, local: usize) -> NodeKind {
-        if local < self.kind.corner_count() {
-            NodeKind::Corner
-        } else {
-            NodeKind::Midside
+        // A facet has as many edges as corners; one of the plane is its own edge.
+        match local / self.kind.corner_count() {
+            0 => NodeKind::Corner,
+            1 => NodeKind::Midside,
+            _ => NodeKind::Face,
         }
     }
 
@@ -61,15 +65,18 @@ impl<const D: usize> Face<D> {
             FacetKind::Line2 => along(&Line2::NODES),
             FacetKind::Line3 => along(&Line3::NODES),
             FacetKind::Tri3 => Tri3::NODES.to_vec(),
+            FacetKind::Tri6 => Tri6::NODES.to_vec(),
             FacetKind::Quad4 => Quad4::NODES.to_vec(),
+            FacetKind::Quad8 => Quad8::NODES.to_vec(),
+            FacetKind::Quad9 => Quad9::NODES.to_vec(),
         }
     }
 
     /// Length of a side of the reference facet.
     pub(super) fn unit(&self) -> f64 {
         match self.kind {
-            FacetKind::Tri3 => 1.0,
-            FacetKind::Line2 | FacetKind::Line3 | FacetKind::Quad4 => 2.0,
+            FacetKind::Tri3 | FacetKind::Tri6 => 1.0,
+            _ => 2.0,
         }
     }
 
@@ -82,8 +89,33 @@ impl<const D: usize> Face<D> {
             FacetKind::Line2 => filled(Line2::shape([xi[0]])),
             FacetKind::Line3 => filled(Line3::shape([xi[0]])),
             FacetKind::Tri3 => filled(Tri3::shape(xi)),
+            FacetKind::Tri6 => filled(Tri6::shape(xi)),
             FacetKind::Quad4 => filled(Quad4::shape(xi)),
+            FacetKind::Quad8 => filled(Quad8::shape(xi)),
+            FacetKind::Quad9 => filled(Quad9::shape(xi)),
         }
+    }
+
+    /// Whether corners have a negative share of the face, or none: then Ñ is not N.
+    pub(super) fn is_lifted(&self) -> bool {
+        matches!(self.kind, FacetKind::Tri6 | FacetKind::Quad8)
+    }
+
+    /// Combinations Ñ_a of the shape functions that all have a positive share, sum to 1 and span the
+    /// same: corners take a part of the middles beside them, as in A. Popp, B. I. Wohlmuth,
+    /// M. W. Gee and W. A. Wall, *SIAM J. Sci. Comput.* 34 (2012).
+    pub(super) fn lifted(&self, shape: &[f64]) -> Values {
+        let mut lifted = std::array::from_fn(|a| shape.get(a).copied().unwrap_or(0.0));
+        if self.is_lifted() {
+            let corners = self.kind.corner_count();
+            for k in 0..corners {
+                let middle = shape[corners + k];
+                lifted[k] += LIFT * middle;
+                lifted[(k + 1) % corners] += LIFT * middle;
+                lifted[corners + k] -= 2.0 * LIFT * middle;
+            }
+        }
+        lifted
     }
 
     /// The vectors ∂x/∂ξ; the first is none, and its cofactor the area vector.
@@ -101,7 +133,10 @@ impl<const D: usize> Face<D> {
             FacetKind::Line2 => along(x, &slices(&Line2::shape_gradient([xi[0]]))),
             FacetKind::Line3 => along(x, &slices(&Line3::shape_gradient([xi[0]]))),
             FacetKind::Tri3 => along(x, &slices(&Tri3::shape_gradient(xi))),
+            FacetKind::Tri6 => along(x, &slices(&Tri6::shape_gradient(xi))),
             FacetKind::Quad4 => along(x, &slices(&Quad4::shape_gradient(xi))),
+            FacetKind::Quad8 => along(x, &slices(&Quad8::shape_gradient(xi))),
+            FacetKind::Quad9 => along(x, &slices(&Quad9::shape_gradient(xi))),
         }
     }
 
@@ -163,10 +198,10 @@ impl<const D: usize> Face<D> {
         }
         let xi = self.below(&View::new(*x, n), [0.0; 2])?;
         let inside = match self.kind {
-            FacetKind::Tri3 => xi[0].min(xi[1]).min(1.0 - xi[0] - xi[1]) >= -OUTSIDE,
-            FacetKind::Line2 | FacetKind::Line3 | FacetKind::Quad4 => {
-                xi[0].abs().max(xi[1].abs()) <= 1.0 + OUTSIDE
+            FacetKind::Tri3 | FacetKind::Tri6 => {
+                xi[0].min(xi[1]).min(1.0 - xi[0] - xi[1]) >= -OUTSIDE
             }
+            _ => xi[0].abs().max(xi[1].abs()) <= 1.0 + OUTSIDE,
         };
         (inside && dot(&self.outward(xi), n) < 0.0).then_some(xi)
     }
