@@ -221,8 +221,8 @@ impl<const D: usize> Face<D> {
                 (missing[1] * a[0][0] - missing[0] * a[0][1]) / det,
             ];
             xi = [xi[0] + step[0], xi[1] + step[1]];
-            // Written so that NaN ends the search.
-            if !(xi[0].abs().max(xi[1].abs()) < 1e3) {
+            if !xi.iter().all(|v| v.abs() < 1e3) {
+                // Far outside, or NaN.
                 return None;
             }
             // Quadratic convergence: the next step is below rounding.
