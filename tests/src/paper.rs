@@ -5,7 +5,7 @@ use moreau::contact::Plane;
 use moreau::driver::{Axis, Driver, Model, ModelError, Settings, Step};
 use moreau::laws::{Coulomb, VonMises};
 use moreau::mesh::{
-    CellKind, Integration, MeshError, PlaneStrain, block2, geometric, refine, uniform,
+    CellKind, Integration, Mesh, MeshError, PlaneStrain, block2, geometric, refine, uniform,
 };
 use std::error::Error;
 
@@ -103,7 +103,37 @@ pub fn block(
     integration: Integration,
     settings: Settings<2>,
 ) -> Result<Driver<2>, Box<dyn Error>> {
-    let mesh = block_mesh(cells)?;
+    block_of(block_mesh(cells)?, friction, integration, settings)
+}
+
+/// [`block`], with every node moved by up to `size` times its coordinates, differently for every
+/// seed: what rounding may do.
+///
+/// # Errors
+/// As [`block`]; a size that turns cells inside out.
+pub fn shaken_block(
+    cells: [usize; 2],
+    friction: f64,
+    (seed, size): (u64, f64),
+    settings: Settings<2>,
+) -> Result<Driver<2>, Box<dyn Error>> {
+    let noise = |x: f64, salt: u64| {
+        // The finaliser of a common generator: bits that look random.
+        let mut z = x.to_bits() ^ (seed << 8 | salt).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        x * (1.0 + size * ((z >> 11) as f64 / (1u64 << 52) as f64 - 1.0))
+    };
+    let mesh = block_mesh(cells)?.map(|[x, y]| [noise(x, 1), noise(y, 2)])?;
+    block_of(mesh, friction, Integration::Reduced, settings)
+}
+
+fn block_of(
+    mesh: Mesh<2>,
+    friction: f64,
+    integration: Integration,
+    settings: Settings<2>,
+) -> Result<Driver<2>, Box<dyn Error>> {
     let model = Model::new(mesh, PlaneStrain::default())
         .material(
             "block",
@@ -115,7 +145,7 @@ pub fn block(
     Ok(Driver::new(model, settings)?)
 }
 
-fn block_mesh([nx, ny]: [usize; 2]) -> Result<moreau::mesh::Mesh<2>, MeshError> {
+fn block_mesh([nx, ny]: [usize; 2]) -> Result<Mesh<2>, MeshError> {
     let (x, y) = (uniform(0.0, 50.0, nx), uniform(0.0, 20.0, ny));
     let mut mesh = block2("block", CellKind::Quad8, &x, &y)?;
     mesh.node_group_where("punch", "block.top", |x| x[0] <= 25.0 * (1.0 + 1e-9))?;

@@ -1,12 +1,15 @@
 //! `cargo xtask bench`: the punched block on meshes from 20×8 to 640×256 cells, by every contact
 //! method: where the time goes and what it takes in memory.
 
+mod micro;
+mod shaken;
+
 use std::error::Error;
 use std::path::PathBuf;
 use std::time::Instant;
 
 use moreau::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
-use moreau::driver::Settings;
+use moreau::driver::{Settings, Step};
 use moreau::mesh::Integration;
 use serde::{Deserialize, Serialize};
 use verification::paper;
@@ -20,6 +23,18 @@ pub struct Args {
     /// Contact methods; may be given again [default: exact and penalty, and all on 20x8]
     #[arg(long = "method", value_name = "METHOD")]
     methods: Vec<Method>,
+    /// Increments to run, the first of ten
+    #[arg(long, default_value_t = INCREMENTS)]
+    increments: usize,
+    /// Coefficient of friction
+    #[arg(long, default_value_t = FRICTION)]
+    friction: f64,
+    /// Runs on coordinates that differ by 1e-13: how much a rounding error may cost
+    #[arg(long, value_name = "RUNS")]
+    shaken: Option<u64>,
+    /// The kernels one by one instead: element, law, projection, factorisation, contact problem
+    #[arg(long)]
+    micro: bool,
     /// Runs of each; the fastest counts
     #[arg(long, default_value_t = 1)]
     runs: usize,
@@ -89,6 +104,11 @@ pub const INCREMENTS: usize = 10;
 /// Coefficient of friction on the foundation.
 pub const FRICTION: f64 = 0.1;
 
+/// The first increments of the ten.
+fn press(increments: usize) -> Step<2> {
+    paper::block_step(TRAVEL * increments as f64 / INCREMENTS as f64)
+}
+
 /// Reads a number of cells along and across.
 pub fn size(text: &str) -> Result<[usize; 2], String> {
     let wrong = || format!("\"{text}\" is no size: expected cells as 160x64");
@@ -106,6 +126,13 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
         [] => vec![[20, 8], [40, 16], [80, 32], [160, 64]],
         given => given.to_vec(),
     };
+    if args.micro {
+        return micro::run();
+    }
+    let load = (args.friction, args.increments.clamp(1, INCREMENTS));
+    if let Some(runs) = args.shaken {
+        return shaken::run(&sizes, load, runs);
+    }
     println!("{}", header());
     let mut all: Vec<Figures> = Vec::new();
     for size in sizes {
@@ -118,7 +145,7 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
         for &method in methods {
             let mut best: Option<Figures> = None;
             for _ in 0..args.runs.max(1) {
-                let new = measure(size, method)?;
+                let new = measure(size, method, load)?;
                 if best.as_ref().is_none_or(|b| new.seconds < b.seconds) {
                     best = Some(new);
                 }
@@ -144,15 +171,19 @@ fn solver(method: Method) -> Result<Box<dyn ContactSolver<2>>, Box<dyn Error>> {
     })
 }
 
-fn measure(cells: [usize; 2], method: Method) -> Result<Figures, Box<dyn Error>> {
+fn measure(
+    cells: [usize; 2],
+    method: Method,
+    (friction, increments): (f64, usize),
+) -> Result<Figures, Box<dyn Error>> {
     forget_peak();
     let settings = Settings {
         contact: solver(method)?,
         ..Settings::default()
     };
     let clock = Instant::now();
-    let mut driver = paper::block(cells, FRICTION, Integration::Reduced, settings)?;
-    let reports = driver.run(&paper::block_step(TRAVEL), INCREMENTS, |_, _| {})?;
+    let mut driver = paper::block(cells, friction, Integration::Reduced, settings)?;
+    let reports = driver.run(&press(increments), increments, |_, _| {})?;
     let seconds = clock.elapsed().as_secs_f64();
     let sum = |f: fn(&moreau::driver::StepReport) -> usize| reports.iter().map(f).sum::<usize>();
     let timings = driver.timings();
@@ -265,7 +296,7 @@ mod tests {
 
     #[test]
     fn parts_of_a_run_add_up_and_methods_agree() -> Result<(), Box<dyn Error>> {
-        let exact = measure([10, 2], Method::Exact)?;
+        let exact = measure([10, 2], Method::Exact, (FRICTION, INCREMENTS))?;
         let parts = exact.assembly
             + exact.ordering
             + exact.factorisation
@@ -275,7 +306,7 @@ mod tests {
         assert!((parts - exact.seconds).abs() < 1e-9 * exact.seconds);
         assert!(exact.factorisations > 0 && exact.rest >= 0.0);
         assert!(exact.relative_gap.abs() < 1e-10);
-        let uzawa = measure([10, 2], Method::Uzawa)?;
+        let uzawa = measure([10, 2], Method::Uzawa, (FRICTION, INCREMENTS))?;
         assert!((exact.punch_load / uzawa.punch_load - 1.0).abs() < 1e-7);
         Ok(())
     }

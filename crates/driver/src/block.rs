@@ -24,7 +24,8 @@ pub struct CellResult<'a> {
     pub cell: usize,
     /// ∫ Bᵀ σ₁ dΩ, node by node \[N\].
     pub force: &'a [f64],
-    /// ∫ Bᵀ C B dΩ \[N/mm\], row by row, upper triangle only; empty if not asked for.
+    /// The upper triangle of ∫ Bᵀ C B dΩ \[N/mm\], row by row without the lower one; empty if not
+    /// asked for.
     pub stiffness: &'a [f64],
 }
 
@@ -101,10 +102,10 @@ pub trait Block<const D: usize>: Send + Sync {
 }
 
 /// Cells evaluated before their results are handed on: bounds the memory of the buffers.
-const PANEL: usize = 2048;
+const PANEL: usize = 512;
 
 /// Cells that are worth a thread.
-const GRAIN: usize = 64;
+const GRAIN: usize = 128;
 
 /// The block of some cells with law L.
 pub struct SolidBlock<L: BulkLaw, const D: usize> {
@@ -157,8 +158,6 @@ impl<L: BulkLaw, const D: usize> Panel<'_, L, D> {
         let mut stress = [Sym2::zeros(); MAX_POINTS];
         let mut tangent = [Sym4::zeros(); MAX_POINTS];
         let mut flows = false;
-        forces.fill(0.0);
-        matrices.fill(0.0);
         for (k, force) in forces.chunks_mut(size).enumerate() {
             let cell = first + k;
             self.cells.strain(cell, self.d_u, &mut d_eps[..count]);
@@ -174,10 +173,10 @@ impl<L: BulkLaw, const D: usize> Panel<'_, L, D> {
                     Some((part, elastic)) => elastic * *part + response.tangent * (1.0 - part),
                 };
             }
-            self.cells.add_force(cell, &stress[..count], force);
+            self.cells.force(cell, &stress[..count], force);
             if entries > 0 {
                 let matrix = &mut matrices[k * entries..(k + 1) * entries];
-                self.cells.add_stiffness(cell, &tangent[..count], matrix);
+                self.cells.stiffness(cell, &tangent[..count], matrix);
             }
         }
         flows
@@ -207,7 +206,7 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
         let per_cell = self.cells.points_per_cell();
         let entries = match stiffness {
             Stiffness::None => 0,
-            Stiffness::Consistent | Stiffness::Blended(_) => size * size,
+            Stiffness::Consistent | Stiffness::Blended(_) => size * (size + 1) / 2,
         };
         // One entry a cell at least, so that the parallel chunks below stay aligned.
         let room = entries.max(1);

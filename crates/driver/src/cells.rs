@@ -3,7 +3,6 @@
 
 use moreau_mandel::{Sym2, Sym4};
 use moreau_mesh::{Element, Hypothesis, Integration, Mesh};
-use nalgebra::{SMatrix, SVector};
 use std::marker::PhantomData;
 
 /// Largest number of quadrature points of a cell.
@@ -30,12 +29,12 @@ pub trait Cells<const D: usize>: Send + Sync {
     /// displacement increments at every degree of freedom of the mesh \[mm\].
     fn strain(&self, k: usize, d_u: &[f64], d_eps: &mut [Sym2]);
 
-    /// Adds ∫ Bᵀ σ dΩ, node by node \[N\], from the stresses at the points of the k-th cell.
-    fn add_force(&self, k: usize, stress: &[Sym2], force: &mut [f64]);
+    /// Writes ∫ Bᵀ σ dΩ, node by node \[N\], from the stresses at the points of the k-th cell.
+    fn force(&self, k: usize, stress: &[Sym2], force: &mut [f64]);
 
-    /// Adds the upper triangle of ∫ Bᵀ C B dΩ, row by row \[N/mm\], from the tangents at the points
-    /// of the k-th cell.
-    fn add_stiffness(&self, k: usize, tangent: &[Sym4], stiffness: &mut [f64]);
+    /// Writes the upper triangle of ∫ Bᵀ C B dΩ, row by row without the lower one \[N/mm\], from
+    /// the symmetric tangents at the points of the k-th cell.
+    fn stiffness(&self, k: usize, tangent: &[Sym4], stiffness: &mut [f64]);
 }
 
 /// A quadrature point of a cell.
@@ -112,37 +111,52 @@ where
             volume += point.weight;
             for a in 0..N {
                 for i in 0..D {
-                    sum[a][i] += point.weight * dilatation(&operator[a], i);
+                    sum[a][i] += point.weight * dilatation(&operator[i], a);
                 }
             }
         }
         sum.map(|row| row.map(|b| b / volume))
     }
 
-    /// Points of a cell, and their operators B_a of \[77\], or B̄_a with the mean dilatation.
-    fn operators(&self, k: usize) -> impl Iterator<Item = (&Point<D, N>, [SMatrix<f64, 6, D>; N])> {
+    /// Rows of every column of the operators that may be other than zero: the mean dilatation fills
+    /// the first three.
+    fn rows(&self) -> [&'static [usize]; D] {
+        if self.dilatation.is_empty() {
+            H::ROWS
+        } else {
+            [&[0, 1, 2, 3, 4, 5]; D]
+        }
+    }
+
+    /// Points of a cell, and their operators B of \[77\], or B̄ with the mean dilatation: by column
+    /// of B_a, by row, by node. Next to each other are the nodes, which all do the same; rows not
+    /// among [`Self::rows`] are zero.
+    fn operators(&self, k: usize) -> impl Iterator<Item = (&Point<D, N>, [[[f64; N]; 6]; D])> {
         let count = self.shapes.len();
         let points = &self.points[k * count..(k + 1) * count];
         let mean = self.dilatation.get(k);
         points.iter().zip(&self.shapes).map(move |(point, shape)| {
-            let operator = std::array::from_fn(|a| {
-                let mut b = H::strain_operator(shape[a], &point.gradient[a], &point.position);
-                if let Some(mean) = mean {
-                    for i in 0..D {
-                        let third = (mean[a][i] - dilatation(&b, i)) / 3.0;
-                        (0..3).for_each(|j| b[(j, i)] += third);
+            let mut operator = [[[0.0; N]; 6]; D];
+            for a in 0..N {
+                let b = H::strain_operator(shape[a], &point.gradient[a], &point.position);
+                for j in 0..D {
+                    for &r in H::ROWS[j] {
+                        operator[j][r][a] = b[(r, j)];
+                    }
+                    if let Some(mean) = mean {
+                        let third = (mean[a][j] - dilatation(&operator[j], a)) / 3.0;
+                        (0..3).for_each(|r| operator[j][r][a] += third);
                     }
                 }
-                b
-            });
+            }
             (point, operator)
         })
     }
 }
 
-/// Trace of the strain by a unit displacement along axis i.
-fn dilatation<const D: usize>(b: &SMatrix<f64, 6, D>, i: usize) -> f64 {
-    b[(0, i)] + b[(1, i)] + b[(2, i)]
+/// Trace of the strain by a unit displacement of node a, from a column of the operators.
+fn dilatation<const N: usize>(column: &[[f64; N]; 6], a: usize) -> f64 {
+    column[0][a] + column[1][a] + column[2][a]
 }
 
 impl<E, H, const D: usize, const N: usize> Cells<D> for ElementCells<E, H, D, N>
@@ -171,39 +185,78 @@ where
     }
 
     fn strain(&self, k: usize, d_u: &[f64], d_eps: &mut [Sym2]) {
-        let d_u = self.nodes[k].map(|a| SVector::<f64, D>::from_column_slice(&d_u[D * a..][..D]));
+        let (nodes, rows) = (&self.nodes[k], self.rows());
+        let d_u: [[f64; N]; D] =
+            std::array::from_fn(|j| std::array::from_fn(|a| d_u[D * nodes[a] + j]));
         for ((_, operator), d_eps) in self.operators(k).zip(d_eps) {
             *d_eps = Sym2::zeros();
-            for a in 0..N {
-                *d_eps += operator[a] * d_u[a];
-            }
-        }
-    }
-
-    fn add_force(&self, k: usize, stress: &[Sym2], force: &mut [f64]) {
-        for ((point, operator), stress) in self.operators(k).zip(stress) {
-            let stress = stress * point.weight;
-            for a in 0..N {
-                let f = operator[a].tr_mul(&stress);
-                for i in 0..D {
-                    force[D * a + i] += f[i];
+            for j in 0..D {
+                for &r in rows[j] {
+                    for a in 0..N {
+                        d_eps[r] += operator[j][r][a] * d_u[j][a];
+                    }
                 }
             }
         }
     }
 
-    fn add_stiffness(&self, k: usize, tangent: &[Sym4], stiffness: &mut [f64]) {
-        let size = N * D;
+    fn force(&self, k: usize, stress: &[Sym2], force: &mut [f64]) {
+        let rows = self.rows();
+        let mut sum = [[0.0; N]; D];
+        for ((point, operator), stress) in self.operators(k).zip(stress) {
+            for i in 0..D {
+                for &r in rows[i] {
+                    let stress = point.weight * stress[r];
+                    for a in 0..N {
+                        sum[i][a] += operator[i][r][a] * stress;
+                    }
+                }
+            }
+        }
+        for a in 0..N {
+            for i in 0..D {
+                force[D * a + i] = sum[i][a];
+            }
+        }
+    }
+
+    fn stiffness(&self, k: usize, tangent: &[Sym4], stiffness: &mut [f64]) {
+        // Components (i, j), i ≤ j, of the blocks of all pairs of nodes: whole rows of nodes, which
+        // a processor does at once. K is symmetric, and the other components are those of (b, a).
+        let rows = self.rows();
+        let mut sum = [[[[0.0; N]; N]; D]; D];
         for ((point, operator), tangent) in self.operators(k).zip(tangent) {
-            let tangent = tangent * point.weight;
-            for b in 0..N {
-                let column = tangent * operator[b];
-                for a in 0..=b {
-                    let k_ab = operator[a].tr_mul(&column);
-                    for i in 0..D {
-                        for j in 0..D {
-                            stiffness[(D * a + i) * size + D * b + j] += k_ab[(i, j)];
+            for j in 0..D {
+                for i in 0..=j {
+                    for &r in rows[i] {
+                        let mut traction = [0.0; N];
+                        for &s in rows[j] {
+                            let c = point.weight * tangent[(r, s)];
+                            for b in 0..N {
+                                traction[b] += c * operator[j][s][b];
+                            }
                         }
+                        for a in 0..N {
+                            let strain = operator[i][r][a];
+                            for b in 0..N {
+                                sum[i][j][a][b] += strain * traction[b];
+                            }
+                        }
+                    }
+                }
+            }
+        }
+        let mut next = stiffness.iter_mut();
+        for a in 0..N {
+            for i in 0..D {
+                for b in a..N {
+                    let first = if a == b { i } else { 0 };
+                    for (j, entry) in (first..D).zip(next.by_ref()) {
+                        *entry = if i <= j {
+                            sum[i][j][a][b]
+                        } else {
+                            sum[j][i][b][a]
+                        };
                     }
                 }
             }

@@ -3,9 +3,10 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::sparse::linalg::cholesky::{simplicial, supernodal};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, MatMut, Par};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
+use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::DMatrix;
 use std::fmt;
 
@@ -72,17 +73,19 @@ pub(crate) struct NotPositiveDefinite {
 
 /// L Lᵀ = A, in the order in which A is given.
 pub(crate) struct Cholesky {
-    pattern: Pattern,
+    /// The pattern, checked once.
+    lower: SymbolicSparseColMat<u32>,
     symbolic: supernodal::SymbolicSupernodalCholesky<u32>,
     factor: Vec<f64>,
-    factor_memory: MemBuffer,
-    solve_memory: MemBuffer,
+    memory: MemBuffer,
+    /// Room for the rows below a supernode.
+    below: Vec<f64>,
 }
 
 impl fmt::Debug for Cholesky {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Cholesky")
-            .field("size", &self.pattern.size())
+            .field("size", &self.lower.nrows())
             .field("entries", &self.factor.len())
             .finish_non_exhaustive()
     }
@@ -114,23 +117,26 @@ impl Cholesky {
             Default::default(),
         )
         .ok()?;
-        let factor_request = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
+        let request = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
             &symbolic,
             Par::Seq,
             Default::default(),
         );
-        let solve_request = symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
+        let rows = symbolic.col_ptr_for_row_idx().windows(2);
+        let below = rows.map(|r| (r[1] - r[0]) as usize).max().unwrap_or(0);
+        let Pattern { column_start, row } = pattern;
         Some(Self {
             factor: vec![0.0; symbolic.len_val()],
-            factor_memory: MemBuffer::try_new(factor_request).ok()?,
-            solve_memory: MemBuffer::try_new(solve_request).ok()?,
-            pattern,
+            memory: MemBuffer::try_new(request).ok()?,
+            below: vec![0.0; below],
+            lower: SymbolicSparseColMat::new_checked(n, n, column_start, None, row),
             symbolic,
         })
     }
 
-    pub(crate) fn pattern(&self) -> &Pattern {
-        &self.pattern
+    /// Position of a diagonal entry among the values.
+    pub(crate) fn diagonal(&self, row: usize) -> usize {
+        self.lower.col_ptr()[row] as usize
     }
 
     /// Factorises the matrix with these values on the pattern.
@@ -138,63 +144,159 @@ impl Cholesky {
         // One thread: the factor is then the same to the bit wherever it runs.
         supernodal::factorize_supernodal_numeric_llt(
             &mut self.factor,
-            SparseColMatRef::new(self.pattern.symbolic(), values),
+            SparseColMatRef::new(self.lower.as_ref(), values),
             Default::default(),
             &self.symbolic,
             Par::Seq,
-            MemStack::new(&mut self.factor_memory),
+            MemStack::new(&mut self.memory),
             Default::default(),
         )
         .map(|_| ())
         .map_err(|LltError::NonPositivePivot { index }| NotPositiveDefinite { row: index })
     }
 
+    /// b − A x for the matrix with these values.
+    pub(crate) fn residual(&self, values: &[f64], x: &[f64], b: &[f64]) -> Vec<f64> {
+        let mut r = b.to_vec();
+        let (start, rows) = (self.lower.col_ptr(), self.lower.row_idx());
+        for j in 0..x.len() {
+            let column = start[j] as usize..start[j + 1] as usize;
+            let mut sum = 0.0;
+            for (&i, a) in rows[column.clone()].iter().zip(&values[column]) {
+                let i = i as usize;
+                sum += a * x[i];
+                if i != j {
+                    r[i] -= a * x[j];
+                }
+            }
+            r[j] -= sum;
+        }
+        r
+    }
+
+    /// First column, number of columns, rows below and values, column by column, of supernode s.
+    fn supernode(&self, s: usize) -> (usize, usize, &[u32], &[f64]) {
+        let all = &self.symbolic;
+        let (start, end) = (all.supernode_begin()[s], all.supernode_end()[s]);
+        let width = (end - start) as usize;
+        let (at, of) = (all.col_ptr_for_val(), all.col_ptr_for_row_idx());
+        let values = &self.factor[at[s] as usize..at[s + 1] as usize];
+        let below = values.len().checked_div(width).unwrap_or(0) - width;
+        let rows = &all.row_idx()[of[s] as usize..][..below];
+        (start as usize, width, rows, values)
+    }
+
     /// x ← L⁻¹ x.
     pub(crate) fn forward(&mut self, x: &mut [f64]) {
-        let n = x.len();
-        supernodal::SupernodalLltRef::new(&self.symbolic, &self.factor).l_solve_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(x, n, 1),
-            Par::Seq,
-            MemStack::new(&mut self.solve_memory),
-        );
+        let mut below = std::mem::take(&mut self.below);
+        for s in 0..self.symbolic.n_supernodes() {
+            let (start, width, rows, values) = self.supernode(s);
+            let sum = &mut below[..rows.len()];
+            sum.fill(0.0);
+            let own = &mut x[start..start + width];
+            for (j, column) in values.chunks_exact(width + rows.len()).enumerate() {
+                let solved = own[j] / column[j];
+                own[j] = solved;
+                for (x, l) in own[j + 1..].iter_mut().zip(&column[j + 1..width]) {
+                    *x -= l * solved;
+                }
+                for (sum, l) in sum.iter_mut().zip(&column[width..]) {
+                    *sum += l * solved;
+                }
+            }
+            for (&i, sum) in rows.iter().zip(sum) {
+                x[i as usize] -= *sum;
+            }
+        }
+        self.below = below;
     }
 
     /// x ← L⁻ᵀ x.
     pub(crate) fn backward(&mut self, x: &mut [f64]) {
-        let n = x.len();
-        supernodal::SupernodalLltRef::new(&self.symbolic, &self.factor)
-            .l_transpose_solve_with_conj(
-                Conj::No,
-                MatMut::from_column_major_slice_mut(x, n, 1),
-                Par::Seq,
-                MemStack::new(&mut self.solve_memory),
-            );
+        let mut below = std::mem::take(&mut self.below);
+        for s in (0..self.symbolic.n_supernodes()).rev() {
+            let (start, width, rows, values) = self.supernode(s);
+            let known = &mut below[..rows.len()];
+            for (&i, known) in rows.iter().zip(known.iter_mut()) {
+                *known = x[i as usize];
+            }
+            let own = &mut x[start..start + width];
+            let columns = values.chunks_exact(width + rows.len()).enumerate();
+            for (j, column) in columns.rev() {
+                let sum = dot(&column[width..], known) + dot(&column[j + 1..width], &own[j + 1..]);
+                own[j] = (own[j] - sum) / column[j];
+            }
+        }
+        self.below = below;
     }
 
     /// The last `size` rows and columns of L, lower triangular.
     pub(crate) fn trailing(&self, size: usize) -> DMatrix<f64> {
-        let first = self.pattern.size() - size;
+        let first = self.lower.nrows() - size;
         let mut block = DMatrix::zeros(size, size);
-        let factor = supernodal::SupernodalLltRef::new(&self.symbolic, &self.factor);
         for s in (0..self.symbolic.n_supernodes()).rev() {
-            let node = factor.supernode(s);
-            let (start, width) = (node.start(), node.val().ncols());
+            let (start, width, rows, values) = self.supernode(s);
             if start + width <= first {
                 break;
             }
-            for j in first.max(start)..start + width {
-                let column = node.val().col(j - start);
+            let columns = values.chunks_exact(width + rows.len());
+            for (j, column) in (start..).zip(columns).filter(|(j, _)| *j >= first) {
                 for i in j..start + width {
                     block[(i - first, j - first)] = column[i - start];
                 }
-                for (k, &i) in node.pattern().iter().enumerate() {
-                    block[(i as usize - first, j - first)] = column[width + k];
+                for (&i, &l) in rows.iter().zip(&column[width..]) {
+                    block[(i as usize - first, j - first)] = l;
                 }
             }
         }
         block
     }
+
+    /// Multiplies an entry of the factor, as a fault of memory or of a kernel would.
+    #[cfg(test)]
+    pub(crate) fn corrupt(&mut self, entry: usize, by: f64) {
+        let count = self.factor.len();
+        self.factor[entry % count] *= by;
+    }
+}
+
+/// Σ a b in an order that lets a processor add several at once.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let mut sums = [0.0; LANES];
+    let (a, b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let rest: f64 = a
+        .remainder()
+        .iter()
+        .zip(b.remainder())
+        .map(|(a, b)| a * b)
+        .sum();
+    for (a, b) in a.zip(b) {
+        for k in 0..LANES {
+            sums[k] += a[k] * b[k];
+        }
+    }
+    rest + sums.iter().sum::<f64>()
+}
+
+/// L Lᵀ of a lower triangular L.
+pub(crate) fn square(l: &DMatrix<f64>) -> DMatrix<f64> {
+    let n = l.nrows();
+    let mut out = DMatrix::zeros(n, n);
+    let view = MatRef::from_column_major_slice(l.as_slice(), n, n);
+    triangular::matmul(
+        MatMut::from_column_major_slice_mut(out.as_mut_slice(), n, n),
+        BlockStructure::TriangularLower,
+        Accum::Replace,
+        view,
+        BlockStructure::TriangularLower,
+        view.transpose(),
+        BlockStructure::TriangularUpper,
+        1.0,
+        Par::Seq,
+    );
+    out.fill_upper_triangle_with_lower_triangle();
+    out
 }
 
 #[cfg(test)]
@@ -249,6 +351,9 @@ mod tests {
             cholesky.forward(&mut b);
             cholesky.backward(&mut b);
             prop_assert!((DVector::from_vec(b) - &x).norm() < 1e-11);
+            let b = DVector::from_fn(n, |i, _| (i as f64).sin());
+            let residual = cholesky.residual(&values, x.as_slice(), b.as_slice());
+            prop_assert!((DVector::from_vec(residual) - (b - &dense * &x)).norm() < 1e-11);
             // L_cc L_ccᵀ is the Schur complement of the trailing block.
             let l = cholesky.trailing(tail);
             let (m, c) = (n - tail, tail);
@@ -256,7 +361,8 @@ mod tests {
             let coupling = dense.view((m, 0), (c, m)).into_owned();
             let schur = dense.view((m, m), (c, c))
                 - &coupling * inner.try_inverse().expect("definite") * coupling.transpose();
-            prop_assert!((&l * l.transpose() - schur).norm() < 1e-10);
+            prop_assert!((&l * l.transpose() - &schur).norm() < 1e-10);
+            prop_assert!((square(&l) - schur).norm() < 1e-10);
         }
     }
 

@@ -58,7 +58,7 @@ impl<const D: usize> Condensation<D> {
         let transformation = rows.finish(D * points.len());
         let stiffness = transformation.congruence(&condensed.stiffness);
         let load = transformation.transposed(&condensed.load);
-        let (mut stiffness, load, rest) = Rest::condense(&stiffness, &load, D * points.len())?;
+        let (mut stiffness, load, rest) = Rest::condense(stiffness, load, D * points.len())?;
         // Components switched off: alone on their diagonal, of the size of their neighbours.
         let typical = stiffness.diagonal().amax().max(f64::MIN_POSITIVE);
         for (c, k) in kinematics.iter().enumerate() {
@@ -220,16 +220,23 @@ impl Transformation {
 
     /// Tᵀ S T of a symmetric S.
     fn congruence(&self, s: &DMatrix<f64>) -> DMatrix<f64> {
-        let right = |s: &DMatrix<f64>| {
-            let mut product = DMatrix::zeros(s.nrows(), self.columns);
-            for (i, row) in self.rows.iter().enumerate() {
-                for &(k, c) in row {
-                    product.column_mut(k).axpy(c, &s.column(i), 1.0);
-                }
-            }
-            product
+        let own = |(i, row): (usize, &Vec<(usize, f64)>)| {
+            let row = row.iter().map(move |&(k, c)| (i, k, c));
+            row.collect::<Vec<_>>()
         };
-        let mut out = right(&right(s).transpose());
+        let entries: Vec<(usize, usize, f64)> =
+            self.rows.iter().enumerate().flat_map(own).collect();
+        let mut out = DMatrix::zeros(self.columns, self.columns);
+        let mut column = DVector::zeros(self.columns);
+        for (s, row) in s.column_iter().zip(&self.rows) {
+            column.fill(0.0);
+            for &(i, k, c) in &entries {
+                column[k] += c * s[i];
+            }
+            for &(k, c) in row {
+                out.column_mut(k).axpy(c, &column, 1.0);
+            }
+        }
         out.fill_upper_triangle_with_lower_triangle();
         out
     }
@@ -247,21 +254,21 @@ struct Rest {
 impl Rest {
     /// Schur complement and load on the first `kept` unknowns, and the way back to the others.
     fn condense(
-        s: &DMatrix<f64>,
-        f: &DVector<f64>,
+        s: DMatrix<f64>,
+        f: DVector<f64>,
         kept: usize,
     ) -> Result<(DMatrix<f64>, DVector<f64>, Self), ContactError> {
         let others = s.nrows() - kept;
-        let own = s.view((0, 0), (kept, kept)).into_owned();
-        let load = f.rows(0, kept).into_owned();
         let mut rest = Self {
             factor: None,
             coupling: s.view((kept, 0), (others, kept)).into_owned(),
             load: f.rows(kept, others).into_owned(),
         };
         if others == 0 {
-            return Ok((own, load, rest));
+            return Ok((s, f, rest));
         }
+        let own = s.view((0, 0), (kept, kept)).into_owned();
+        let load = f.rows(0, kept).into_owned();
         let block = s.view((kept, kept), (others, others)).into_owned();
         let stiffest = block.diagonal().amax();
         let factor = Cholesky::new(block).ok_or(ContactError::Singular)?;
@@ -353,12 +360,12 @@ mod tests {
         });
         let s = &l * l.transpose();
         let f = DVector::from_fn(5, |i, _| (i as f64).cos());
-        let (own, load, rest) = Rest::condense(&s, &f, 2).expect("definite");
+        let (own, load, rest) = Rest::condense(s.clone(), f.clone(), 2).expect("definite");
         let x = s.lu().solve(&f).expect("regular");
         let u = own.lu().solve(&load).expect("regular");
         assert!((&u - x.rows(0, 2)).norm() < 1e-10);
         assert!((rest.expand(&u) - x.rows(2, 3)).norm() < 1e-10);
         let floating = DMatrix::from_element(3, 3, 1.0);
-        assert!(Rest::condense(&floating, &DVector::zeros(3), 1).is_err());
+        assert!(Rest::condense(floating, DVector::zeros(3), 1).is_err());
     }
 }

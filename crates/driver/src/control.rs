@@ -2,8 +2,8 @@
 
 use crate::driver::Driver;
 use crate::error::StepError;
-use crate::increment::largest;
 use crate::load::Loading;
+use crate::norm::largest;
 use crate::report::{Iteration, StepReport};
 
 /// An increment along the path of equilibria under F₀ + λ q, with λ unknown and

@@ -1,6 +1,7 @@
 //! Errors of the driver: of setting up a model and of a step; facts with numbers.
 
 use crate::collapse::Collapse;
+use crate::system::Inaccurate;
 use moreau_contact::ContactError;
 use moreau_mesh::MeshError;
 
@@ -205,6 +206,19 @@ pub enum StepError {
         /// Position of the node \[mm\].
         position: Vec<f64>,
     },
+    /// A solve with the factor left more than rounding, also after a correction: memory or the
+    /// library of kernels is at fault, not the model.
+    #[error(
+        "the factorised stiffness leaves {found:.3e} N of a linear solve, expected at most \
+         {expected:.3e} N: the factor is corrupt, which is no fault of the model; run it again, or on \
+         another machine"
+    )]
+    Inaccurate {
+        /// Largest residual \[N\].
+        found: f64,
+        /// The largest that rounding explains \[N\].
+        expected: f64,
+    },
     /// The structure does not carry the loads of the step: an answer, not a failure. The state is
     /// that of the mechanism, in equilibrium with what the structure carries.
     #[error("step {step:?}: {collapse}, in parts of its loads: the structure does not carry more")]
@@ -232,6 +246,12 @@ pub enum StepError {
         /// Why the last attempt failed.
         cause: Box<StepError>,
     },
+}
+
+impl From<Inaccurate> for StepError {
+    fn from(Inaccurate { found, expected }: Inaccurate) -> Self {
+        Self::Inaccurate { found, expected }
+    }
 }
 
 fn worst_nodes(worst: &[Imbalance]) -> String {

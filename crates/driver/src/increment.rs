@@ -7,10 +7,12 @@ use crate::control::Control;
 use crate::driver::{Driver, State};
 use crate::error::{Imbalance, StepError};
 use crate::interface::{ContactPoint, Footing, Kinematics};
+use crate::iterate::{Iterate, force_scale};
 use crate::line_search::Line;
 use crate::load::{Loading, axis_letter};
+use crate::norm::largest;
 use crate::report::{ContactRecord, Iteration, StepReport};
-use crate::system::{Assembly, System};
+use crate::system::System;
 use moreau_contact::{Certificate, ContactError, ContactSolution};
 use moreau_laws::{Local, Status};
 use nalgebra::SVector;
@@ -41,17 +43,6 @@ pub(crate) struct Candidate<const D: usize> {
     pub(crate) counts: Counts,
 }
 
-/// Where Newton's iteration stands.
-pub(crate) struct Iterate {
-    /// Displacement increments of the step.
-    pub(crate) d_u: Vec<f64>,
-    pub(crate) assembly: Assembly,
-    /// Contact forces at every degree of freedom \[N\].
-    pub(crate) contact: Vec<f64>,
-    /// Part of the last Newton step that was taken: of a full one, which obeys the contact law, 1.
-    pub(crate) part: f64,
-}
-
 /// Where an increment begins.
 pub(crate) struct Start {
     /// The free degrees of freedom.
@@ -61,17 +52,6 @@ pub(crate) struct Start {
     pub(crate) now: Iterate,
     /// Factorisations done before.
     pub(crate) factorisations: usize,
-}
-
-impl Iterate {
-    /// Force that nothing balances, at every degree of freedom \[N\]; zero at those not free.
-    pub(crate) fn imbalance<const D: usize>(&self, end: &Loading<D>, free: &[usize]) -> Vec<f64> {
-        let mut residual = vec![0.0; self.d_u.len()];
-        for &d in free {
-            residual[d] = end.force[d] + self.contact[d] - self.assembly.internal[d];
-        }
-        residual
-    }
 }
 
 /// What an increment may be off by, over the residual of its contact solution: that weighs
@@ -199,7 +179,7 @@ impl<const D: usize> Driver<D> {
             let mut step = std::mem::replace(&mut missing, vec![0.0; now.d_u.len()]);
             let x = condensation.interface(&solved.displacement);
             let growth = border.map_or(0.0, |b| system.factor(&b, &mut condensed, &x));
-            system.expand(condensed, &x, &mut step);
+            system.expand(condensed, &x, &mut step)?;
             let target = self.contact_forces(&kinematics, &solved.force);
             let slack = CONTACT_SLACK * solved.residual;
             solution = Some(solved);
@@ -420,7 +400,7 @@ impl<const D: usize> Driver<D> {
         let energies = self.blocks.iter().map(|b| b.energy());
         let (flow, all) =
             energies.fold((0.0, 0.0), |(f, a), e| (f + e.plastic_volume, a + e.volume));
-        if all > 0.0 { flow / all } else { 0.0 }
+        fraction(flow, all)
     }
 
     /// Makes a converged increment the state of the driver.
@@ -505,12 +485,15 @@ impl<const D: usize> Driver<D> {
         energies.friction_dissipation += friction;
         energies.penalty += penalty;
         energies.stored = 0.0;
+        let (mut plastic_volume, mut volume) = (0.0, 0.0);
         for block in &mut self.blocks {
             let energy = block.energy();
             energies.stored += energy.stored;
             energies.plastic_dissipation += energy.dissipated;
+            plastic_volume += energy.plastic_volume;
+            volume += energy.volume;
         }
-        let plastic_fraction = self.plastic_fraction();
+        let plastic_fraction = fraction(plastic_volume, volume);
         for block in &mut self.blocks {
             block.commit();
         }
@@ -576,22 +559,7 @@ impl<const D: usize> Driver<D> {
     }
 }
 
-pub(crate) fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(0.0, |a, v| {
-        if v.is_nan() {
-            f64::INFINITY
-        } else {
-            a.max(v.abs())
-        }
-    })
-}
-
-/// Size of the forces in play, against which imbalance is judged \[N\].
-pub(crate) fn force_scale<const D: usize>(
-    assembly: &Assembly,
-    end: &Loading<D>,
-    contact: &[f64],
-) -> f64 {
-    let all = assembly.internal.iter().chain(&end.force).chain(contact);
-    largest(all.copied()).max(f64::MIN_POSITIVE)
+/// Part of the volume that flows.
+fn fraction(flows: f64, all: f64) -> f64 {
+    if all > 0.0 { flows / all } else { 0.0 }
 }

@@ -2,8 +2,9 @@
 
 use crate::block::Stiffness;
 use crate::driver::Driver;
-use crate::increment::{Iterate, force_scale, largest};
+use crate::iterate::{Iterate, force_scale};
 use crate::load::Loading;
+use crate::norm::largest;
 use crate::system::System;
 
 /// Step lengths that are tried before the last is taken.
@@ -248,7 +249,9 @@ mod tests {
         system.factorise(true).expect("elastic");
         let condensed = system.condense(&end.force);
         let mut step = none.clone();
-        system.expand(condensed, &nalgebra::DVector::zeros(0), &mut step);
+        system
+            .expand(condensed, &nalgebra::DVector::zeros(0), &mut step)
+            .expect("accurate");
         step.iter_mut().for_each(|u| *u *= 4.0);
         let now = Iterate {
             d_u: none.clone(),

@@ -4,9 +4,11 @@
 use crate::condensation::Condensation;
 use crate::driver::Driver;
 use crate::error::StepError;
-use crate::increment::{Candidate, Counts, Iterate, Start, force_scale, largest};
+use crate::increment::{Candidate, Counts, Start};
+use crate::iterate::{Iterate, force_scale};
 use crate::line_search::Line;
 use crate::load::Loading;
+use crate::norm::largest;
 use crate::report::{Iteration, StepReport};
 use crate::system::System;
 use moreau_contact::{ContactError, ContactSolution, uzawa_steps};
@@ -158,7 +160,7 @@ impl<const D: usize> Driver<D> {
             let load: Vec<f64> = (0..now.d_u.len()).map(load).collect();
             let none = vec![0.0; load.len()];
             let mut step = std::mem::replace(missing, none);
-            system.solve(&load, &mut step);
+            system.solve(&load, &mut step)?;
             let target = now.contact.clone();
             let line = Line {
                 end,

@@ -5,9 +5,9 @@ use crate::collapse::Collapse;
 use crate::control::Control;
 use crate::driver::{Driver, Nesting};
 use crate::error::StepError;
-use crate::increment::largest;
 use crate::increments::Increments;
 use crate::load::{Loading, Step};
+use crate::norm::largest;
 use crate::report::{Iteration, StepReport};
 use crate::saved::{Reader, write_loading};
 

@@ -3,15 +3,14 @@
 
 use crate::ModelError;
 use crate::block::{Block, Stiffness};
-use crate::cholesky::{Cholesky, NotPositiveDefinite, Pattern};
+use crate::cholesky::{Cholesky, NotPositiveDefinite, Pattern, square};
+use crate::norm::largest;
 use crate::ordering::nested_dissection;
+use crate::scatter::{FIXED, Scatter};
 use crate::timings::{Timings, timed};
 use moreau_mesh::Mesh;
 use nalgebra::{DMatrix, DVector};
 use std::time::Instant;
-
-/// Marks a degree of freedom whose displacement is prescribed.
-const FIXED: u32 = u32::MAX;
 
 /// K of the free degrees of freedom, ordered so that those of the interface come last.
 ///
@@ -41,17 +40,6 @@ pub(crate) struct System {
     pub(crate) timings: Timings,
 }
 
-/// Where the forces and stiffness of the cells of a block go.
-#[derive(Debug)]
-struct Scatter {
-    /// Unknowns of a cell.
-    size: usize,
-    /// Degree of freedom of the mesh of every unknown of every cell.
-    dofs: Vec<u32>,
-    /// Slot among the values of every entry of the upper triangle of every cell, or [`FIXED`].
-    slots: Vec<u32>,
-}
-
 /// Internal forces of an assembly.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Assembly {
@@ -63,10 +51,25 @@ pub(crate) struct Assembly {
     pub(crate) flows: bool,
 }
 
+/// Residual of a solve with the factor, over the size of the terms that it is a difference of, up
+/// to which the factor is right: a thousand times what rounding leaves.
+const ACCURATE: f64 = 1e-12;
+
+/// A factor that does not solve the system it was made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Inaccurate {
+    /// Largest residual \[N\].
+    pub(crate) found: f64,
+    /// The largest that rounding explains \[N\].
+    pub(crate) expected: f64,
+}
+
 /// A load q of unknown factor in a condensed system, and the equation that decides it:
 /// q·u + c λ = m.
 #[derive(Debug)]
 pub(crate) struct Border {
+    /// q at the unknowns \[N\].
+    applied: Vec<f64>,
     /// L⁻¹ q.
     forward: Vec<f64>,
     /// q̃, q condensed on the interface \[N\].
@@ -85,6 +88,8 @@ pub(crate) struct Condensed {
     pub(crate) stiffness: DMatrix<f64>,
     /// f̃ \[N\].
     pub(crate) load: DVector<f64>,
+    /// The load of the system \[N\].
+    applied: Vec<f64>,
     /// L⁻¹ of the load of the system.
     forward: Vec<f64>,
 }
@@ -140,9 +145,10 @@ impl System {
         let pattern = Pattern { column_start, row };
         let scatter = blocks
             .iter()
-            .map(|b| scatter(b.as_ref(), &position, &pattern))
+            .map(|b| Scatter::new(b.as_ref(), &position, &pattern))
             .collect();
-        let values = vec![0.0; pattern.row.len()];
+        // One more, for what no unknown sees.
+        let values = vec![0.0; pattern.row.len() + 1];
         let unknowns = dofs.len();
         let cholesky = Cholesky::analyse(pattern).ok_or(ModelError::TooLarge { unknowns })?;
         Ok(Self {
@@ -209,37 +215,16 @@ impl System {
         if stiffness != Stiffness::None {
             self.values.fill(0.0);
         }
+        let missing = missing.iter().any(|&m| m != 0.0).then_some(missing);
         let (position, values) = (&self.position, &mut self.values);
         for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
-            let size = scatter.size;
-            let triangle = size * (size + 1) / 2;
-            flows |= block.evaluate(d_u, stiffness, &mut |result| {
-                let dofs = &scatter.dofs[result.cell * size..(result.cell + 1) * size];
-                for (&dof, f) in dofs.iter().zip(result.force) {
-                    internal[dof as usize] += f;
-                }
-                if result.stiffness.is_empty() {
-                    return;
-                }
-                let slots = &scatter.slots[result.cell * triangle..(result.cell + 1) * triangle];
-                let mut next = 0;
-                for i in 0..size {
-                    for j in i..size {
-                        let slot = slots[next];
-                        next += 1;
-                        let k = result.stiffness[i * size + j];
-                        if slot != FIXED {
-                            values[slot as usize] += k;
-                            continue;
-                        }
-                        let (a, b) = (dofs[i] as usize, dofs[j] as usize);
-                        match (position[a] == FIXED, position[b] == FIXED) {
-                            (false, true) => coupling[a] += k * missing[b],
-                            (true, false) => coupling[b] += k * missing[a],
-                            _ => {}
-                        }
-                    }
-                }
+            flows |= block.evaluate(d_u, stiffness, &mut |cell| {
+                let sums = (
+                    internal.as_mut_slice(),
+                    coupling.as_mut_slice(),
+                    values.as_mut_slice(),
+                );
+                scatter.add(&cell, position, missing, sums);
             });
         }
         self.timings.assembly += clock.elapsed();
@@ -254,8 +239,7 @@ impl System {
     /// on the interface, or zero if the bodies must be held without it.
     pub(crate) fn scale(&mut self, shifted: bool) {
         let first = self.size() - self.interface;
-        let pattern = self.cholesky.pattern();
-        let diagonal = |p: usize| self.values[pattern.range(p as u32).start];
+        let diagonal = |p: usize| self.values[self.cholesky.diagonal(p)];
         self.stiffest = (0..self.size()).map(diagonal).fold(0.0, f64::max);
         self.shift = if shifted {
             (first..self.size()).map(diagonal).fold(0.0, f64::max)
@@ -285,13 +269,13 @@ impl System {
         }
         let first = self.size() - self.interface;
         for p in first..self.size() {
-            let diagonal = self.cholesky.pattern().range(p as u32).start;
-            self.values[diagonal] += self.shift;
+            self.values[self.cholesky.diagonal(p)] += self.shift;
         }
         self.elastic_factor = false;
         self.factorisations += 1;
         timed(&mut self.timings.factorisation, || {
-            self.cholesky.factorise(&self.values)
+            let (_, values) = self.values.split_last().unwrap_or((&0.0, &[]));
+            self.cholesky.factorise(values)
         })
         .map_err(|NotPositiveDefinite { row }| self.dofs[row])?;
         self.elastic_factor = elastic;
@@ -300,14 +284,15 @@ impl System {
 
     /// Condenses the factorised system under a load given at every degree of freedom \[N\].
     pub(crate) fn condense(&mut self, load: &[f64]) -> Condensed {
-        let mut forward: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
+        let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
+        let mut forward = applied.clone();
         timed(&mut self.timings.solution, || {
             self.cholesky.forward(&mut forward)
         });
         let clock = Instant::now();
         let first = self.size() - self.interface;
         let factor = self.cholesky.trailing(self.interface);
-        let mut stiffness = &factor * factor.transpose();
+        let mut stiffness = square(&factor);
         for i in 0..self.interface {
             stiffness[(i, i)] -= self.shift;
         }
@@ -317,6 +302,7 @@ impl System {
             factor,
             stiffness,
             load,
+            applied,
             forward,
         }
     }
@@ -330,7 +316,8 @@ impl System {
         load: &[f64],
         (compliance, missing): (f64, f64),
     ) -> Border {
-        let mut forward: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
+        let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
+        let mut forward = applied.clone();
         timed(&mut self.timings.solution, || {
             self.cholesky.forward(&mut forward)
         });
@@ -343,6 +330,7 @@ impl System {
             load: &condensed.factor * DVector::from_column_slice(&forward[first..]),
             compliance: compliance + interior(&forward, &forward),
             missing: missing - interior(&forward, &condensed.forward),
+            applied,
             forward,
         };
         let scale = 1.0 / border.compliance;
@@ -367,35 +355,83 @@ impl System {
         let interior = self.size() - self.interface;
         let pairs = condensed.forward.iter_mut().zip(&border.forward);
         pairs.take(interior).for_each(|(f, w)| *f += factor * w);
+        let pairs = condensed.applied.iter_mut().zip(&border.applied);
+        pairs.for_each(|(f, q)| *f += factor * q);
         factor
     }
 
     /// Solves the factorised system, without a shift, for a load at every degree of freedom \[N\];
     /// prescribed displacements in `d_u` are left as they are.
-    pub(crate) fn solve(&mut self, load: &[f64], d_u: &mut [f64]) {
-        let mut solution: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
-        timed(&mut self.timings.solution, || {
-            self.cholesky.forward(&mut solution);
-            self.cholesky.backward(&mut solution);
-        });
+    ///
+    /// # Errors
+    /// [`Inaccurate`] where the factor does not solve the system.
+    pub(crate) fn solve(&mut self, load: &[f64], d_u: &mut [f64]) -> Result<(), Inaccurate> {
+        let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
+        let mut solution = applied.clone();
+        let clock = Instant::now();
+        self.cholesky.forward(&mut solution);
+        self.cholesky.backward(&mut solution);
+        let outcome = self.refine(&applied, &mut solution, self.size());
+        self.timings.solution += clock.elapsed();
         for (&dof, u) in self.dofs.iter().zip(solution) {
             d_u[dof] = u;
         }
+        outcome
     }
 
     /// Displacement of all free degrees of freedom for the interface displacements x, written to
     /// `d_u` at every degree of freedom; prescribed ones are left as they are.
-    pub(crate) fn expand(&mut self, condensed: Condensed, x: &DVector<f64>, d_u: &mut [f64]) {
+    ///
+    /// # Errors
+    /// [`Inaccurate`] where the factor does not solve the system.
+    pub(crate) fn expand(
+        &mut self,
+        condensed: Condensed,
+        x: &DVector<f64>,
+        d_u: &mut [f64],
+    ) -> Result<(), Inaccurate> {
         let first = self.size() - self.interface;
         let mut solution = condensed.forward;
         // (K + σE) u = f + t + σx has L⁻¹ of its right-hand side equal to L_ccᵀ x down here.
         let tail = condensed.factor.tr_mul(x);
         solution[first..].copy_from_slice(tail.as_slice());
-        timed(&mut self.timings.solution, || {
-            self.cholesky.backward(&mut solution)
-        });
+        let clock = Instant::now();
+        self.cholesky.backward(&mut solution);
+        // Down here x is given, and the forces are those of the contact problem.
+        let outcome = self.refine(&condensed.applied, &mut solution, first);
+        self.timings.solution += clock.elapsed();
         for (&dof, u) in self.dofs.iter().zip(solution) {
             d_u[dof] = u;
+        }
+        outcome
+    }
+
+    /// Checks the first `rows` rows of K u = f, with the others of u given, and corrects u once
+    /// where they do not hold: faults of memory and of kernels corrupt a factor silently.
+    fn refine(&mut self, f: &[f64], u: &mut [f64], rows: usize) -> Result<(), Inaccurate> {
+        let (_, values) = self.values.split_last().unwrap_or((&0.0, &[]));
+        let mut refined = false;
+        loop {
+            let mut residual = self.cholesky.residual(values, u, f);
+            residual[rows..].fill(0.0);
+            let found = largest(residual.iter().copied());
+            let motion = largest(u.iter().copied());
+            let expected = ACCURATE * (largest(f.iter().copied()) + self.stiffest * motion);
+            // A displacement that is not finite has no bound.
+            if found.is_finite() && found <= expected {
+                return Ok(());
+            }
+            if refined {
+                self.elastic_factor = false;
+                return Err(Inaccurate { found, expected });
+            }
+            self.cholesky.forward(&mut residual);
+            residual[rows..].fill(0.0);
+            self.cholesky.backward(&mut residual);
+            for (u, correction) in u.iter_mut().zip(residual) {
+                *u += correction;
+            }
+            refined = true;
         }
     }
 }
@@ -431,32 +467,69 @@ fn adjacency<const D: usize>(mesh: &Mesh<D>) -> Adjacency {
     Adjacency { start, entries }
 }
 
-fn scatter<const D: usize>(block: &dyn Block<D>, position: &[u32], pattern: &Pattern) -> Scatter {
-    let cells = block.cells().len();
-    let size = if cells == 0 {
-        0
-    } else {
-        D * block.nodes(0).len()
-    };
-    let mut dofs = Vec::with_capacity(cells * size);
-    let mut slots = Vec::with_capacity(cells * size * (size + 1) / 2);
-    for k in 0..cells {
-        let first = dofs.len();
-        dofs.extend(
-            block
-                .nodes(k)
-                .iter()
-                .flat_map(|&a| (D * a..D * a + D).map(|d| d as u32)),
-        );
-        let cell = &dofs[first..];
-        for (i, &a) in cell.iter().enumerate() {
-            for &b in &cell[i..] {
-                let (p, q) = (position[a as usize], position[b as usize]);
-                let free = p != FIXED && q != FIXED;
-                let slot = free.then(|| pattern.slot(p.max(q), p.min(q))).flatten();
-                slots.push(slot.unwrap_or(FIXED));
-            }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Axis, Driver, Model, Settings, Step};
+    use moreau_laws::Elastic;
+    use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
+
+    /// A block held at its left side and pulled at the other, factorised, with its load.
+    fn pulled() -> (System, Vec<f64>) {
+        let (x, y) = (uniform(0.0, 10.0, 6), uniform(0.0, 5.0, 3));
+        let mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
+        let model = Model::new(mesh, PlaneStrain::default())
+            .material(
+                "block",
+                Elastic::new(210e3, 0.3).expect("valid"),
+                Integration::Reduced,
+            )
+            .expect("valid");
+        let mut driver = Driver::new(model, Settings::default()).expect("valid");
+        let step = Step::new("pull")
+            .fix("block.left", &[Axis::X, Axis::Y])
+            .pressure("block.right", -100.0);
+        let end = driver.loading(&step).expect("valid");
+        let mut system = driver.prepare(&end, None).expect("held");
+        system.factorise(true).expect("definite");
+        (system, end.force)
+    }
+
+    #[test]
+    fn a_factor_that_is_a_little_wrong_is_corrected() {
+        let (mut system, load) = pulled();
+        let solve = |system: &mut System| {
+            let mut u = vec![0.0; load.len()];
+            let outcome = system.solve(&load, &mut u);
+            (u, outcome)
+        };
+        let (right, outcome) = solve(&mut system);
+        assert_eq!(outcome, Ok(()));
+        system.cholesky.corrupt(100, 1.0 + 1e-8);
+        let (u, outcome) = solve(&mut system);
+        assert_eq!(outcome, Ok(()));
+        let largest_error = largest(u.iter().zip(&right).map(|(u, v)| u - v));
+        assert!(largest_error < 1e-11 * largest(right.iter().copied()));
+    }
+
+    #[test]
+    fn a_corrupt_factor_is_told_and_not_used_again() {
+        for by in [1.5, -1.0, f64::NAN, f64::INFINITY] {
+            let (mut system, load) = pulled();
+            system.cholesky.corrupt(0, by);
+            let mut u = vec![0.0; load.len()];
+            let outcome = system.solve(&load, &mut u);
+            let Err(Inaccurate { found, expected }) = outcome else {
+                panic!("a factor wrong by {by} passes");
+            };
+            assert!(
+                found > expected || !found.is_finite(),
+                "{by}: {found} {expected}"
+            );
+            assert!(!system.holds_elastic_factor());
+            // What is assembled still is the stiffness: another factor of it is right.
+            system.factorise(true).expect("definite");
+            assert_eq!(system.solve(&load, &mut u), Ok(()));
         }
     }
-    Scatter { size, dofs, slots }
 }

@@ -13,6 +13,9 @@ pub trait Hypothesis<const D: usize>: 'static + Copy + Send + Sync {
     /// Summed over the nodes, ε = Σ_a B_a U_a. Linear in `(n, grad)`.
     fn strain_operator(n: f64, grad: &[f64; D], x: &[f64; D]) -> SMatrix<f64, 6, D>;
 
+    /// Rows of every column of B_a that may be other than zero, for kernels to skip the rest.
+    const ROWS: [&'static [usize]; D];
+
     /// Factor from dx to the volume, and of a facet to its area, at the point `x` \[mm\]:
     /// thickness \[mm\], 2πr \[mm\] or 1.
     fn measure(&self, x: &[f64; D]) -> f64;
@@ -56,6 +59,8 @@ impl Default for PlaneStrain {
 }
 
 impl Hypothesis<2> for PlaneStrain {
+    const ROWS: [&'static [usize]; 2] = [&[0, 5], &[1, 5]];
+
     #[inline]
     fn strain_operator(_: f64, grad: &[f64; 2], _: &[f64; 2]) -> SMatrix<f64, 6, 2> {
         in_plane(grad)
@@ -79,6 +84,8 @@ impl Hypothesis<2> for PlaneStrain {
 pub struct Axisymmetric;
 
 impl Hypothesis<2> for Axisymmetric {
+    const ROWS: [&'static [usize]; 2] = [&[0, 2, 5], &[1, 5]];
+
     #[inline]
     fn strain_operator(n: f64, grad: &[f64; 2], &[r, _]: &[f64; 2]) -> SMatrix<f64, 6, 2> {
         let mut b = in_plane(grad);
@@ -101,6 +108,8 @@ impl Hypothesis<2> for Axisymmetric {
 pub struct Solid;
 
 impl Hypothesis<3> for Solid {
+    const ROWS: [&'static [usize]; 3] = [&[0, 4, 5], &[1, 3, 5], &[2, 3, 4]];
+
     #[inline]
     fn strain_operator(_: f64, &[x, y, z]: &[f64; 3], _: &[f64; 3]) -> SMatrix<f64, 6, 3> {
         let [p, q, r] = [x, y, z].map(|g| FRAC_1_SQRT_2 * g);

@@ -26,9 +26,9 @@ fn zero_modes<H: Analysis<D>, const D: usize>(
     block.evaluate(&vec![0.0; dofs], Stiffness::Blended(1.0), &mut |result| {
         let nodes = mesh.cell_nodes(result.cell);
         let dof = |k: usize| D * nodes[k / D] + k % D;
+        let mut entries = result.stiffness.iter();
         for i in 0..size {
-            for j in i..size {
-                let k = result.stiffness[size * i + j];
+            for (j, k) in (i..size).zip(entries.by_ref()) {
                 stiffness[(dof(i), dof(j))] += k;
                 if i != j {
                     stiffness[(dof(j), dof(i))] += k;

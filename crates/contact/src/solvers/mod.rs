@@ -2,6 +2,7 @@
 
 pub(crate) mod anderson;
 mod gauss_seidel;
+mod linearised;
 mod penalty;
 mod semismooth;
 mod uzawa;

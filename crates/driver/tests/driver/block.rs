@@ -29,15 +29,13 @@ fn evaluate<const D: usize>(block: &mut dyn Block<D>, d_u: &[f64], kind: Stiffne
     };
     block.evaluate(d_u, kind, &mut |result| {
         let own = &cells[result.cell];
+        let mut entries = result.stiffness.iter();
         for (i, &a) in own.iter().enumerate() {
             out.force[a] += result.force[i];
-            for (j, &b) in own.iter().enumerate().skip(i) {
-                if !result.stiffness.is_empty() {
-                    let k = result.stiffness[i * own.len() + j];
-                    out.stiffness[(a, b)] += k;
-                    if a != b {
-                        out.stiffness[(b, a)] += k;
-                    }
+            for (&b, k) in own[i..].iter().zip(entries.by_ref()) {
+                out.stiffness[(a, b)] += k;
+                if a != b {
+                    out.stiffness[(b, a)] += k;
                 }
             }
         }

@@ -1,0 +1,266 @@
+//! The linear equations of a Newton step on the natural map; not the map.
+
+use crate::ContactProblem;
+use crate::dense::Lu;
+use moreau_laws::Local;
+use nalgebra::{DMatrix, DVector, SMatrix};
+
+/// The linearised map of one contact: E S_i du + A du_i = −G_i, with the D rows S_i of the stiffness.
+pub(super) struct Row<const D: usize> {
+    /// E, dimensionless.
+    pub(super) elastic: SMatrix<f64, D, D>,
+    /// A \[N/mm\].
+    pub(super) shift: SMatrix<f64, D, D>,
+    /// −G \[N\].
+    pub(super) value: Local<D>,
+}
+
+/// Pivots below this part of the largest are rounding of a stiffness that was condensed, and a rigid
+/// motion.
+const RIGID: f64 = 1e-13;
+
+/// Part of an E at most 1 below which it is rounding.
+const NONE: f64 = 1e-14;
+
+/// The step du \[mm\] that solves the rows of all contacts; `None` where they are singular.
+///
+/// Where a contact sticks E is zero, and where it slips E has not full rank: some combinations of its
+/// rows bind its own components only. They are answered first; what is left is as small as the open
+/// contacts with all, and the slipping ones with their tangential components, make it.
+pub(super) fn solve<const D: usize>(
+    problem: &ContactProblem<D>,
+    rows: Vec<Row<D>>,
+) -> Option<DVector<f64>> {
+    let s = problem.stiffness();
+    let n = s.nrows();
+    let own: Vec<Own<D>> = rows.into_iter().map(Own::new).collect::<Option<_>>()?;
+    let fixed = DVector::from_iterator(n, own.iter().flat_map(|o| (0..D).map(|k| o.fixed[k])));
+    // What the rows see of the components that are known.
+    let known = if fixed.iter().any(|&u| u != 0.0) {
+        s * &fixed
+    } else {
+        DVector::zeros(n)
+    };
+    let size = own.iter().map(|o| o.left).sum();
+    let mut matrix = DMatrix::zeros(size, size);
+    let mut value = DVector::zeros(size);
+    let mut column = 0;
+    for (j, other) in own.iter().enumerate() {
+        for direction in other.free.column_iter().take(other.left) {
+            let mut answer = s.column(D * j) * direction[0];
+            for k in (1..D).filter(|&k| direction[k] != 0.0) {
+                answer.axpy(direction[k], &s.column(D * j + k), 1.0);
+            }
+            let mut row = 0;
+            for (i, o) in own.iter().enumerate() {
+                let answer = answer.fixed_rows::<D>(D * i);
+                for r in 0..o.left {
+                    let mut entry: f64 = (0..D).map(|k| o.elastic[(r, k)] * answer[k]).sum();
+                    if i == j {
+                        entry += (0..D).map(|k| o.shift[(r, k)] * direction[k]).sum::<f64>();
+                    }
+                    matrix[(row, column)] = entry;
+                    row += 1;
+                }
+            }
+            column += 1;
+        }
+    }
+    let mut row = 0;
+    for (i, o) in own.iter().enumerate() {
+        let known = known.fixed_rows::<D>(D * i);
+        for r in 0..o.left {
+            let seen = (0..D).map(|k| o.elastic[(r, k)] * known[k] + o.shift[(r, k)] * o.fixed[k]);
+            value[row] = o.value[r] - seen.sum::<f64>();
+            row += 1;
+        }
+    }
+    let mut lu = Lu::new(matrix).filter(|lu| lu.least_pivot > RIGID)?;
+    let solved = lu.solve(value);
+    let mut step = fixed;
+    let mut next = 0;
+    for (i, o) in own.iter().enumerate() {
+        let mut own = step.fixed_rows_mut::<D>(D * i);
+        for direction in o.free.column_iter().take(o.left) {
+            own.axpy(solved[next], &direction, 1.0);
+            next += 1;
+        }
+    }
+    step.iter().all(|v| v.is_finite()).then_some(step)
+}
+
+/// Components of a contact at most, in the plane and in space.
+const MOST: usize = 3;
+
+/// A row E | A | −G of a contact, with room for [`MOST`] components of each.
+type Wide = [f64; 2 * MOST + 1];
+
+/// The rows of a contact that need the others, in front, and its displacement as
+/// du = fixed + Σ free · unknown.
+struct Own<const D: usize> {
+    elastic: SMatrix<f64, D, D>,
+    shift: SMatrix<f64, D, D>,
+    value: Local<D>,
+    /// How many rows are left, and unknowns.
+    left: usize,
+    fixed: Local<D>,
+    /// Directions of the unknowns, in the first columns.
+    free: SMatrix<f64, D, D>,
+}
+
+impl<const D: usize> Own<D> {
+    /// `None` if the rows that bind the contact alone are singular.
+    fn new(row: Row<D>) -> Option<Self> {
+        let mut rows: [Wide; D] = std::array::from_fn(|i| {
+            let mut wide = [0.0; 2 * MOST + 1];
+            for j in 0..D {
+                wide[j] = row.elastic[(i, j)];
+                wide[MOST + j] = row.shift[(i, j)];
+            }
+            wide[2 * MOST] = row.value[i];
+            wide
+        });
+        let left = eliminate(&mut rows, 0, NONE, false).len();
+        let (rest, alone) = rows.split_at_mut(left);
+        let bound = eliminate(alone, MOST, NONE * row.shift.amax(), true);
+        if bound.len() < alone.len() {
+            return None;
+        }
+        let mut fixed = Local::zeros();
+        let mut free = SMatrix::zeros();
+        let mut next = 0;
+        for j in 0..D {
+            if !bound.contains(&(MOST + j)) {
+                free[(j, next)] = 1.0;
+                for (row, &pivot) in alone.iter().zip(&bound) {
+                    free[(pivot - MOST, next)] = -row[MOST + j] / row[pivot];
+                }
+                next += 1;
+            }
+        }
+        for (row, &pivot) in alone.iter().zip(&bound) {
+            fixed[pivot - MOST] = row[2 * MOST] / row[pivot];
+        }
+        let entry = |i: usize, column: usize| rest.get(i).map_or(0.0, |row| row[column]);
+        Some(Self {
+            elastic: SMatrix::from_fn(entry),
+            shift: SMatrix::from_fn(|i, j| entry(i, MOST + j)),
+            value: Local::from_fn(|i, _| entry(i, 2 * MOST)),
+            left,
+            fixed,
+            free,
+        })
+    }
+}
+
+/// Gaussian elimination in the [`MOST`] columns from `first` on, each time by the largest entry left
+/// until none is above `none`; in the rows before, too, if asked for. Returns the columns of the
+/// pivots, row by row.
+fn eliminate(rows: &mut [Wide], first: usize, none: f64, before: bool) -> Vec<usize> {
+    let mut pivots = Vec::with_capacity(rows.len());
+    for step in 0..rows.len() {
+        let entries = (step..rows.len()).flat_map(|i| (first..first + MOST).map(move |j| (i, j)));
+        let size = |&(i, j): &(usize, usize)| rows[i][j].abs();
+        let Some((i, pivot)) = entries.max_by(|a, b| size(a).total_cmp(&size(b))) else {
+            break;
+        };
+        if size(&(i, pivot)) <= none {
+            break;
+        }
+        rows.swap(step, i);
+        let own = rows[step];
+        for (k, row) in rows.iter_mut().enumerate() {
+            if k > step || (before && k < step) {
+                let c = row[pivot] / own[pivot];
+                for (entry, own) in row.iter_mut().zip(&own) {
+                    *entry -= c * own;
+                }
+                row[pivot] = 0.0;
+            }
+        }
+        pivots.push(pivot);
+    }
+    pivots
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moreau_laws::Coulomb;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Whatever the ranks: the step is that of the whole matrix.
+        #[test]
+        fn the_step_solves_all_rows(
+            kinds in prop::collection::vec(0usize..4, 5), seed in prop::collection::vec(-1.0..1.0f64, 31),
+        ) {
+            let n = 3 * kinds.len();
+            let random = |k: usize| seed[k % seed.len()];
+            let b = DMatrix::from_fn(n, n, |i, j| random(7 * i + 3 * j));
+            let s = &b * b.transpose() + DMatrix::identity(n, n);
+            let zero = vec![Local::<3>::zeros(); kinds.len()];
+            let law = vec![Coulomb::new(0.3).expect("valid"); kinds.len()];
+            let problem =
+                ContactProblem::new(s.clone(), DVector::zeros(n), zero.clone(), law, zero)
+                    .expect("valid");
+            // E a projector of rank 0 to 3, A the rest, both turned.
+            let row = |(c, &rank): (usize, &usize)| {
+                let t = Local::<3>::from_fn(|k, _| random(11 * c + k) + 0.1);
+                let q = along(&t);
+                let d = |kept: f64, other: f64| {
+                    let entry = |k: usize| if k < rank { kept } else { other };
+                    SMatrix::<f64, 3, 3>::from_diagonal(&Local::from_fn(|k, _| entry(k)))
+                };
+                Row {
+                    elastic: q * d(1.0, 0.0) * q.transpose(),
+                    shift: q * d(0.0, 2.0) * q.transpose() * (SMatrix::identity() + 0.2 * q),
+                    value: Local::from_fn(|k, _| random(5 * c + k)),
+                }
+            };
+            let rows: Vec<_> = kinds.iter().enumerate().map(row).collect();
+            let mut whole = DMatrix::zeros(n, n);
+            let mut value = DVector::zeros(n);
+            for (i, r) in rows.iter().enumerate() {
+                let all = r.elastic * s.fixed_rows::<3>(3 * i);
+                whole.fixed_rows_mut::<3>(3 * i).copy_from(&all);
+                let mut own = whole.fixed_view_mut::<3, 3>(3 * i, 3 * i);
+                own += r.shift;
+                value.fixed_rows_mut::<3>(3 * i).copy_from(&r.value);
+            }
+            let expected = whole.clone().lu().solve(&value);
+            let step = solve(&problem, rows);
+            if let (Some(x), Some(y)) = (expected, step) {
+                prop_assert!((&whole * &y - &value).amax() < 1e-8 * (1.0 + y.amax() * whole.amax()));
+                prop_assert!((&x - &y).amax() < 1e-6 * (1.0 + x.amax()));
+            }
+        }
+    }
+
+    /// A rotation whose first column is along t.
+    fn along(t: &Local<3>) -> SMatrix<f64, 3, 3> {
+        crate::frame(&(t / t.norm()))
+    }
+
+    #[test]
+    fn stuck_contacts_leave_no_equations_and_rows_of_zeros_no_step() {
+        let zero = vec![Local::<2>::zeros()];
+        let law = vec![Coulomb::new(0.3).expect("valid")];
+        let problem = ContactProblem::new(
+            DMatrix::identity(2, 2),
+            DVector::zeros(2),
+            zero.clone(),
+            law,
+            zero,
+        )
+        .expect("valid");
+        let row = |shift| Row {
+            elastic: SMatrix::zeros(),
+            shift,
+            value: Local::<2>::new(3.0, -1.0),
+        };
+        let step = solve(&problem, vec![row(SMatrix::identity() * 2.0)]).expect("regular");
+        assert_eq!(step, DVector::from_row_slice(&[1.5, -0.5]));
+        assert!(solve(&problem, vec![row(SMatrix::zeros())]).is_none());
+    }
+}

@@ -1,0 +1,38 @@
+//! Where Newton's iteration stands: displacements, forces and what they are measured by; not how it
+//! got there.
+
+use crate::load::Loading;
+use crate::norm::largest;
+use crate::system::Assembly;
+
+/// Where Newton's iteration stands.
+pub(crate) struct Iterate {
+    /// Displacement increments of the step.
+    pub(crate) d_u: Vec<f64>,
+    pub(crate) assembly: Assembly,
+    /// Contact forces at every degree of freedom \[N\].
+    pub(crate) contact: Vec<f64>,
+    /// Part of the last Newton step that was taken: of a full one, which obeys the contact law, 1.
+    pub(crate) part: f64,
+}
+
+impl Iterate {
+    /// Force that nothing balances, at every degree of freedom \[N\]; zero at those not free.
+    pub(crate) fn imbalance<const D: usize>(&self, end: &Loading<D>, free: &[usize]) -> Vec<f64> {
+        let mut residual = vec![0.0; self.d_u.len()];
+        for &d in free {
+            residual[d] = end.force[d] + self.contact[d] - self.assembly.internal[d];
+        }
+        residual
+    }
+}
+
+/// Size of the forces in play, against which imbalance is judged \[N\].
+pub(crate) fn force_scale<const D: usize>(
+    assembly: &Assembly,
+    end: &Loading<D>,
+    contact: &[f64],
+) -> f64 {
+    let all = assembly.internal.iter().chain(&end.force).chain(contact);
+    largest(all.copied()).max(f64::MIN_POSITIVE)
+}
