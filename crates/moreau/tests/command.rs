@@ -556,6 +556,46 @@ move = [{{ on = "b.top", u = {{ y = 0.01 }} }}]
     assert_eq!(status, 0, "{out}{err}");
 }
 
+/// A cylinder of soil between smooth plates carries 2 c cos φ/(1 − sin φ), associated or not, and says
+/// what it is made of.
+#[test]
+fn a_soil_has_its_strength_in_compression() {
+    let (sine, cosine) = 30f64.to_radians().sin_cos();
+    let force = -2.0 * 0.02 * cosine / (1.0 - sine) * 4.0 * std::f64::consts::PI;
+    for dilatancy in [30, 15] {
+        let deck = format!(
+            r#"
+units = "mm-N-MPa"
+analysis = "axisymmetric"
+mesh.block = [{{ name = "b", element = "quad8", x = [0, 2], y = [0, 4], cells = [2, 2] }}]
+[[material]]
+on = "b"
+young = 20.0
+poisson = 0.3
+cohesion = 0.02
+friction-angle = 30
+dilatancy-angle = {dilatancy}
+[[step]]
+name = "compress"
+increments = 10
+fix = [{{ on = "b.bottom", u = ["y"] }}, {{ on = "b.left", u = ["x"] }}]
+move = [{{ on = "b.top", u = {{ y = -0.08 }} }}]
+[expect]
+"force.b.top.y" = {{ value = {force}, relative = 1e-7 }}
+"#
+        );
+        let (status, out, err, results) = run("soil", &deck, &["--verify"]);
+        assert_eq!(status, 0, "{out}{err}");
+        let resolved = results.join("deck.resolved.toml");
+        let again = fs::read_to_string(resolved).expect("a deck");
+        assert!(again.contains("friction-angle = 30.0"), "{again}");
+        assert!(
+            again.contains(&format!("dilatancy-angle = {dilatancy}.0")),
+            "{again}"
+        );
+    }
+}
+
 #[test]
 fn a_contact_that_never_closes_is_told() {
     let hover = punched()
