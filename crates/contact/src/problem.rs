@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn nothing_in_contact_has_a_form_too() {
         let (s, f) = (DMatrix::zeros(0, 0), DVector::zeros(0));
-        let problem = ContactProblem::<2>::new(s, f, Vec::new(), Vec::new(), Vec::new());
+        let problem = ContactProblem::<2>::new(s, f, vec![], Vec::<Friction>::new(), vec![]);
         let form = problem.expect("valid").delassus("test").expect("empty");
         assert!(form.operator.is_empty() && form.free.is_empty());
     }

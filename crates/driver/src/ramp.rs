@@ -163,8 +163,8 @@ impl<const D: usize> Ramp<D> {
     }
 
     /// Where the last two increments tend to if λ = λ∞ − A/(w + w₀) over the work w: the square root
-    /// of the stiffness is then linear in λ, and zero at λ∞. `None` where nothing yields, or something
-    /// is moved.
+    /// of the stiffness is then linear in λ, and zero at λ∞; no less than what was reached. `None` where
+    /// nothing yields, or something is moved.
     fn estimated_limit(&self) -> Option<f64> {
         let [Some(last), Some(first)] = self.yielded else {
             return None;
@@ -172,8 +172,11 @@ impl<const D: usize> Ramp<D> {
         let moves = self.start.displacement != self.end.displacement;
         let roots = [first, last].map(|y| y.stiffness.sqrt());
         let softer = roots[1] < (1.0 - SOFTER) * roots[0] && last.factor > first.factor;
-        (softer && !moves)
-            .then(|| last.factor + (last.factor - first.factor) * roots[1] / (roots[0] - roots[1]))
+        (softer && !moves).then(|| {
+            let ahead = roots[1] / (roots[0] - roots[1]);
+            let limit = last.factor + (last.factor - first.factor) * ahead;
+            limit.max(self.done)
+        })
     }
 
     /// The error of a step that has been cut as far as allowed.

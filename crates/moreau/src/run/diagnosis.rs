@@ -74,7 +74,11 @@ impl Diagnosis {
             .filter_map(flip)
             .collect();
         let suggestion = suggestion(deck, stage, cause, plastic_fraction, !flips.is_empty());
-        let worst = driver.worst(&trace.residual);
+        let worst = match cause {
+            StepError::NotConverged { worst, .. } => worst.clone(),
+            _ if trace.is_of_next(driver) => driver.worst(&trace.residual),
+            _ => Vec::new(),
+        };
         Self {
             worst: worst.into_iter().filter(|w| w.force != 0.0).collect(),
             flips,
