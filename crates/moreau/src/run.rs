@@ -429,7 +429,7 @@ where
         };
         let driver = &self.setup.driver;
         if let Some(out) = &mut self.out {
-            if diagnosis.is_some() && !self.trace.d_u.is_empty() {
+            if diagnosis.is_some() && self.trace.is_of_next(driver) {
                 let displacement = self.trace.displacement(driver);
                 let residual = &self.trace.residual;
                 out.collection.failed(driver, &displacement, residual)?;
