@@ -102,7 +102,7 @@ impl<const D: usize> Driver<D> {
         settings: Settings<D>,
     ) -> Result<Self, ModelError> {
         model.check()?;
-        let dofs = D * model.mesh.nodes().len();
+        let dofs = D * (model.mesh.nodes().len() + model.tools.len());
         let rest = |p: &ContactPoint<D>| ContactRecord {
             contact: p.contact,
             node: p.node,
@@ -121,7 +121,7 @@ impl<const D: usize> Driver<D> {
             displacement: vec![0.0; dofs],
             last: None,
             internal: vec![0.0; dofs],
-            loading: Loading::none(dofs, model.tools.len()),
+            loading: Loading::none(dofs),
             energies: Energies::default(),
             contacts: model.points.iter().map(rest).collect(),
             contact: vec![0.0; dofs],
@@ -148,7 +148,7 @@ impl<const D: usize> Driver<D> {
     /// Finds what the contact points stand on, at the committed positions.
     pub(crate) fn pair(&mut self) -> Result<(), ModelError> {
         let on_tool = |p: &ContactPoint<D>| match p.tool {
-            Some(_) => Footing::on_tool(p),
+            Some(tool) => Footing::on_tool(p, self.tool_node(tool)),
             None => Footing::default(),
         };
         let mut footings: Vec<Footing<D>> = self.points.iter().map(on_tool).collect();
@@ -181,7 +181,17 @@ impl<const D: usize> Driver<D> {
         Ok(())
     }
 
-    /// Where a node is \[mm\].
+    /// The node that stands for a tool.
+    pub(crate) fn tool_node(&self, tool: usize) -> usize {
+        self.mesh.nodes().len() + tool
+    }
+
+    /// Degrees of freedom of the mesh; those of the tools come after them.
+    pub(crate) fn mesh_dofs(&self) -> usize {
+        D * self.mesh.nodes().len()
+    }
+
+    /// Where a node of the mesh is \[mm\].
     pub(crate) fn position(&self, node: usize) -> SVector<f64, D> {
         SVector::from(self.mesh.nodes()[node]) + self.displacement(node)
     }
@@ -288,6 +298,15 @@ impl<const D: usize> Driver<D> {
         Ok(pairs.filter(touches).map(|(_, c)| c.force).sum())
     }
 
+    /// Translation of a tool from its first position \[mm\].
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownTool`].
+    pub fn tool_displacement(&self, name: &str) -> Result<SVector<f64, D>, ModelError> {
+        let tool = tool_index(&self.tools, name)?;
+        Ok(self.displacement(self.tool_node(tool)))
+    }
+
     /// Sum of the contact forces on the nodes of a group \[N\]: on either surface of a pair, the
     /// force that the other exerts on it.
     ///
@@ -307,9 +326,7 @@ impl<const D: usize> Driver<D> {
     /// Unknown groups and tools, displacements prescribed twice, numbers that are not finite.
     pub fn loading(&self, step: &Step<D>) -> Result<Loading<D>, ModelError> {
         let mesh = &self.mesh;
-        let mut loading = Loading::none(self.state.displacement.len(), self.tools.len());
-        // A tool that is not mentioned stays where it is.
-        loading.tools.clone_from(&self.state.loading.tools);
+        let mut loading = Loading::none(self.state.displacement.len());
         let mut add = |node: usize, share: f64, vector: &[f64; D]| {
             for i in 0..D {
                 loading.force[D * node + i] += share * vector[i];
@@ -363,16 +380,38 @@ impl<const D: usize> Driver<D> {
                         add(node, share, density);
                     }
                 }
-                Condition::Tool { .. } => {}
+                Condition::Tool { .. } | Condition::Push { .. } => {}
+            }
+        }
+        // A tool that is not mentioned stays where it is.
+        let tools = self.mesh_dofs()..self.state.displacement.len();
+        moved.extend(tools.map(|dof| (dof, self.state.displacement[dof])));
+        for condition in &step.conditions {
+            if let Condition::Tool { name, displacement } = condition {
+                let node = self.tool_node(tool_index(&self.tools, name)?);
+                moved.extend((0..D).map(|i| (D * node + i, displacement[i])));
             }
         }
         for condition in &step.conditions {
-            if let Condition::Tool { name, displacement } = condition {
-                loading.tools[tool_index(&self.tools, name)?] = SVector::from(*displacement);
+            if let Condition::Push { name, axis, force } = condition {
+                let node = self.tool_node(tool_index(&self.tools, name)?);
+                let translations = self.measure.rigid_modes(&[0.0; D]);
+                if !translations
+                    .iter()
+                    .any(|m| m.get(axis.index()) == Some(&1.0))
+                {
+                    return Err(ModelError::OutOfRange {
+                        what: format!("direction of the force on tool {name:?}"),
+                        value: axis.index() as f64,
+                        expected: "a direction in which the analysis lets a tool move",
+                    });
+                }
+                moved.remove(&(D * node + axis.index()));
+                loading.force[D * node + axis.index()] += force;
             }
         }
         loading.displacement = moved;
-        loading.check()?;
+        loading.check(self.mesh.nodes().len())?;
         Ok(loading)
     }
 
@@ -408,8 +447,9 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
         watch: &mut dyn FnMut(&Iteration<'_>),
     ) -> Result<StepReport, StepError> {
-        end.check()?;
+        end.check(self.mesh.nodes().len())?;
         self.pair()?;
+        self.check_pushes(end)?;
         let mut system = self.prepare(end, None)?;
         let start = self.start_of(end);
         let outcome = match self.settings.nesting {
@@ -453,11 +493,42 @@ impl<const D: usize> Driver<D> {
         for contact in self.contacts.iter().filter(|c| c.pairing.is_some()) {
             interface.extend(self.mesh.node_group(&contact.opposite)?);
         }
-        let mut system = System::new(&self.mesh, &self.blocks, fixed, &interface, pivot)?;
+        let mut system = System::new(
+            &self.mesh,
+            &self.blocks,
+            fixed,
+            &interface,
+            pivot,
+            self.tools.len(),
+        )?;
         system.timings += self.timings();
         let zero = vec![0.0; self.state.displacement.len()];
         system.assemble(&mut self.blocks, &zero, &zero, Stiffness::Blended(1.0));
         system.scale(self.settings.nesting == Nesting::Inside);
         Ok(system)
+    }
+
+    /// What a tool that is driven by a force may touch must be able to stand up to it.
+    fn check_pushes(&self, end: &Loading<D>) -> Result<(), ModelError> {
+        for (k, tool) in self.tools.iter().enumerate() {
+            let node = self.tool_node(k);
+            let force = SVector::<f64, D>::from_column_slice(&end.force[D * node..][..D]);
+            // The most work that a contact force of unit pressure can do against the tool's force.
+            let most = |p: &ContactPoint<D>| {
+                let x = self.position(p.node);
+                let n = tool.obstacle.normal(&(x - self.displacement(node)));
+                let along = n.dot(&force);
+                let across = (force - n * along).norm();
+                along + if p.law.resists_slip() { across } else { 0.0 }
+            };
+            let mut points = self.points.iter().filter(|p| p.tool == Some(k));
+            if force.norm() > 0.0 && !points.any(|p| most(p) > 1e-9 * force.norm()) {
+                return Err(ModelError::PulledTool {
+                    tool: tool.name.clone(),
+                    force: force.iter().copied().collect(),
+                });
+            }
+        }
+        Ok(())
     }
 }

@@ -99,6 +99,29 @@ pub enum ModelError {
         /// The motion in words.
         motion: String,
     },
+    /// A tool driven by a force that could move without resistance.
+    #[error(
+        "tool {tool:?} is driven by a force and free to move: nothing resists {motion}. \
+         Prescribe its motion there, or give it a contact (with friction, if the motion is along its \
+         surface)"
+    )]
+    FreeTool {
+        /// The tool.
+        tool: String,
+        /// The motion in words.
+        motion: String,
+    },
+    /// A tool driven away from all that it may touch.
+    #[error(
+        "tool {tool:?} is driven by the force {force:?} away from every surface that it may touch: \
+         nothing can stand up to that; turn the force round, or prescribe the tool's motion"
+    )]
+    PulledTool {
+        /// The tool.
+        tool: String,
+        /// The force on it \[N\].
+        force: Vec<f64>,
+    },
     /// Two conditions that prescribe one displacement differently.
     #[error(
         "step {step:?} prescribes u_{axis} of node {node} as {first} and as {second} mm: remove one"

@@ -5,9 +5,9 @@ use crate::block::Stiffness;
 use crate::condensation::Condensation;
 use crate::control::Control;
 use crate::driver::{Driver, State};
-use crate::error::{Imbalance, StepError};
+use crate::error::{Imbalance, ModelError, StepError};
 use crate::interface::{ContactPoint, Footing, Kinematics};
-use crate::iterate::{Iterate, force_scale};
+use crate::iterate::Iterate;
 use crate::line_search::Line;
 use crate::load::{Loading, axis_letter};
 use crate::norm::largest;
@@ -101,7 +101,7 @@ impl<const D: usize> Driver<D> {
         loop {
             // The step to come makes up for what is missing.
             let reached: Vec<f64> = now.d_u.iter().zip(&missing).map(|(u, m)| u + m).collect();
-            let kinematics = self.kinematics(system, start, &end, &reached);
+            let kinematics = self.kinematics(system, &end, &reached);
             if now.part >= 1.0
                 && let Some(s) = &solution
             {
@@ -110,7 +110,7 @@ impl<const D: usize> Driver<D> {
             }
             let residual = now.imbalance(&end, &free);
             let out_of_balance = largest(residual.iter().copied());
-            let scale = force_scale(&now.assembly, &end, &now.contact);
+            let scale = self.force_scale(&now.assembly, &end, &now.contact);
             if counts.newton > 0 {
                 counts.residuals.push(out_of_balance);
             }
@@ -121,8 +121,8 @@ impl<const D: usize> Driver<D> {
                 contact_iterations: counts.last_contact,
                 out_of_balance,
                 scale,
-                d_u: &now.d_u,
-                residual: &residual,
+                d_u: &now.d_u[..self.mesh_dofs()],
+                residual: &residual[..self.mesh_dofs()],
                 status: solution.as_ref().map_or(&[], |s| &s.status),
             };
             watch(self, &iteration);
@@ -156,7 +156,11 @@ impl<const D: usize> Driver<D> {
                 |d: usize| end.force[d] - now.assembly.internal[d] - now.assembly.coupling[d];
             let load: Vec<f64> = (0..now.d_u.len()).map(load).collect();
             let mut condensed = system.condense(&load);
-            let complete = missing.iter().all(|&m| m == 0.0);
+            // What a tool has moved is missing in the first iterate as well.
+            let tools = self.mesh_dofs()..;
+            let moved = counts.newton == 1
+                && !(start.displacement.range(tools.clone())).eq(end.displacement.range(tools));
+            let complete = !moved && missing.iter().all(|&m| m == 0.0);
             let border = control.as_ref().map(|c| {
                 let equation = (c.compliance, c.missing(&now.d_u));
                 system.border(&mut condensed, c.load, equation)
@@ -207,8 +211,12 @@ impl<const D: usize> Driver<D> {
         &mut self,
         system: &mut System,
         (start, end): (&Loading<D>, &Loading<D>),
-        d_u: Vec<f64>,
+        mut d_u: Vec<f64>,
     ) -> Start {
+        // Tools resist nothing: they are where they shall be from the first.
+        for (&dof, u) in end.displacement.range(self.mesh_dofs()..) {
+            d_u[dof] = u - start.displacement.get(&dof).unwrap_or(u);
+        }
         let missing = self.missing(start, end, &d_u);
         Start {
             free: system.free_dofs(),
@@ -226,7 +234,9 @@ impl<const D: usize> Driver<D> {
     /// Out-of-balance force at which an increment is accepted \[N\]: the tolerance, or the rounding
     /// of internal forces where the body moves almost rigidly.
     pub(crate) fn target(&self, system: &System, scale: f64, d_u: &[f64]) -> f64 {
-        let motion = largest(d_u.iter().copied()).min(self.mesh.size());
+        // Of the size of the mesh, no position has a smaller part.
+        let (size, moved) = (self.mesh.size(), &d_u[..self.mesh_dofs()]);
+        let motion = largest(moved.iter().copied()).clamp(f64::EPSILON * size, size);
         let rounding = 64.0 * f64::EPSILON * system.stiffest() * motion;
         (self.settings.tolerance * scale).max(rounding)
     }
@@ -248,6 +258,13 @@ impl<const D: usize> Driver<D> {
             let blended = Stiffness::Blended(part);
             now.assembly = system.assemble(&mut self.blocks, &now.d_u, missing, blended);
             outcome = system.factorise(false);
+        }
+        if let Err(dof) = outcome
+            && let Some(tool) = (dof / D).checked_sub(self.mesh.nodes().len())
+        {
+            let tool = self.tools[tool].name.clone();
+            let motion = format!("translation along {}", axis_letter(dof % D));
+            return Err(ModelError::FreeTool { tool, motion }.into());
         }
         outcome.map_err(|dof| StepError::Mechanism {
             node: dof / D,
@@ -282,11 +299,19 @@ impl<const D: usize> Driver<D> {
         missing
     }
 
+    /// Where a tool is at the end of an increment: as it is told, or moved by what it was driven to.
+    fn tool_position(&self, tool: usize, end: &Loading<D>, d_u: &[f64]) -> SVector<f64, D> {
+        SVector::from_fn(|i, _| {
+            let dof = D * self.tool_node(tool) + i;
+            let moved = self.state.displacement[dof] + d_u[dof];
+            end.displacement.get(&dof).copied().unwrap_or(moved)
+        })
+    }
+
     /// Frames, gaps and slips of the contact points.
     pub(crate) fn kinematics(
         &self,
         system: &System,
-        start: &Loading<D>,
         end: &Loading<D>,
         d_u: &[f64],
     ) -> Vec<Kinematics<D>> {
@@ -302,8 +327,12 @@ impl<const D: usize> Driver<D> {
                 };
             };
             let obstacle = &self.tools[tool].obstacle;
-            let x = footing.relative(|a| self.position(a)) + slip - end.tools[tool];
-            let slip = slip - (end.tools[tool] - start.tools[tool]);
+            let tool = self.tool_position(tool, end, d_u);
+            let now = |a: usize| match a < self.mesh.nodes().len() {
+                true => self.position(a) + moved(a),
+                false => tool,
+            };
+            let x = footing.relative(now);
             let gap = obstacle.distance(&x) - p.offset;
             Kinematics::new(&obstacle.normal(&x), gap, &slip, free)
         };
@@ -376,7 +405,7 @@ impl<const D: usize> Driver<D> {
             iterations,
             out_of_balance: largest(residual.iter().copied()),
             tolerance: target,
-            worst: self.worst(residual),
+            worst: self.worst(&residual[..self.mesh_dofs()]),
             plastic_fraction: self.plastic_fraction(),
         }
     }
@@ -477,11 +506,6 @@ impl<const D: usize> Driver<D> {
         let contact = self.contact_forces(&kinematics, &forces);
         let mut energies = self.state.energies;
         energies.external_work += self.external_work(start, end, &d_u, &internal, &contact);
-        for ((p, c), old) in self.points.iter().zip(&contacts).zip(&self.state.contacts) {
-            let motion = |k: usize| end.tools[k] - start.tools[k];
-            let motion = p.tool.map_or_else(SVector::zeros, motion);
-            energies.external_work += 0.5 * (old.force + c.force).dot(&motion);
-        }
         energies.friction_dissipation += friction;
         energies.penalty += penalty;
         energies.stored = 0.0;

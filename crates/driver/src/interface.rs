@@ -118,7 +118,7 @@ pub(crate) struct Footing<const D: usize> {
     /// The node, and those that share its multiplier at the edge of an overlap or its shape function
     /// in a changed basis.
     pub(crate) own: Vec<(usize, f64)>,
-    /// Nodes of the surface opposite; none for a tool.
+    /// Nodes of the surface opposite, or that of the tool.
     pub(crate) opposite: Vec<(usize, f64)>,
     /// Share of the surface in contact \[mm²\].
     pub(crate) area: f64,
@@ -127,10 +127,11 @@ pub(crate) struct Footing<const D: usize> {
 }
 
 impl<const D: usize> Footing<D> {
-    /// On a tool, which moves on its own.
-    pub(crate) fn on_tool(point: &ContactPoint<D>) -> Self {
+    /// On a tool, a body of the one node `tool`.
+    pub(crate) fn on_tool(point: &ContactPoint<D>, tool: usize) -> Self {
         Self {
             own: point.own(),
+            opposite: vec![(tool, 1.0)],
             area: point.area,
             ..Self::default()
         }

@@ -1,6 +1,7 @@
 //! Where Newton's iteration stands: displacements, forces and what they are measured by; not how it
 //! got there.
 
+use crate::driver::Driver;
 use crate::load::Loading;
 use crate::norm::largest;
 use crate::system::Assembly;
@@ -27,12 +28,17 @@ impl Iterate {
     }
 }
 
-/// Size of the forces in play, against which imbalance is judged \[N\].
-pub(crate) fn force_scale<const D: usize>(
-    assembly: &Assembly,
-    end: &Loading<D>,
-    contact: &[f64],
-) -> f64 {
-    let all = assembly.internal.iter().chain(&end.force).chain(contact);
-    largest(all.copied()).max(f64::MIN_POSITIVE)
+impl<const D: usize> Driver<D> {
+    /// Size of the forces in play at the nodes, against which imbalance is judged \[N\]. What a tool
+    /// carries is a sum of them.
+    pub(crate) fn force_scale(
+        &self,
+        assembly: &Assembly,
+        end: &Loading<D>,
+        contact: &[f64],
+    ) -> f64 {
+        let nodal = |forces: &[f64]| largest(forces[..self.mesh_dofs()].iter().copied());
+        let scale = nodal(&assembly.internal).max(nodal(&end.force));
+        scale.max(nodal(contact)).max(f64::MIN_POSITIVE)
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::block::Stiffness;
 use crate::driver::Driver;
-use crate::iterate::{Iterate, force_scale};
+use crate::iterate::Iterate;
 use crate::load::Loading;
 use crate::norm::largest;
 use crate::system::System;
@@ -24,7 +24,7 @@ pub(crate) struct Line<'a, const D: usize> {
     pub(crate) step: &'a [f64],
     /// Contact forces at its end, at every degree of freedom.
     pub(crate) target: &'a [f64],
-    /// Whether the iterate has all prescribed displacements already.
+    /// Whether the iterate has all prescribed displacements and the motions of tools already.
     pub(crate) complete: bool,
     /// Imbalance left by the contact solver \[N\].
     pub(crate) slack: f64,
@@ -91,7 +91,7 @@ impl<const D: usize> Driver<D> {
         let d_u = line.displacement(&now, 1.0);
         let assembly = system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent);
         let internal = &assembly.internal;
-        let scale = force_scale(&assembly, line.end, line.target);
+        let scale = self.force_scale(&assembly, line.end, line.target);
         let left = largest(line.imbalance(internal, line.target, 1.0).map(|(_, r)| r));
         let at_start = line.slope(&now.assembly.internal, &now.contact, 0.0);
         let at_end = line.slope(internal, line.target, 1.0);
@@ -101,7 +101,7 @@ impl<const D: usize> Driver<D> {
             let before = line.norm(&now.assembly.internal, &now.contact, 0.0);
             line.norm(internal, line.target, 1.0) > before
         };
-        // While prescribed displacements are missing, ΔΦ is not what the step minimises; in balance
+        // While prescribed displacements or motions are missing, ΔΦ is not what the step minimises; in balance
         // its slope is rounding.
         if !line.complete || !overshoots || left <= self.target(system, scale, &d_u) + line.slack {
             return Iterate {

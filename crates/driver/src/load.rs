@@ -1,7 +1,6 @@
 //! Steps as an engineer writes them, and the loading they amount to; not how it is applied.
 
 use crate::ModelError;
-use nalgebra::SVector;
 use std::collections::BTreeMap;
 
 /// A coordinate direction.
@@ -54,6 +53,11 @@ pub(crate) enum Condition<const D: usize> {
     Tool {
         name: String,
         displacement: [f64; D],
+    },
+    Push {
+        name: String,
+        axis: Axis,
+        force: f64,
     },
 }
 
@@ -135,30 +139,39 @@ impl<const D: usize> Step<D> {
         })
     }
 
+    /// Drives a tool along an axis by a total force on it \[N\], which it hands on to what it touches;
+    /// it moves along that axis as this asks, whatever [`Step::tool`] says of it. Along the others
+    /// it stays where it is or moves as it is told.
+    pub fn push(self, name: &str, axis: Axis, force: f64) -> Self {
+        self.with(Condition::Push {
+            name: name.into(),
+            axis,
+            force,
+        })
+    }
+
     fn with(mut self, condition: Condition<D>) -> Self {
         self.conditions.push(condition);
         self
     }
 }
 
-/// All that acts on the model at an instant: totals, not increments.
+/// All that acts on the model at an instant: totals, not increments. A tool is a body of one node,
+/// after those of the mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loading<const D: usize> {
     /// Prescribed displacements by degree of freedom, `D·node + axis` \[mm\].
     pub displacement: BTreeMap<usize, f64>,
     /// Applied force at every degree of freedom \[N\].
     pub force: Vec<f64>,
-    /// Translation of every tool from its first position \[mm\].
-    pub tools: Vec<SVector<f64, D>>,
 }
 
 impl<const D: usize> Loading<D> {
-    /// No load on a model of that many degrees of freedom and tools.
-    pub fn none(dofs: usize, tools: usize) -> Self {
+    /// No load on a model of that many degrees of freedom.
+    pub fn none(dofs: usize) -> Self {
         Self {
             displacement: BTreeMap::new(),
             force: vec![0.0; dofs],
-            tools: vec![SVector::zeros(); tools],
         }
     }
 
@@ -186,17 +199,15 @@ impl<const D: usize> Loading<D> {
                 .zip(&end.force)
                 .map(|(&a, &b)| mix(a, b))
                 .collect(),
-            tools: self
-                .tools
-                .iter()
-                .zip(&end.tools)
-                .map(|(a, b)| a + (b - a) * s)
-                .collect(),
         }
     }
 
-    /// The first number that is not finite.
-    pub(crate) fn check(&self) -> Result<(), ModelError> {
+    /// The first number that is not finite; nodes from `tools` on are tools.
+    pub(crate) fn check(&self, tools: usize) -> Result<(), ModelError> {
+        let place = |node: usize| match node.checked_sub(tools) {
+            Some(tool) => format!("tool {tool}"),
+            None => format!("node {node}"),
+        };
         let error = |what: String, value: f64| ModelError::OutOfRange {
             what,
             value,
@@ -205,18 +216,13 @@ impl<const D: usize> Loading<D> {
         for (&dof, &u) in &self.displacement {
             if !u.is_finite() {
                 let (node, axis) = (dof / D, axis_letter(dof % D));
-                return Err(error(format!("prescribed u_{axis} of node {node}"), u));
+                return Err(error(format!("prescribed u_{axis} of {}", place(node)), u));
             }
         }
         for (dof, &f) in self.force.iter().enumerate() {
             if !f.is_finite() {
                 let (node, axis) = (dof / D, axis_letter(dof % D));
-                return Err(error(format!("force f_{axis} on node {node}"), f));
-            }
-        }
-        for (k, v) in self.tools.iter().enumerate() {
-            if let Some(&value) = v.iter().find(|v| !v.is_finite()) {
-                return Err(error(format!("displacement of tool {k}"), value));
+                return Err(error(format!("force f_{axis} on {}", place(node)), f));
             }
         }
         Ok(())
@@ -225,13 +231,7 @@ impl<const D: usize> Loading<D> {
     /// Part of `previous` that this increment repeats: (this, previous) / (previous, previous),
     /// taken over the prescribed motions, or over the forces if nothing is moved.
     pub(crate) fn ratio(&self, previous: &Self) -> f64 {
-        let motions = |l: &Self| -> Vec<f64> {
-            let tools = l
-                .tools
-                .iter()
-                .flat_map(|v| v.iter().copied().collect::<Vec<_>>());
-            l.displacement.values().copied().chain(tools).collect()
-        };
+        let motions = |l: &Self| -> Vec<f64> { l.displacement.values().copied().collect() };
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let (new, old) = (motions(self), motions(previous));
         let moved = dot(&old, &old);
@@ -258,12 +258,6 @@ impl<const D: usize> Loading<D> {
                 .force
                 .iter()
                 .zip(&start.force)
-                .map(|(b, a)| b - a)
-                .collect(),
-            tools: self
-                .tools
-                .iter()
-                .zip(&start.tools)
                 .map(|(b, a)| b - a)
                 .collect(),
         }

@@ -5,7 +5,7 @@ use crate::condensation::Condensation;
 use crate::driver::Driver;
 use crate::error::StepError;
 use crate::increment::{Candidate, Counts, Start};
-use crate::iterate::{Iterate, force_scale};
+use crate::iterate::Iterate;
 use crate::line_search::Line;
 use crate::load::Loading;
 use crate::norm::largest;
@@ -35,7 +35,7 @@ impl<const D: usize> Driver<D> {
             factorisations,
         } = self.first_iterate(system, (start, end), self.predictor(start, end));
         let mut counts = Counts::default();
-        let kinematics = self.kinematics(system, start, end, &now.d_u);
+        let kinematics = self.kinematics(system, end, &now.d_u);
         let mut t = self.previous_forces(&kinematics);
         let contact = |source: ContactError| StepError::Contact {
             iteration: 0,
@@ -53,17 +53,17 @@ impl<const D: usize> Driver<D> {
         let mut left = f64::INFINITY;
         let mut before: Option<(Vec<Local<D>>, Vec<Local<D>>)> = None;
         for _ in 0..iterations {
-            let kinematics = self.kinematics(system, start, end, &now.d_u);
+            let kinematics = self.kinematics(system, end, &now.d_u);
             now.contact = self.contact_forces(&kinematics, &t);
             now = self.solve_bulk(system, end, &free, now, &mut missing, &mut counts)?;
             counts.solves += 1;
-            let kinematics = self.kinematics(system, start, end, &now.d_u);
+            let kinematics = self.kinematics(system, end, &now.d_u);
             let u: Vec<Local<D>> = kinematics
                 .iter()
                 .map(|k| Local::from_fn(|j, _| if k.active[j] || j == 0 { k.u[j] } else { 0.0 }))
                 .collect();
             let law = |i: usize| &self.points[i].law;
-            let scale = force_scale(&now.assembly, end, &now.contact);
+            let scale = self.force_scale(&now.assembly, end, &now.contact);
             let residual = (0..t.len())
                 .map(|i| law(i).natural_map(&u[i], &t[i], common[i]).norm())
                 .fold(0.0, f64::max);
@@ -80,8 +80,8 @@ impl<const D: usize> Driver<D> {
                 contact_iterations: 1,
                 out_of_balance: residual,
                 scale,
-                d_u: &now.d_u,
-                residual: &unbalanced,
+                d_u: &now.d_u[..self.mesh_dofs()],
+                residual: &unbalanced[..self.mesh_dofs()],
                 status: &status,
             });
             if residual <= tolerance * scale {
@@ -126,7 +126,7 @@ impl<const D: usize> Driver<D> {
             solver: "Uzawa around the nonlinear solve",
             iterations,
             residual: left,
-            tolerance: tolerance * force_scale(&now.assembly, end, &now.contact),
+            tolerance: tolerance * self.force_scale(&now.assembly, end, &now.contact),
         };
         Err(contact(solution))
     }
@@ -143,7 +143,7 @@ impl<const D: usize> Driver<D> {
     ) -> Result<Iterate, StepError> {
         for _ in 0..self.settings.iterations {
             let residual = now.imbalance(end, free);
-            let scale = force_scale(&now.assembly, end, &now.contact);
+            let scale = self.force_scale(&now.assembly, end, &now.contact);
             let complete = missing.iter().all(|&m| m == 0.0);
             let worst = largest(residual.iter().copied());
             if complete && worst <= self.target(system, scale, &now.d_u) {
@@ -176,7 +176,7 @@ impl<const D: usize> Driver<D> {
         let residual = now.imbalance(end, free);
         let target = self.target(
             system,
-            force_scale(&now.assembly, end, &now.contact),
+            self.force_scale(&now.assembly, end, &now.contact),
             &now.d_u,
         );
         Err(self.not_converged(&residual, self.settings.iterations, target))

@@ -252,7 +252,6 @@ impl<const D: usize> Driver<D> {
         let load = ramp.load();
         let square = dot(&load, &load);
         if moves
-            || ramp.start.tools != ramp.end.tools
             || self.settings.nesting != Nesting::Inside
             || !(ramp.done > 0.0 && square > 0.0 && ramp.work > 0.0)
         {

@@ -115,7 +115,7 @@ pub struct ContactRecord<const D: usize> {
     pub node: usize,
     /// Its position in the undeformed body \[mm\].
     pub position: [f64; D],
-    /// Corner or mid-side node of the surface.
+    /// Place of the node on the facets of the surface.
     pub kind: NodeKind,
     /// Gap and slip of the increment \[mm\]; where no surface is opposite the gap is the size of
     /// the mesh.

@@ -92,11 +92,9 @@ impl<'a> Reader<'a> {
         let pairs = self.take(prescribed.saturating_mul(2))?;
         let forces = self.count()?;
         let force = self.take(forces)?.to_vec();
-        let tools = self.count()?;
         Ok(Loading {
             displacement: pairs.chunks(2).map(|p| (p[0] as usize, p[1])).collect(),
             force,
-            tools: self.vectors::<D>(tools)?,
         })
     }
 }
@@ -123,8 +121,6 @@ pub(crate) fn write_loading<const D: usize>(loading: &Loading<D>, out: &mut Vec<
     let pairs = loading.displacement.iter();
     out.extend(pairs.flat_map(|(&dof, &u)| [dof as f64, u]));
     write_list(&loading.force, out);
-    out.push(loading.tools.len() as f64);
-    write_vectors(&loading.tools, out);
 }
 
 impl<const D: usize> Driver<D> {

@@ -58,6 +58,8 @@ const NOTHING: f64 = 1e-6;
 struct Rows {
     /// First cell of each body.
     cells: Vec<usize>,
+    /// Tools that are driven by forces, bodies of their own after those of cells.
+    tools: Vec<usize>,
     /// Modes of a body, of which the first are translations.
     modes: usize,
     translations: usize,
@@ -119,7 +121,10 @@ impl Rows {
         let motion = |mode: nalgebra::DVectorView<'_, f64>| {
             let part = |b: usize| mode.rows(self.modes * b, self.modes);
             let most = |a: &usize, b: &usize| part(*a).norm().total_cmp(&part(*b).norm());
-            let body = (0..self.cells.len()).rev().max_by(most).unwrap_or(0);
+            let body = (0..self.cells.len() + self.tools.len())
+                .rev()
+                .max_by(most)
+                .unwrap_or(0);
             let own = part(body);
             let large = |k: &usize| own[*k].abs() > 0.1 * own.amax();
             let names: Vec<String> = (0..self.modes)
@@ -177,7 +182,7 @@ impl<const D: usize> Driver<D> {
     /// # Errors
     /// Those of [`Driver::loading`].
     pub fn supports(&self, step: &Step<D>) -> Result<Vec<Support>, ModelError> {
-        self.loading(step)?;
+        let loading = self.loading(step)?;
         let mut groups: Vec<&str> = Vec::new();
         let mut held = Vec::new();
         for condition in &step.conditions {
@@ -191,7 +196,7 @@ impl<const D: usize> Driver<D> {
             let nodes = self.mesh().node_group(on)?;
             held.extend(nodes.iter().map(|n| (D * n + axis.index(), index)));
         }
-        let rows = self.rows(held.into_iter());
+        let rows = self.rows(held.into_iter(), &loading);
         let kinds = [Stopper::Displacement, Stopper::Contact, Stopper::Friction];
         let free = kinds.map(|kind| null_space(&rows.up_to(kind)));
         let motions = rows.free();
@@ -238,18 +243,25 @@ impl<const D: usize> Driver<D> {
     /// Every rigid motion of the bodies must be resisted by a prescribed displacement, by a contact
     /// normal, or by friction.
     pub(crate) fn check_rigid_motions(&self, loading: &Loading<D>) -> Result<(), ModelError> {
-        let rows = self.rows(loading.displacement.keys().map(|&dof| (dof, 0)));
+        let mesh = loading.displacement.range(..self.mesh_dofs());
+        let rows = self.rows(mesh.map(|(&dof, _)| (dof, 0)), loading);
         match rows.free().into_iter().next() {
             None => Ok(()),
-            Some((body, motion)) => Err(ModelError::FreeRigidMotion {
-                cell: rows.cells[body],
-                motion,
+            Some((body, motion)) => Err(match body.checked_sub(rows.cells.len()) {
+                Some(k) => ModelError::FreeTool {
+                    tool: self.tools[rows.tools[k]].name.clone(),
+                    motion,
+                },
+                None => ModelError::FreeRigidMotion {
+                    cell: rows.cells[body],
+                    motion,
+                },
             }),
         }
     }
 
     /// What resists, with the degrees of freedom that are held and by which of the groups.
-    fn rows(&self, held: impl Iterator<Item = (usize, usize)>) -> Rows {
+    fn rows(&self, held: impl Iterator<Item = (usize, usize)>, loading: &Loading<D>) -> Rows {
         let size = self.mesh.size();
         let mut body_of = vec![0; self.mesh.nodes().len()];
         let bodies = self.mesh.bodies();
@@ -268,16 +280,33 @@ impl<const D: usize> Driver<D> {
                 (low[i], high[i]) = (low[i].min(x[i]), high[i].max(x[i]));
             }
         }
+        let nodes = self.mesh.nodes().len();
+        let is_held = |dof: usize| loading.displacement.contains_key(&dof);
+        let driven = |&k: &usize| (0..D).any(|i| !is_held(D * self.tool_node(k) + i));
+        let tools: Vec<usize> = (0..self.tools.len()).filter(driven).collect();
+        body_of.resize(nodes + self.tools.len(), usize::MAX);
+        for (k, &tool) in tools.iter().enumerate() {
+            body_of[self.tool_node(tool)] = bodies.len() + k;
+        }
         let modes = |node: usize| -> Vec<SVector<f64, D>> {
+            if node >= nodes {
+                // A tool does not turn, and moves only where it is driven.
+                let modes = self.measure.rigid_modes(&[0.0; D]).into_iter();
+                let free = |i: usize, u: f64| if is_held(D * node + i) { 0.0 } else { u };
+                return modes
+                    .map(|m| SVector::from_fn(|i, _| free(i, m[i])))
+                    .collect();
+            }
             let (x, (low, high)) = (self.mesh.nodes()[node], limits[body_of[node]]);
             let relative = std::array::from_fn(|i| (x[i] - 0.5 * (low[i] + high[i])) / size);
             let modes = self.measure.rigid_modes(&relative);
             modes.into_iter().map(SVector::from).collect()
         };
         let count = modes(0).len();
-        let all = count * bodies.len();
+        let all = count * (bodies.len() + tools.len());
         let mut rows = Rows {
             cells: bodies.iter().map(|cells| cells[0]).collect(),
+            tools,
             modes: count,
             translations: count.min(D),
             gram: std::array::from_fn(|_| DMatrix::zeros(all, all)),
@@ -286,13 +315,21 @@ impl<const D: usize> Driver<D> {
         // Motions that move a combination of nodes along a direction are resisted there.
         let row = |weights: &[(usize, f64)], direction: &SVector<f64, D>| {
             let mut row = BTreeMap::new();
-            for &(node, weight) in weights {
+            for &(node, weight) in weights.iter().filter(|w| body_of[w.0] != usize::MAX) {
                 for (k, mode) in (count * body_of[node]..).zip(modes(node)) {
                     *row.entry(k).or_insert(0.0) += weight * mode.dot(direction);
                 }
             }
             row
         };
+        for k in 0..rows.tools.len() {
+            for (j, mode) in modes(self.tool_node(rows.tools[k])).iter().enumerate() {
+                if mode.norm() == 0.0 {
+                    let own = BTreeMap::from([(count * (bodies.len() + k) + j, 1.0)]);
+                    rows.add((Stopper::Displacement, usize::MAX, 0), &own);
+                }
+            }
+        }
         for (dof, group) in held {
             let axis = SVector::from_fn(|i, _| f64::from(u8::from(i == dof % D)));
             let source = (Stopper::Displacement, group, dof % D);
@@ -301,7 +338,11 @@ impl<const D: usize> Driver<D> {
         for (point, footing) in self.points.iter().zip(&self.footings) {
             let normal = match point.tool {
                 Some(tool) => {
-                    let x = footing.relative(|a| self.position(a)) - self.state.loading.tools[tool];
+                    let at = |a: usize| match a < nodes {
+                        true => self.position(a),
+                        false => self.displacement(a),
+                    };
+                    let x = footing.relative(at);
                     self.tools[tool].obstacle.normal(&x)
                 }
                 None => match footing.plane(&SVector::zeros()) {

@@ -96,22 +96,25 @@ pub(crate) struct Condensed {
 
 impl System {
     /// Numbers the free degrees of freedom, orders them and does the symbolic factorisation. The
-    /// interface is that of the contact points, and the node `pivot` if there is one.
+    /// interface is that of the contact points, the node `pivot` if there is one, and the tools: they
+    /// are nodes after those of the mesh, without stiffness.
     pub(crate) fn new<const D: usize>(
         mesh: &Mesh<D>,
         blocks: &[Box<dyn Block<D>>],
         fixed: impl Fn(usize) -> bool,
         interface_nodes: &[usize],
         pivot: Option<usize>,
+        tools: usize,
     ) -> Result<Self, ModelError> {
         let clock = Instant::now();
-        let nodes = mesh.nodes().len();
-        let adjacency = adjacency(mesh);
+        let nodes = mesh.nodes().len() + tools;
+        let adjacency = adjacency(mesh, nodes);
         let neighbours = |a: usize| &adjacency.entries[adjacency.start[a]..adjacency.start[a + 1]];
         let mut is_interface = vec![false; nodes];
         for &a in interface_nodes.iter().chain(&pivot) {
             is_interface[a] = true;
         }
+        is_interface[mesh.nodes().len()..].fill(true);
         let interior: Vec<usize> = (0..nodes).filter(|&a| !is_interface[a]).collect();
         let mut order = nested_dissection(&interior, mesh.nodes(), neighbours);
         order.extend((0..nodes).filter(|&a| is_interface[a]));
@@ -447,8 +450,7 @@ struct Adjacency {
 }
 
 /// Nodes that share a cell with each node, without the node itself, sorted.
-fn adjacency<const D: usize>(mesh: &Mesh<D>) -> Adjacency {
-    let nodes = mesh.nodes().len();
+fn adjacency<const D: usize>(mesh: &Mesh<D>, nodes: usize) -> Adjacency {
     let mut cells_of = vec![Vec::new(); nodes];
     for cell in 0..mesh.cell_count() {
         for &a in mesh.cell_nodes(cell) {

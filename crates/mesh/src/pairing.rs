@@ -169,10 +169,10 @@ fn normals<const D: usize>(faces: &[Face<D>]) -> BTreeMap<usize, [f64; D]> {
     for face in faces {
         for sample in facet_samples::<D>(face.kind) {
             let outward = sample.area_vector(&face.x);
-            for (&node, shape) in face.nodes.iter().zip(&sample.shape) {
+            for (&node, share) in face.nodes.iter().zip(face.lifted(&sample.shape)) {
                 let sum = sums.entry(node).or_insert([0.0; D]);
                 for i in 0..D {
-                    sum[i] += sample.weight * shape * outward[i];
+                    sum[i] += sample.weight * share * outward[i];
                 }
             }
         }

@@ -7,19 +7,21 @@ mod checkpoint;
 mod contact;
 mod diagnosis;
 mod files;
+mod grid;
 mod history;
 mod log;
 mod outcome;
 mod pictures;
 mod report;
+mod surface;
 mod table;
 mod view;
 mod vtu;
 
 pub use diagnosis::{Diagnosis, Flip};
+pub(crate) use grid::vtu_of_mesh;
 pub use outcome::{Outcome, RunStatus, Verdict};
 pub use view::View;
-pub(crate) use vtu::vtu_of_mesh;
 
 use crate::deck::{Deck, Setup, Vtu};
 use crate::driver::{Driver, Ramp, Reader, StepError, StepReport};
@@ -207,7 +209,7 @@ fn pictures_of<const D: usize>(
     driver: &Driver<D>,
     deck: &Deck,
     directory: &Path,
-    last: Option<&[vtu::Array]>,
+    last: Option<&[grid::Array]>,
     drawing: &Drawing,
 ) -> Result<Vec<PathBuf>, RunError>
 where
@@ -410,9 +412,15 @@ where
                 let increment = self.setup.driver.increments();
                 (RunStatus::Interrupted(increment), None)
             }
+            Ending::Carried(step) => {
+                let error = format!(
+                    "step {step:?} was to end in collapse, but its loads are carried: increase them"
+                );
+                (RunStatus::NotConverged(error), None)
+            }
             Ending::Failed(error) => {
-                let refused = matches!(error, StepError::Model(_));
-                let diagnosis = (!refused).then(|| {
+                let sought = matches!(error, StepError::Model(_) | StepError::Collapse { .. });
+                let diagnosis = (!sought).then(|| {
                     let (driver, trace) = (&self.setup.driver, &self.trace);
                     Diagnosis::new(driver, self.deck, self.stage, trace, &error)
                 });
@@ -462,6 +470,8 @@ where
                 },
             };
             let name = stage.step.name().to_owned();
+            let to_collapse = stage.until_collapse;
+            let mut collapsed = false;
             while !ramp.is_done() {
                 if watch.stops() {
                     self.ramp = Some(ramp);
@@ -480,6 +490,15 @@ where
                 }
                 let report = match result {
                     Ok(report) => report,
+                    Err(StepError::Collapse { collapse, step }) => {
+                        self.tally.collapse = Some((self.stage, collapse));
+                        if self.setup.stages[self.stage].until_collapse {
+                            collapsed = true;
+                            break;
+                        }
+                        let error = StepError::Collapse { collapse, step };
+                        return Ok(Ending::Failed(error));
+                    }
                     Err(error) => return Ok(Ending::Failed(error)),
                 };
                 self.record(&report)?;
@@ -501,6 +520,9 @@ where
                     self.save()?;
                     self.ramp = None;
                 }
+            }
+            if to_collapse && !collapsed {
+                return Ok(Ending::Carried(name));
             }
             self.stage += 1;
         }
@@ -537,6 +559,8 @@ where
 enum Ending {
     Done,
     Interrupted,
+    /// A step that was to end in collapse has not.
+    Carried(String),
     Failed(StepError),
 }
 

@@ -6,6 +6,7 @@ mod curved;
 mod grip;
 mod patches;
 mod space;
+mod space_curved;
 mod space_grip;
 
 use crate::close;

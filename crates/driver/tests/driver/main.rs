@@ -3,3 +3,4 @@
 mod block;
 mod collapse;
 mod steps;
+mod tools;

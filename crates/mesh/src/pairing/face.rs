@@ -11,6 +11,9 @@ pub(super) type Box<const D: usize> = ([f64; D], [f64; D]);
 /// Most nodes of a facet.
 const NODES: usize = 9;
 
+/// The part of a middle's shape function that each corner beside it takes.
+const LIFT: f64 = 0.2;
+
 /// Values of all nodes of a facet; those of nodes that are not there are zero.
 pub(super) type Values = [f64; NODES];
 
@@ -43,10 +46,11 @@ impl<const D: usize> Face<D> {
     }
 
     pub(super) fn node_kind(&self, local: usize) -> NodeKind {
-        match local {
-            8 => NodeKind::Face,
-            _ if local < self.kind.corner_count() => NodeKind::Corner,
-            _ => NodeKind::Midside,
+        // A facet has as many edges as corners; one of the plane is its own edge.
+        match local / self.kind.corner_count() {
+            0 => NodeKind::Corner,
+            1 => NodeKind::Midside,
+            _ => NodeKind::Face,
         }
     }
 
@@ -90,6 +94,28 @@ impl<const D: usize> Face<D> {
             FacetKind::Quad8 => filled(Quad8::shape(xi)),
             FacetKind::Quad9 => filled(Quad9::shape(xi)),
         }
+    }
+
+    /// Whether corners have a negative share of the face, or none: then Ñ is not N.
+    pub(super) fn is_lifted(&self) -> bool {
+        matches!(self.kind, FacetKind::Tri6 | FacetKind::Quad8)
+    }
+
+    /// Combinations Ñ_a of the shape functions that all have a positive share, sum to 1 and span the
+    /// same: corners take a part of the middles beside them, as in A. Popp, B. I. Wohlmuth,
+    /// M. W. Gee and W. A. Wall, *SIAM J. Sci. Comput.* 34 (2012).
+    pub(super) fn lifted(&self, shape: &[f64]) -> Values {
+        let mut lifted = std::array::from_fn(|a| shape.get(a).copied().unwrap_or(0.0));
+        if self.is_lifted() {
+            let corners = self.kind.corner_count();
+            for k in 0..corners {
+                let middle = shape[corners + k];
+                lifted[k] += LIFT * middle;
+                lifted[(k + 1) % corners] += LIFT * middle;
+                lifted[corners + k] -= 2.0 * LIFT * middle;
+            }
+        }
+        lifted
     }
 
     /// The vectors ∂x/∂ξ; the first is none, and its cofactor the area vector.
@@ -195,9 +221,8 @@ impl<const D: usize> Face<D> {
                 (missing[1] * a[0][0] - missing[0] * a[0][1]) / det,
             ];
             xi = [xi[0] + step[0], xi[1] + step[1]];
-            // Written so that NaN ends the search.
-            let far = xi[0].abs().max(xi[1].abs());
-            if far.is_nan() || far >= 1e3 {
+            if !xi.iter().all(|v| v.abs() < 1e3) {
+                // Far outside, or NaN.
                 return None;
             }
             // Quadratic convergence: the next step is below rounding.

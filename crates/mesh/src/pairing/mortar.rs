@@ -17,6 +17,9 @@ const ROUNDING: f64 = 1e-13;
 /// multiplier.
 pub(super) const NEAR: f64 = 0.25;
 
+/// Least share of a multiplier in the overlap of a facet.
+const LEAST: f64 = 1e-3;
+
 /// What the other surface covers of a facet.
 #[derive(Default)]
 pub(super) struct Overlap {
@@ -30,6 +33,8 @@ pub(super) struct Overlap {
 pub(super) struct Sample {
     /// N_c of the facet.
     pub(super) shape: Values,
+    /// Its Ñ_c, to which multipliers are dual.
+    pub(super) lifted: Values,
     /// Weight times area times the measure of the hypothesis.
     pub(super) d_s: f64,
     /// The facet opposite.
@@ -99,8 +104,8 @@ impl<const D: usize> Sides<'_, D> {
                 opposite: BTreeMap::new(),
             });
             sums.area += phi.iter().sum::<f64>();
-            // Those of the other nodes with a multiplier vanish.
-            let beside = |c: &usize| *c == a || !multipliers.nodes.contains(c);
+            // Those of the other nodes with a multiplier vanish where Ñ is N.
+            let beside = |c: &usize| *c == a || face.is_lifted() || !multipliers.nodes.contains(c);
             for c in (0..count).filter(beside) {
                 let products = overlap.samples.iter().zip(phi).map(|(s, p)| p * s.shape[c]);
                 *sums.own.entry(face.nodes[c]).or_insert(0.0) += products.sum::<f64>();
@@ -116,15 +121,17 @@ impl<const D: usize> Sides<'_, D> {
 }
 
 impl Multipliers {
-    /// The Φ_a with Σ Φ_a = 1 and ∫ Φ_a N_c = 0 for the other nodes c that have one: all nodes of a
+    /// The Φ_a with Σ Φ_a = 1 and ∫ Φ_a Ñ_c = 0 for the other nodes c that have one: all nodes of a
     /// facet that is covered, else those within the overlap or near. `None` without an overlap.
     ///
-    /// A multiplier that would not push, for the overlap is a sliver on the side of its node, is
-    /// left to the others.
+    /// A multiplier that hardly has a share of the overlap or a negative one, as that of a node of
+    /// which the overlap is far, is left to the others: a force would push nowhere, or pull.
     fn new(overlap: &Overlap, count: usize) -> Option<Self> {
         let samples = &overlap.samples;
-        let share = |c: usize| samples.iter().map(|s| s.d_s * s.shape[c]).sum::<f64>();
+        let share = |c: usize| samples.iter().map(|s| s.d_s * s.lifted[c]).sum::<f64>();
         let by_share = |a: &usize, b: &usize| share(*a).total_cmp(&share(*b));
+        let whole: f64 = samples.iter().map(|s| s.d_s).sum();
+        let pushes = |phi: &Vec<f64>| phi.iter().sum::<f64>() > LEAST * whole;
         let mut nodes = overlap.near.clone();
         if nodes.is_empty() {
             // The other surface is narrower than this facet.
@@ -132,7 +139,7 @@ impl Multipliers {
         }
         while !nodes.is_empty() {
             if let Some(values) = dual(samples, &nodes)
-                && values.iter().all(|phi| phi.iter().sum::<f64>() > 0.0)
+                && values.iter().all(pushes)
             {
                 return Some(Self { nodes, values });
             }
@@ -145,24 +152,24 @@ impl Multipliers {
 
 /// Φ_a dS at the samples, for the given nodes.
 ///
-/// They span the ψ_c = N_c + (1 − Σ N)/m, the sum over these m nodes, which sum to 1:
-/// Φ_a = Σ_c A_ac ψ_c with A ∫ψ_c N_d = δ_ad ∫N_d.
+/// They span the ψ_c = Ñ_c + (1 − Σ Ñ)/m, the sum over these m nodes, which sum to 1:
+/// Φ_a = Σ_c A_ac ψ_c with A ∫ψ_c Ñ_d = δ_ad ∫Ñ_d.
 fn dual(samples: &[Sample], nodes: &[usize]) -> Option<Vec<Vec<f64>>> {
     let order = nodes.len();
     let spanning = |s: &Sample, row: usize| {
-        let sum: f64 = nodes.iter().map(|&c| s.shape[c]).sum();
-        s.shape[nodes[row]] + (1.0 - sum) / order as f64
+        let sum: f64 = nodes.iter().map(|&c| s.lifted[c]).sum();
+        s.lifted[nodes[row]] + (1.0 - sum) / order as f64
     };
     let mut moments = DMatrix::<f64>::zeros(order, order);
     for s in samples {
         for c in 0..order {
             let weight = s.d_s * spanning(s, c);
             for d in 0..order {
-                moments[(c, d)] += weight * s.shape[nodes[d]];
+                moments[(c, d)] += weight * s.lifted[nodes[d]];
             }
         }
     }
-    // Σ_c ψ_c = 1: the sums of the columns are the shares ∫ N_d.
+    // Σ_c ψ_c = 1: the sums of the columns are the shares ∫ Ñ_d.
     let shares: Vec<f64> = moments.column_iter().map(|c| c.sum()).collect();
     let inverse = moments.try_inverse()?;
     let phi = |a: usize| {

@@ -114,8 +114,10 @@ impl<const D: usize> Sides<'_, D> {
                 // The area of the face itself, not of what is seen.
                 let outward = face.outward(xi);
                 let tilt = dot(&outward, &outward).sqrt() / dot(&outward, &view.normal);
+                let shape = face.shape(xi);
                 samples.push(Sample {
-                    shape: face.shape(xi),
+                    shape,
+                    lifted: face.lifted(&shape),
                     d_s: point.weight * twice * tilt * measure(&face.at(xi)),
                     other: patch.other,
                     opposite: other.shape(eta),

@@ -65,11 +65,16 @@ fn sum(weights: &[(usize, f64)], f: impl Fn(usize) -> f64) -> f64 {
     weights.iter().map(|&(a, w)| w * f(a)).sum()
 }
 
-const KINDS: [[CellKind; 2]; 4] = [
+const KINDS: [[CellKind; 2]; 9] = [
     [CellKind::Hex8, CellKind::Hex8],
     [CellKind::Hex8, CellKind::Tet4],
     [CellKind::Tet4, CellKind::Hex8],
     [CellKind::Tet4, CellKind::Tet4],
+    [CellKind::Hex20, CellKind::Hex8],
+    [CellKind::Hex20, CellKind::Hex20],
+    [CellKind::Hex27, CellKind::Tet10],
+    [CellKind::Tet10, CellKind::Hex20],
+    [CellKind::Hex8, CellKind::Hex27],
 ];
 
 /// What holds for any overlap of flat surfaces: sums of weights, linear fields, area. Returns the
@@ -120,6 +125,11 @@ fn linear_fields_and_a_uniform_pressure_pass_between_faces_that_do_not_match() {
     for kinds in KINDS {
         for (case, (cells, map, area)) in lowers.iter().enumerate() {
             for curved in [false, true] {
+                let straight = |k: CellKind| k.nodes() == k.corner_count();
+                if !kinds.into_iter().all(straight) && (curved || case == 1) {
+                    // The sides of a face are taken to be straight.
+                    continue;
+                }
                 let upper = if curved { bent } else { |x| x };
                 let mesh = body("upper", kinds[0], [4, 3], upper)
                     .joined(body("lower", kinds[1], *cells, map))
@@ -131,7 +141,9 @@ fn linear_fields_and_a_uniform_pressure_pass_between_faces_that_do_not_match() {
                 let shares = mesh.facet_shares(facets, &Solid);
                 if (shares.iter().map(|s| s.area).sum::<f64>() / area - 1.0).abs() < 1e-9 {
                     for share in shares {
-                        let off = (on_lower[&share.node] - share.area).abs() / share.area;
+                        // Corners may have a negative share, or none.
+                        let found = on_lower.get(&share.node).copied().unwrap_or(0.0);
+                        let off = (found - share.area).abs() * facets.len() as f64 / area;
                         assert!(off < 1e-10, "{what}: load off by {off:.2e}");
                     }
                 }

@@ -55,6 +55,8 @@ pub struct Stage<const D: usize> {
     pub step: Step<D>,
     /// Its increments.
     pub increments: Increments,
+    /// Whether its loads are to grow until the structure collapses.
+    pub until_collapse: bool,
     /// Directions in which the step itself holds or moves each group of [`Setup::held`].
     pub directions: Vec<Vec<usize>>,
 }

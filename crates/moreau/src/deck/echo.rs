@@ -138,6 +138,9 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
     }
     for step in &deck.steps {
         writeln!(out, "\n[[step]]\nname = {}", text(&step.name.value))?;
+        if step.until_collapse {
+            writeln!(out, "until = \"collapse\"")?;
+        }
         let Increments { start, min, max } = step.increments;
         match min {
             None => writeln!(out, "increments = {}", step.increments.count())?,
@@ -180,6 +183,10 @@ fn lists(conditions: &[ConditionEntry]) -> [(&'static str, Vec<String>); 4] {
             Action::Force(v) => (2, format!("{{ on = {on}, force = {v:?} }}")),
             Action::BodyForce(v) => (2, format!("{{ on = {on}, body-force = {v:?} }}")),
             Action::Tool(v) => (3, format!("{{ name = {on}, move = {v:?} }}")),
+            Action::Push(v, None) => (3, format!("{{ name = {on}, force = {v:?} }}")),
+            Action::Push(v, Some(u)) => {
+                (3, format!("{{ name = {on}, move = {u:?}, force = {v:?} }}"))
+            }
         };
         lists[list].1.push(item);
     }

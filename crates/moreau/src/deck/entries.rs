@@ -249,6 +249,8 @@ pub enum Action {
     BodyForce(Vec<f64>),
     /// Translation of a tool.
     Tool(Vec<f64>),
+    /// Force on a tool, and its translation where no force drives it.
+    Push(Vec<f64>, Option<Vec<f64>>),
 }
 
 /// `[[step]]`.
@@ -258,6 +260,8 @@ pub struct StepEntry {
     pub name: At<String>,
     /// Increments.
     pub increments: Increments,
+    /// Whether its loads are to grow until the structure collapses.
+    pub until_collapse: bool,
     /// Conditions.
     pub conditions: Vec<ConditionEntry>,
     /// Place of the step.

@@ -111,15 +111,3 @@ fn missing(root: &Table<'_>, what: &str, keys: &str) {
         )
         .about(Class::Keys);
 }
-
-/// Notes that something of the grammar is not available yet.
-fn not_yet(log: &Log, span: &std::ops::Range<usize>, what: &str, instead: &str) {
-    log.borrow_mut()
-        .error_with(
-            span,
-            format!("{what}: not available yet"),
-            "not available yet",
-            instead,
-        )
-        .about(Class::Unavailable);
-}

@@ -110,7 +110,11 @@ fn suggestion(
     let load = step.conditions.iter().find(|c| {
         matches!(
             c.action,
-            Action::Pressure(_) | Action::Traction(_) | Action::Force(_) | Action::BodyForce(_)
+            Action::Pressure(_)
+                | Action::Traction(_)
+                | Action::Force(_)
+                | Action::BodyForce(_)
+                | Action::Push(..)
         )
     });
     let yields = matches!(cause, StepError::Mechanism { .. }) || plastic_fraction > WIDESPREAD;

@@ -1,8 +1,8 @@
 //! `history.csv`: a row for each converged increment; contact points have a file of their own.
 
 use super::number;
-use crate::columns::{Unit, columns};
 use crate::deck::{Setup, Units};
+use crate::deck::{Unit, columns};
 use crate::driver::{Driver, StepReport};
 
 /// Where an increment is.
@@ -81,10 +81,11 @@ impl History {
             }));
             row.extend(mean_displacement(driver, nodes));
         }
-        for (tool, motion) in self.tools.iter().zip(&driver.applied().tools) {
+        for tool in &self.tools {
             let force = driver.tool_force(tool).ok();
             row.extend((0..D).map(|i| force.map_or(f64::NAN, |f| f[i])));
-            row.extend(motion);
+            let motion = driver.tool_displacement(tool).ok();
+            row.extend((0..D).map(|i| motion.map_or(f64::NAN, |u| u[i])));
         }
         for surface in &self.surfaces {
             let force = driver.contact_force(surface).ok();

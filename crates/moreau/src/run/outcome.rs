@@ -5,7 +5,9 @@ use super::diagnosis::Diagnosis;
 use super::history::History;
 use crate::contact::Certificate;
 use crate::deck::{Deck, Units};
-use crate::driver::{Driver, Energies, ModelError, Reader, StepError, StepReport};
+use crate::driver::{
+    Collapse, Driver, Energies, ModelError, Reader, StepError, StepReport, UpperBound,
+};
 use crate::laws::Status;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -19,6 +21,8 @@ pub enum RunStatus {
     Refused(String),
     /// A step stopped; what converged before is kept.
     NotConverged(String),
+    /// The structure does not carry the loads of a step; the state is that of its mechanism.
+    Collapsed(String),
     /// Stopped from outside after this increment; the run can be resumed.
     Interrupted(usize),
 }
@@ -30,6 +34,7 @@ impl RunStatus {
             Self::Done => "done",
             Self::Refused(_) => "refused",
             Self::NotConverged(_) => "not converged",
+            Self::Collapsed(_) => "collapsed",
             Self::Interrupted(_) => "interrupted",
         }
     }
@@ -38,6 +43,7 @@ impl RunStatus {
         match failure {
             None => Self::Done,
             Some(StepError::Model(error)) => Self::Refused(error.to_string()),
+            Some(error @ StepError::Collapse { .. }) => Self::Collapsed(error.to_string()),
             Some(error) => Self::NotConverged(error.to_string()),
         }
     }
@@ -73,6 +79,8 @@ pub(super) struct Tally {
     relative_gap: f64,
     /// Whether each contact was ever closed.
     closed: Vec<bool>,
+    /// The last collapse and the step, from 0, that ended in it.
+    pub(super) collapse: Option<(usize, Collapse)>,
 }
 
 impl Tally {
@@ -86,6 +94,7 @@ impl Tally {
             certificate: Certificate::default(),
             relative_gap: 0.0,
             closed: vec![false; contacts.unwrap_or(0)],
+            collapse: None,
         }
     }
 
@@ -116,6 +125,15 @@ impl Tally {
         out.extend([c.bipotential_gap, c.penetration, c.excess_force]);
         out.push(self.relative_gap);
         out.extend(self.closed.iter().map(|&c| f64::from(u8::from(c))));
+        out.push(f64::from(u8::from(self.collapse.is_some())));
+        if let Some((stage, c)) = &self.collapse {
+            out.extend([*stage as f64, c.load_factor, c.growth]);
+            out.push(f64::from(u8::from(c.upper_bound.is_some())));
+            if let Some(b) = &c.upper_bound {
+                let coulomb = f64::from(u8::from(b.coulomb));
+                out.extend([b.load_factor, b.elastic_share, coulomb]);
+            }
+        }
     }
 
     /// Takes over what [`Tally::write`] left.
@@ -130,6 +148,24 @@ impl Tally {
         self.relative_gap = from.number()?;
         for closed in &mut self.closed {
             *closed = from.count()? == 1;
+        }
+        if from.count()? == 1 {
+            let stage = from.count()?;
+            let (load_factor, growth) = (from.number()?, from.number()?);
+            let upper_bound = match from.count()? {
+                0 => None,
+                _ => Some(UpperBound {
+                    load_factor: from.number()?,
+                    elastic_share: from.number()?,
+                    coulomb: from.count()? == 1,
+                }),
+            };
+            let collapse = Collapse {
+                load_factor,
+                growth,
+                upper_bound,
+            };
+            self.collapse = Some((stage, collapse));
         }
         Ok(())
     }
@@ -173,6 +209,8 @@ pub struct Outcome {
     pub values: Vec<(String, f64)>,
     /// What came of the expectations.
     pub verdicts: Vec<Verdict>,
+    /// Collapse, with the name of the step: the last, if more than one collapsed.
+    pub collapse: Option<(String, Collapse)>,
     /// Doubts about the run.
     pub warnings: Vec<String>,
     /// Why it did not converge.
@@ -229,6 +267,10 @@ pub(super) fn conclude<const D: usize>(
         warnings: tally.closed.iter().enumerate().filter_map(never).collect(),
         contacts: [Status::Open, Status::Stick, Status::Slip].map(count),
         energies: driver.energies(),
+        collapse: tally.collapse.map(|(stage, c)| {
+            let name = deck.steps.get(stage).map(|s| s.name.value.clone());
+            (name.unwrap_or_default(), c)
+        }),
         diagnosis,
     }
 }
@@ -243,7 +285,9 @@ impl Outcome {
     pub fn error(&self) -> Option<&str> {
         match &self.status {
             RunStatus::Done | RunStatus::Interrupted(_) => None,
-            RunStatus::Refused(error) | RunStatus::NotConverged(error) => Some(error),
+            RunStatus::Refused(error)
+            | RunStatus::NotConverged(error)
+            | RunStatus::Collapsed(error) => Some(error),
         }
     }
 
@@ -277,6 +321,14 @@ impl Outcome {
             },
             "values": self.values.iter().cloned().collect::<BTreeMap<_, _>>(),
             "expectations": self.verdicts.iter().map(verdict).collect::<Vec<_>>(),
+            "collapse": self.collapse.as_ref().map(|(step, c)| serde_json::json!({
+                "step": step,
+                "load_factor": c.load_factor,
+                "growth": c.growth,
+                "upper_bound": c.upper_bound.map(|b| b.load_factor),
+                "elastic_share": c.upper_bound.map(|b| b.elastic_share),
+                "strict": c.upper_bound.map(|b| !b.coulomb),
+            })),
             "warnings": self.warnings,
             "diagnosis": self.diagnosis.as_ref().map(Diagnosis::json),
         });
@@ -302,6 +354,7 @@ impl fmt::Display for Outcome {
             RunStatus::Done => "done".to_owned(),
             RunStatus::Refused(error) => format!("refused: {error}"),
             RunStatus::NotConverged(error) => format!("not converged: {error}"),
+            RunStatus::Collapsed(error) => format!("collapsed: {error}"),
             RunStatus::Interrupted(increment) => format!("interrupted after increment {increment}"),
         };
         writeln!(f, "  status        {status}")?;
@@ -345,6 +398,9 @@ impl fmt::Display for Outcome {
                 self.certificate.excess_force,
                 units.force()
             )?;
+        }
+        if let Some((step, collapse)) = &self.collapse {
+            writeln!(f, "  limit load    step \"{step}\": {collapse}")?;
         }
         for (name, value) in &self.values {
             let unit = match name.starts_with("force.") {

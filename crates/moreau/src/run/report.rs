@@ -1,12 +1,13 @@
 //! `report.html`: a run on one page that needs nothing but a browser; its template is beside it.
 
 use super::files::read_text;
+use super::grid::Array;
 use super::pictures::{
     ContactLine, TRACTIONS, contact_axis, contact_labels, contact_lines, field, fields, forces,
     label, tractions, usual_field, usual_magnification,
 };
 use super::table::Table;
-use super::vtu::{Array, bodies, read_point_data};
+use super::vtu::{bodies, read_point_data};
 use super::{RunError, pictures};
 use crate::deck::Deck;
 use crate::driver::Driver;
@@ -79,6 +80,15 @@ fn summary(run: &serde_json::Value, deck: &Deck) -> Vec<[String; 2]> {
         value.map_or("–".to_owned(), |v| format!("{v:.2e}"))
     };
     let units = deck.units;
+    let collapse = &run["collapse"];
+    let collapse = [
+        ("load factor at collapse", "load_factor"),
+        ("its kinematic bound", "upper_bound"),
+    ]
+    .map(|(name, key)| (name, &collapse[key]))
+    .into_iter()
+    .filter(|(_, v)| v.is_number())
+    .map(|(name, v)| [name.to_owned(), number(v)]);
     let mut rows: Vec<[String; 2]> = [
         ("increments", "increments"),
         ("Newton iterations", "newton_iterations"),
@@ -92,6 +102,7 @@ fn summary(run: &serde_json::Value, deck: &Deck) -> Vec<[String; 2]> {
     ]
     .map(|(name, key)| [name.to_owned(), number(&run[key])])
     .to_vec();
+    rows.splice(0..0, collapse);
     for (name, key, unit) in [
         ("largest bipotential gap", "bipotential_gap", units.energy()),
         ("the same, over the external work", "relative_gap", "–"),

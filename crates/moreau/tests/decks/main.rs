@@ -1,6 +1,7 @@
 //! What is said about a deck that is wrong or doubtful, and that nothing said about it is a panic.
 
 mod meshes;
+mod metamorphic;
 mod mutants;
 mod schema;
 mod supports;
@@ -15,6 +16,11 @@ fn folder(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../..")
         .join(path)
+}
+
+/// A path for what a test writes.
+fn temporary(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
 
 /// A text on one line, without the bars before the lines of a long message.
@@ -300,21 +306,6 @@ fn one_displacement_is_prescribed_once() {
         "[[step]]",
         &["prescribes u_y", "as 0 and as -0.2"],
     );
-}
-
-#[test]
-fn what_is_not_available_is_refused_by_name() {
-    for (from, to, name) in [(
-        "[expect]",
-        "[[step]]\nname=\"b\"\nincrements=1\ntools=[{name=\"foundation\",force=[0,1]}]\n[expect]",
-        "driven by a force",
-    )] {
-        let out = shown(from, to);
-        assert!(
-            out.contains("not available yet") && out.contains(name),
-            "{name}: {out}"
-        );
-    }
 }
 
 /// Keys that are asked for in several places are listed once.

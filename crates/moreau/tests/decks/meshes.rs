@@ -1,19 +1,15 @@
 //! Decks on mesh files: what is read, and what is said of a file that is not right.
 
-use super::{DECK, flat, folder};
+use super::{DECK, flat, folder, temporary};
 use moreau::deck::{Class, Problem, Setup, open_in};
 use moreau::files::{read_mesh, write_mesh};
 use moreau::mesh::{CellKind, Mesh, block2, uniform};
 use std::f64::consts::PI;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 fn example() -> String {
     fs::read_to_string(folder("docs/examples/punch-on-gmsh-mesh.toml")).expect("a deck")
-}
-
-fn temporary(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
 
 /// The plane problem of a deck beside the examples.

@@ -1,6 +1,6 @@
 //! `moreau bench`: a deck under every contact algorithm, as a table.
 
-use super::{INPUT_ERROR, NOT_CONVERGED, run};
+use super::{INPUT_ERROR, NOT_CONVERGED, run, say, tell};
 use moreau::deck::{At, Deck, Method, Problem, Vtu, open};
 use moreau::run::{Outcome, RunStatus};
 use std::path::{Path, PathBuf};
@@ -12,9 +12,15 @@ pub(crate) fn bench(path: &Path, out: Option<PathBuf>) -> u8 {
     };
     drop(problem);
     let out = out.unwrap_or_else(|| run::default_directory(path, "-bench"));
-    println!(
+    say!(
         "{:<34} {:>9} {:>7} {:>8} {:>7} {:>10} {:>11}  status",
-        "algorithm", "seconds", "Newton", "contact", "factors", "gap/work", "penetration"
+        "algorithm",
+        "seconds",
+        "Newton",
+        "contact",
+        "factors",
+        "gap/work",
+        "penetration"
     );
     let mut status = 0;
     let mut results = Vec::new();
@@ -26,13 +32,13 @@ pub(crate) fn bench(path: &Path, out: Option<PathBuf>) -> u8 {
             Some(Problem::Plane(s)) => moreau::run::run(*s, &deck, &directory, &mut ()),
             Some(Problem::Solid(s)) => moreau::run::run(*s, &deck, &directory, &mut ()),
             None => {
-                eprint!("{}", findings.render(&name, &deck.resolved(), false));
+                tell!("{}", findings.render(&name, &deck.resolved(), false));
                 return INPUT_ERROR;
             }
         };
         match outcome {
             Ok(outcome) => {
-                println!(
+                say!(
                     "{name:<34} {:>9.3} {:>7} {:>8} {:>7} {:>10.1e} {:>11.1e}  {}",
                     outcome.seconds,
                     outcome.newton_iterations,
@@ -48,13 +54,13 @@ pub(crate) fn bench(path: &Path, out: Option<PathBuf>) -> u8 {
                 results.push((name, outcome));
             }
             Err(error) => {
-                eprintln!("{error}");
+                tell!("{error}");
                 return INPUT_ERROR;
             }
         }
     }
     forces(&results);
-    println!("results in {}", out.display());
+    say!("results in {}", out.display());
     status
 }
 
@@ -63,18 +69,18 @@ fn forces(results: &[(String, Outcome)]) {
     let Some((_, first)) = results.first() else {
         return;
     };
-    println!("\nforces at the end [{}]", first.units.force());
+    say!("\nforces at the end [{}]", first.units.force());
     let largest = first.values.iter().map(|v| v.1.abs()).fold(0.0, f64::max);
     for (column, value) in first.values.iter().filter(|v| v.0.starts_with("force.")) {
         if value.abs() <= 1e-9 * largest {
             continue;
         }
-        println!("{column}");
+        say!("{column}");
         for (name, outcome) in results.iter().filter(|r| r.1.status == RunStatus::Done) {
             let found = outcome.values.iter().find(|v| v.0 == *column);
             let found = found.map_or(f64::NAN, |v| v.1);
             let off = found / value - 1.0;
-            println!("  {name:<32} {found:>18.10e}  {off:>+9.1e}");
+            say!("  {name:<32} {found:>18.10e}  {off:>+9.1e}");
         }
     }
 }

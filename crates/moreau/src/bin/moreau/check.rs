@@ -224,6 +224,10 @@ fn conditions(deck: &Deck) {
                 Action::Force(f) => format!("force {f:?} {force}"),
                 Action::BodyForce(f) => format!("body force {f:?} {force}/{length}³"),
                 Action::Tool(u) => format!("tool moves by {u:?} {length}"),
+                Action::Push(f, None) => format!("tool is driven by {f:?} {force}"),
+                Action::Push(f, Some(u)) => {
+                    format!("tool is driven by {f:?} {force}, else moves by {u:?} {length}")
+                }
             };
             say!("           {}: {what}", condition.on.value);
         }

@@ -1,6 +1,6 @@
 //! `moreau convert`: a mesh file in another format; the mesh stays what it is.
 
-use super::{INPUT_ERROR, say};
+use super::{INPUT_ERROR, say, tell};
 use moreau::files::{FileError, read_mesh, write_mesh};
 use moreau::mesh::{Loss, Mesh, ReadError};
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ impl Convert {
                 0
             }
             Err(error) => {
-                eprintln!("{error}");
+                tell!("{error}");
                 INPUT_ERROR
             }
         }
@@ -55,7 +55,7 @@ fn written<const D: usize>(
 ) -> Result<String, FileError> {
     write_mesh(path, mesh)?;
     for loss in losses {
-        eprintln!("warning: {loss}");
+        tell!("warning: {loss}");
     }
     Ok(format!(
         "{} nodes, {} cells, {} groups",

@@ -22,6 +22,15 @@ macro_rules! say {
 }
 use say;
 
+/// The same to the error output.
+macro_rules! tell {
+    ($($what:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stderr(), $($what)*);
+    }};
+}
+use tell;
+
 /// Exit status for input that makes no sense.
 const INPUT_ERROR: u8 = 1;
 /// Exit status for a run that did not converge, or was interrupted: what converged is kept.
@@ -153,7 +162,7 @@ fn read(path: &Path) -> Option<String> {
     match std::fs::read_to_string(path) {
         Ok(text) => Some(text),
         Err(error) => {
-            eprintln!("cannot read the deck {}: {error}", path.display());
+            tell!("cannot read the deck {}: {error}", path.display());
             None
         }
     }
@@ -170,10 +179,8 @@ fn report(findings: &moreau::deck::Findings, path: &Path, text: &str) {
     let colour = std::io::stderr().is_terminal();
     let (errors, warnings) = (findings.errors(), findings.warnings());
     if errors + warnings > 0 {
-        eprint!(
-            "{}",
-            findings.render(&path.display().to_string(), text, colour)
-        );
-        eprintln!("{}: {errors} errors, {warnings} warnings", path.display());
+        let shown = findings.render(&path.display().to_string(), text, colour);
+        tell!("{}\n", shown.trim_end_matches('\n'));
+        tell!("{}: {errors} errors, {warnings} warnings", path.display());
     }
 }

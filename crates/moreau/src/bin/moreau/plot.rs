@@ -1,6 +1,6 @@
 //! `moreau plot`: the pictures of a run, drawn again from its files.
 
-use super::{INPUT_ERROR, run};
+use super::{INPUT_ERROR, run, say, tell};
 use moreau::deck::Problem;
 use moreau::run::{Drawing, draw};
 use std::path::Path;
@@ -16,11 +16,11 @@ pub(crate) fn plot(directory: &Path, drawing: &Drawing) -> u8 {
     };
     match written {
         Ok(files) => {
-            files.iter().for_each(|f| println!("{}", f.display()));
+            files.iter().for_each(|f| say!("{}", f.display()));
             0
         }
         Err(error) => {
-            eprintln!("{error}");
+            tell!("{error}");
             INPUT_ERROR
         }
     }

@@ -1,6 +1,7 @@
 //! One line for each increment on stderr, a bar on a terminal, plain lines elsewhere; or every
 //! iteration as JSON on stdout. And the wish to stop.
 
+use super::tell;
 use indicatif::{ProgressBar, ProgressStyle};
 use moreau::run::{Event, Watch};
 use std::io::{IsTerminal, Write};
@@ -78,7 +79,7 @@ impl Watch for Progress {
             span(event.seconds_left)
         );
         match &self.bar {
-            None => eprintln!("{line}"),
+            None => tell!("{line}"),
             Some(bar) => {
                 bar.set_position((1000.0 * event.done) as u64);
                 bar.set_message(line);

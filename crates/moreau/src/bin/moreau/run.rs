@@ -2,7 +2,7 @@
 //! status that says so.
 
 use super::progress::Progress;
-use super::{INPUT_ERROR, Manner, NOT_CONVERGED, UNEXPECTED, folder, read, report};
+use super::{INPUT_ERROR, Manner, NOT_CONVERGED, UNEXPECTED, folder, read, report, say, tell};
 use moreau::deck::{Deck, Problem, open_in};
 use moreau::run::{Outcome, RunError, RunStatus, Watch};
 use std::path::{Path, PathBuf};
@@ -53,7 +53,7 @@ fn go(
     let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool,
         Err(error) => {
-            eprintln!("cannot start {threads} threads: {error}");
+            tell!("cannot start {threads} threads: {error}");
             return INPUT_ERROR;
         }
     };
@@ -63,7 +63,7 @@ fn go(
     match outcome {
         Ok(outcome) => conclude(&outcome, manner, directory),
         Err(error) => {
-            eprintln!("{error}");
+            tell!("{error}");
             INPUT_ERROR
         }
     }
@@ -77,7 +77,7 @@ fn stopping() -> Arc<AtomicBool> {
         if raised.swap(true, Ordering::SeqCst) {
             std::process::exit(i32::from(NOT_CONVERGED));
         }
-        eprintln!("stopping after this increment; once more to stop now");
+        tell!("stopping after this increment; once more to stop now");
     };
     // Without a handler Ctrl-C ends the process, and checkpoints are there all the same.
     let _ = ctrlc::set_handler(handler);
@@ -87,30 +87,35 @@ fn stopping() -> Arc<AtomicBool> {
 fn conclude(outcome: &Outcome, manner: &Manner, directory: &Path) -> u8 {
     let shown = directory.display();
     if !manner.quiet && !manner.json_log {
-        println!("{outcome}  results       {shown}");
+        say!("{outcome}  results       {shown}");
     }
     if let Some(error) = outcome.error() {
-        eprintln!("{error}");
+        tell!("{error}");
     }
     match outcome.status {
         RunStatus::Refused(_) => INPUT_ERROR,
         RunStatus::NotConverged(_) => {
             if let Some(diagnosis) = &outcome.diagnosis {
-                eprintln!("try: {}", diagnosis.suggestion);
+                tell!("try: {}", diagnosis.suggestion);
             }
             NOT_CONVERGED
         }
+        RunStatus::Collapsed(_) => {
+            eprintln!("if that is what the step is for, give it until = \"collapse\"");
+            NOT_CONVERGED
+        }
         RunStatus::Interrupted(increment) => {
-            eprintln!(
-                "interrupted after increment {increment}; to go on: moreau resume \"{shown}\""
-            );
+            tell!("interrupted after increment {increment}; to go on: moreau resume \"{shown}\"");
             NOT_CONVERGED
         }
         RunStatus::Done if manner.verify && !outcome.as_expected() => {
             for v in outcome.verdicts.iter().filter(|v| !v.passed()) {
-                eprintln!(
+                tell!(
                     "{} is {:.10e}, expected {:.10e} ± {:.2e}",
-                    v.column, v.found, v.expected, v.tolerance
+                    v.column,
+                    v.found,
+                    v.expected,
+                    v.tolerance
                 );
             }
             UNEXPECTED

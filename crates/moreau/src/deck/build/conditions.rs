@@ -32,6 +32,11 @@ pub(super) fn stages<const D: usize>(deck: &Deck, groups: &Groups<D>) -> Vec<Sta
                 Action::Traction(traction) => step.traction(on, fixed(traction)),
                 Action::BodyForce(density) => step.body_force(on, fixed(density)),
                 Action::Tool(motion) => step.tool(on, fixed(motion)),
+                Action::Push(force, motion) => {
+                    let moved = motion.iter().fold(step, |s, u| s.tool(on, fixed(u)));
+                    let driven = (0..D).filter(|&i| force[i] != 0.0 || drives(deck, on, i));
+                    driven.fold(moved, |s, i| s.push(on, AXES[i], force[i]))
+                }
             };
         }
         let directions = |name: &String| {
@@ -41,10 +46,18 @@ pub(super) fn stages<const D: usize>(deck: &Deck, groups: &Groups<D>) -> Vec<Sta
         Stage {
             step,
             increments: entry.increments,
+            until_collapse: entry.until_collapse,
             directions: held.iter().map(|[name, _]| directions(name)).collect(),
         }
     };
     deck.steps.iter().map(stage).collect()
+}
+
+/// Whether any step drives a tool along an axis by a force: it then does where that force is zero too.
+fn drives(deck: &Deck, tool: &str, axis: usize) -> bool {
+    let all = deck.steps.iter().flat_map(|s| &s.conditions);
+    let mut own = all.filter(|c| c.on.value == tool);
+    own.any(|c| matches!(&c.action, Action::Push(force, _) if force.get(axis).is_some_and(|f| *f != 0.0)))
 }
 
 /// Directions in which a condition prescribes displacements.
@@ -79,6 +92,10 @@ pub(super) fn doubts(deck: &Deck, findings: &mut Findings) {
             Action::Pressure(p) => Some(p.abs()),
             Action::Traction(v) | Action::Force(v) | Action::BodyForce(v) | Action::Tool(v) => {
                 Some(largest(v))
+            }
+            Action::Push(force, motion) => {
+                let moved = motion.as_ref().map_or(0.0, |u| largest(u));
+                Some(largest(force).max(moved))
             }
         }
     };

@@ -35,7 +35,9 @@ pub(super) fn check<const D: usize>(
     for step in &deck.steps {
         for condition in &step.conditions {
             match condition.action {
-                Action::Tool(_) => tool(&condition.on, deck, &mut used, findings),
+                Action::Tool(_) | Action::Push(..) => {
+                    tool(&condition.on, deck, &mut used, findings)
+                }
                 Action::Fix(_) | Action::Move(_) | Action::Force(_) => {
                     group(&condition.on, Needed::Nodes, groups, &mut used, findings);
                 }

@@ -1,6 +1,5 @@
 //! `[[step]]`: increments and conditions as they are given.
 
-use super::not_yet;
 use crate::deck::entries::{Action, ConditionEntry, StepEntry};
 use crate::deck::finding::At;
 use crate::deck::reader::{self, Table, Value};
@@ -14,6 +13,7 @@ pub(super) fn read(table: Table<'_>, dimension: usize) -> Option<StepEntry> {
     let name = table.name("name");
     let increments = table.need("increments", "a positive integer");
     let increments = increments.and_then(|v| increments_of(v, &table));
+    let until_collapse = table.choice_if("until", &["collapse"]).is_some();
     let mut conditions = Vec::new();
     for (key, read) in [
         (
@@ -38,6 +38,7 @@ pub(super) fn read(table: Table<'_>, dimension: usize) -> Option<StepEntry> {
     Some(StepEntry {
         name: name?,
         increments,
+        until_collapse,
         conditions,
         span,
     })
@@ -146,9 +147,12 @@ fn tool(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
     let log = table.log();
     let name = table.text("name");
     if let Some(force) = table.get("force") {
-        let instead = "prescribe its motion: { name = …, move = [ … ] }";
-        not_yet(log, &force.span(), "tools driven by a force", instead);
-        return None;
+        let force = reader::vector(force, "force", dimension, log)?.value;
+        let motion = match table.get("move") {
+            Some(value) => Some(reader::vector(value, "move", dimension, log)?.value),
+            None => None,
+        };
+        return condition(name, Action::Push(force, motion), table);
     }
     let value = table.need("move", "[ … ]")?;
     let motion = reader::vector(value, "move", dimension, log)?;
