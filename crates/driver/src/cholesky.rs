@@ -134,6 +134,11 @@ impl Cholesky {
         })
     }
 
+    /// Entries stored of the factor, with the zeros that make its columns alike.
+    pub(crate) fn entries(&self) -> usize {
+        self.factor.len()
+    }
+
     /// Position of a diagonal entry among the values.
     pub(crate) fn diagonal(&self, row: usize) -> usize {
         self.lower.col_ptr()[row] as usize
