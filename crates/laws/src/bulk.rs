@@ -2,6 +2,10 @@
 
 use moreau_mandel::{Sym2, Sym4};
 
+/// Part of the trial stress below which an overstress is the rounding of a state on the yield surface:
+/// unloading from there is elastic, and rounding does not choose the tangent it begins with.
+pub(crate) const ON_SURFACE: f64 = 1e-12;
+
 /// The numbers that a state consists of, always the same count in the same order: enough to write
 /// the state to a file and to read it back to the bit.
 pub trait Numbers {

@@ -1,7 +1,7 @@
 //! An elastic body with Drucker–Prager plasticity, integrated over a step; its plastic part is the
 //! bipotential of `drucker_prager`.
 
-use crate::bulk::{BulkLaw, FlowPower, Numbers, Response};
+use crate::bulk::{BulkLaw, FlowPower, Numbers, ON_SURFACE, Response};
 use crate::drucker_prager::DruckerPrager;
 use crate::elastic::Elastic;
 use crate::error::{LawError, positive};
@@ -105,8 +105,9 @@ impl BulkLaw for ElasticDruckerPrager {
         let trial = old.elastic_strain + d_eps;
         let s = 2.0 * g * deviator(&trial);
         let (norm, mean) = (s.norm(), k * trace(&trial));
-        let f = norm - k_f * (apex - mean);
-        if f <= 0.0 {
+        let resisted = k_f * (apex - mean);
+        let f = norm - resisted;
+        if f <= ON_SURFACE * (norm + resisted.abs()) {
             state.elastic_strain = trial;
             return Response {
                 stress: self.stress(&state),

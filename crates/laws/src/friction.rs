@@ -34,6 +34,10 @@ pub enum Friction {
     Anisotropic(AnisotropicCoulomb),
 }
 
+/// Part of the force below which α‖u_t‖ is no slip but the rounding of one: its direction is noise,
+/// and Newton's method would take as many iterations as that happens to be good or bad.
+const NO_SLIP: f64 = 1e-11;
+
 impl From<Coulomb> for Friction {
     fn from(law: Coulomb) -> Self {
         Self::Coulomb(law)
@@ -132,7 +136,12 @@ impl Friction {
         match self {
             Self::Coulomb(law) => {
                 let projector = law.project_jacobian(&(t - law.shifted(u) * alpha));
-                (projector, projector * law.shifted_jacobian(u) * alpha)
+                let slips = alpha * tangential_norm(u) > NO_SLIP * t.norm();
+                let shifted = match slips {
+                    true => law.shifted_jacobian(u),
+                    false => SMatrix::identity(),
+                };
+                (projector, projector * shifted * alpha)
             }
             Self::Tresca(_) | Self::Limited(_) => {
                 let derivative = self.clipped_jacobian(&(t - alpha * u));

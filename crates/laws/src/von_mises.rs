@@ -1,7 +1,7 @@
 //! Von Mises plasticity with isotropic and kinematic hardening, \[5\]-\[9\] and \[57\]-\[65\]; not
 //! a law of finite strain, though logarithmic strains may be fed to it.
 
-use crate::bulk::{BulkLaw, FlowPower, Numbers, Response};
+use crate::bulk::{BulkLaw, FlowPower, Numbers, ON_SURFACE, Response};
 use crate::duality::{Superpotential, at_most, indicator, restricted};
 use crate::elastic::Elastic;
 use crate::error::{LawError, non_negative, positive};
@@ -284,7 +284,7 @@ impl VonMises {
         let norm = xi.norm();
         let trial = 1.5f64.sqrt() * norm;
         let f = trial - self.yield_stress - self.isotropic.stress(old.p);
-        if f <= 0.0 {
+        if f <= ON_SURFACE * trial {
             return None;
         }
         if let (Some(isotropic), 0) = (self.isotropic.constant_modulus(), self.terms) {

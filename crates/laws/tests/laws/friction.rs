@@ -296,3 +296,19 @@ fn not_a_number_comes_out() -> Result<(), LawError> {
     }
     Ok(())
 }
+
+/// What a solve leaves as slip where a contact sticks has a direction by chance, which no iteration
+/// may follow; a slip that is small but real has its own.
+#[test]
+fn a_slip_that_is_rounding_has_no_direction() -> Result<(), LawError> {
+    let law = Friction::from(Coulomb::new(MU)?);
+    for_all(&(unit_tangent::<3>(), alpha()), |(tau, alpha)| {
+        // Pushed beyond the cone: a contact that is about to slip.
+        let t = Local::<3>::new(2.0, 1.5, 0.0);
+        let derivative = |slip: f64| law.correct_jacobian(&(slip / alpha * tau), &t, alpha).1;
+        prop_assert!((derivative(1e-14) - derivative(0.0)).norm() < 1e-12 * alpha);
+        prop_assert!((derivative(1e-6) - derivative(0.0)).norm() > 1e-3 * alpha);
+        Ok(())
+    });
+    Ok(())
+}

@@ -347,3 +347,22 @@ fn returns_of_every_size() -> Result<(), LawError> {
     }
     Ok(())
 }
+
+/// A state that was returned to the yield surface is on one side of it by rounding: without a strain
+/// its tangent is elastic, with one outwards it is not.
+#[test]
+fn on_the_surface_nothing_flows_without_a_strain() -> Result<(), LawError> {
+    let laws = [perfect()?, perfect()?.with_isotropic(1e3)?, chaboche()?];
+    for_all(&vector::<6>(0.1), |d_eps| {
+        for law in &laws {
+            let state = law.respond(&VonMisesState::default(), &d_eps).state;
+            prop_assume!(state.p > 0.0);
+            let still = law.respond(&state, &Sym2::zeros());
+            prop_assert_eq!(still.tangent, law.elastic().tangent());
+            prop_assert_eq!(still.state.p, state.p);
+            prop_assert!(law.respond(&state, &(1e-9 * d_eps)).state.p > state.p);
+        }
+        Ok(())
+    });
+    Ok(())
+}
