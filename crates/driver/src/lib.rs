@@ -35,6 +35,7 @@ mod condensation;
 mod control;
 mod driver;
 mod error;
+mod fronts;
 mod increment;
 mod increments;
 mod interface;
