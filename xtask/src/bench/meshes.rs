@@ -3,7 +3,7 @@
 
 use std::error::Error;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use moreau::driver::{Analysis, Axis, Driver, Model, Settings, Step};
 use moreau::laws::Elastic;
@@ -11,7 +11,7 @@ use moreau::mesh::{Integration, Mesh, PlaneStrain, Solid, read_gmsh};
 use verification::paper;
 
 /// Prints a line for every mesh, the fastest of so many runs.
-pub(super) fn run(files: &[std::path::PathBuf], runs: usize) -> Result<bool, Box<dyn Error>> {
+pub(super) fn run(files: &[PathBuf], runs: usize) -> Result<bool, Box<dyn Error>> {
     println!(
         "{:<24} {:>9} {:>16} {:>12} {:>16}",
         "mesh", "unknowns", "entries of L", "ordering s", "factorisation s"
@@ -20,11 +20,11 @@ pub(super) fn run(files: &[std::path::PathBuf], runs: usize) -> Result<bool, Box
         let bytes = fs::read(file).map_err(|error| format!("{}: {error}", file.display()))?;
         // A plane mesh has no cells in space, and one in space is not plane.
         let figures = match read_gmsh::<2>(&bytes) {
-            Ok(mesh) => fastest(&mesh, &PlaneStrain::default(), &[Axis::X, Axis::Y], runs)?,
+            Ok(mesh) => fastest(&mesh, PlaneStrain::default(), &[Axis::X, Axis::Y], runs)?,
             Err(plane) => {
                 let mesh = read_gmsh::<3>(&bytes)
                     .map_err(|space| format!("{}: {plane}; {space}", file.display()))?;
-                fastest(&mesh, &Solid, &[Axis::X, Axis::Y, Axis::Z], runs)?
+                fastest(&mesh, Solid, &[Axis::X, Axis::Y, Axis::Z], runs)?
             }
         };
         println!("{}", figures.line(file));
@@ -50,15 +50,15 @@ impl Figures {
     }
 }
 
-fn fastest<const D: usize, H: Analysis<D> + Clone>(
+fn fastest<const D: usize, H: Analysis<D>>(
     mesh: &Mesh<D>,
-    hypothesis: &H,
+    hypothesis: H,
     axes: &[Axis],
     runs: usize,
 ) -> Result<Figures, Box<dyn Error>> {
-    let mut best = measure(mesh.clone(), hypothesis.clone(), axes)?;
+    let mut best = measure(mesh.clone(), hypothesis, axes)?;
     for _ in 1..runs {
-        let new = measure(mesh.clone(), hypothesis.clone(), axes)?;
+        let new = measure(mesh.clone(), hypothesis, axes)?;
         best.ordering = best.ordering.min(new.ordering);
         best.factorisation = best.factorisation.min(new.factorisation);
     }
@@ -106,7 +106,7 @@ mod tests {
     fn a_mesh_is_read_and_factorised() -> Result<(), Box<dyn Error>> {
         let line = uniform(0.0, 1.0, 4);
         let mesh = block2("block", CellKind::Quad4, &line, &line)?;
-        let figures = fastest(&mesh, &PlaneStrain::default(), &[Axis::X, Axis::Y], 2)?;
+        let figures = fastest(&mesh, PlaneStrain::default(), &[Axis::X, Axis::Y], 2)?;
         // 25 nodes, of which five are held; a factor has at least its matrix's lower triangle.
         assert_eq!(figures.unknowns, 40);
         assert!(figures.entries > 40 && figures.entries < 40 * 40);
