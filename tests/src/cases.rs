@@ -7,6 +7,7 @@ mod compare;
 mod greco;
 mod penalty;
 mod prandtl;
+mod punch_in_space;
 mod ring;
 mod rounded_punch;
 
@@ -25,5 +26,6 @@ pub fn all() -> Vec<Case> {
         cattaneo::CASE,
         rounded_punch::CASE,
         ring::CASE,
+        punch_in_space::CASE,
     ]
 }
