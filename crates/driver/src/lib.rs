@@ -42,6 +42,7 @@ mod interface;
 mod iterate;
 mod line_search;
 mod load;
+mod mechanism;
 mod model;
 mod nested;
 mod norm;

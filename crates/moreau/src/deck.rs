@@ -34,6 +34,7 @@
 //! ```
 
 mod build;
+mod columns;
 mod echo;
 mod entries;
 mod finding;
@@ -50,7 +51,7 @@ pub use entries::{
 pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;
 
-use crate::columns::columns;
+pub(crate) use columns::{Unit, columns};
 use std::path::Path;
 
 /// JSON schema of decks, for editors: `docs/deck.schema.json`.

@@ -2,8 +2,8 @@
 //! contact, the deformed body with a field.
 
 use super::RunError;
+use super::grid::Array;
 use super::table::Table;
-use super::vtu::Array;
 use crate::deck::{Deck, Units};
 use crate::mesh::Mesh;
 use crate::plot::{Chart, MeshPicture, Style};
