@@ -8,6 +8,7 @@ mod compare;
 mod greco;
 mod penalty;
 mod prandtl;
+mod punch_in_space;
 mod ring;
 mod rounded_punch;
 
@@ -27,5 +28,6 @@ pub fn all() -> Vec<Case> {
         rounded_punch::CASE,
         ring::CASE,
         collapse::CASE,
+        punch_in_space::CASE,
     ]
 }

@@ -50,6 +50,11 @@ fn punched_block() {
 }
 
 #[test]
+fn punch_in_space() {
+    assert_passes("punch-in-space");
+}
+
+#[test]
 fn penalty_study() {
     assert_passes("penalty");
 }
