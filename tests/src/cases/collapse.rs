@@ -1,6 +1,7 @@
 //! Loads beyond collapse against exact limit loads, and who locks on the way there.
 
 use crate::paper::{prandtl, prandtl_load, prandtl_step};
+use crate::problems::Fallible;
 use crate::problems::collapsing::{cylinder, notch, sphere, strip};
 use crate::problems::shapes::Hole;
 use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
@@ -121,7 +122,7 @@ fn bodies(quick: bool) -> Result<Vec<Overloaded>, Box<dyn Error>> {
 
 /// The collapse of a body, and its load over the exact one against its displacement over that of
 /// the elastic body at the exact load.
-fn loaded(body: &mut Overloaded) -> Result<(Collapse, Vec<[f64; 2]>), Box<dyn Error>> {
+fn loaded(body: &mut Overloaded) -> Fallible<(Collapse, Vec<[f64; 2]>)> {
     let mut curve = vec![[0.0, 0.0]];
     let ended = body.driver.run(&body.step, 20, |driver, report| {
         curve.push([(body.motion)(driver), body.overload * report.fraction]);
