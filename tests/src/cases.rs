@@ -3,6 +3,7 @@
 mod algorithms;
 mod block;
 mod cattaneo;
+mod collapse;
 mod compare;
 mod greco;
 mod penalty;
@@ -25,5 +26,6 @@ pub fn all() -> Vec<Case> {
         cattaneo::CASE,
         rounded_punch::CASE,
         ring::CASE,
+        collapse::CASE,
     ]
 }

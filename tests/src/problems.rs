@@ -1,6 +1,7 @@
 //! Problems that several verification tests share, as models ready to be loaded; not the numbers
 //! they are compared with, which stand in the tests.
 
+pub mod collapsing;
 pub mod disguise;
 pub mod fields;
 pub mod greco;

@@ -1,6 +1,7 @@
 //! `cargo xtask bench`: the punched block on meshes from 20×8 to 640×256 cells, by every contact
 //! method: where the time goes and what it takes in memory.
 
+mod meshes;
 mod micro;
 mod shaken;
 
@@ -35,6 +36,9 @@ pub struct Args {
     /// The kernels one by one instead: element, law, projection, factorisation, contact problem
     #[arg(long)]
     micro: bool,
+    /// Gmsh file to order and factorise instead, elastic; may be given again
+    #[arg(long = "mesh", value_name = "FILE")]
+    meshes: Vec<PathBuf>,
     /// Runs of each; the fastest counts
     #[arg(long, default_value_t = 1)]
     runs: usize,
@@ -128,6 +132,9 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     };
     if args.micro {
         return micro::run();
+    }
+    if !args.meshes.is_empty() {
+        return meshes::run(&args.meshes, args.runs);
     }
     let load = (args.friction, args.increments.clamp(1, INCREMENTS));
     if let Some(runs) = args.shaken {

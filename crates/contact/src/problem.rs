@@ -259,6 +259,9 @@ pub(crate) fn stack<const D: usize>(t: &[Local<D>]) -> DVector<f64> {
 
 /// Inverse of a symmetric positive definite matrix.
 fn inverse(a: DMatrix<f64>, solver: &'static str) -> Result<DMatrix<f64>, ContactError> {
+    if a.is_empty() {
+        return Ok(a); // Nothing touches.
+    }
     let scale = a.diagonal().amax();
     match a.clone().cholesky() {
         // A pivot at rounding level is a rigid motion, not a stiffness.
@@ -283,6 +286,14 @@ mod tests {
 
     fn coulomb(mu: f64) -> Friction {
         Coulomb::new(mu).expect("valid").into()
+    }
+
+    #[test]
+    fn nothing_in_contact_has_a_form_too() {
+        let (s, f) = (DMatrix::zeros(0, 0), DVector::zeros(0));
+        let problem = ContactProblem::<2>::new(s, f, vec![], Vec::<Friction>::new(), vec![]);
+        let form = problem.expect("valid").delassus("test").expect("empty");
+        assert!(form.operator.is_empty() && form.free.is_empty());
     }
 
     #[test]

@@ -1,10 +1,6 @@
 //! Collapse: the load that a structure carries at most, and a bound on it from its mechanism; not
 //! the way there.
 
-use crate::driver::Driver;
-use crate::report::ContactRecord;
-use moreau_laws::{FlowPower, Status};
-
 /// A step whose loads grow in proportion, F₀ + λ q from λ = 0 to 1, and which the structure does
 /// not carry to its end: displacements grow while λ does not.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,29 +54,5 @@ impl std::fmt::Display for Collapse {
             false => "upper bound",
         };
         write!(f, ", {what} {:.6}", bound.load_factor)
-    }
-}
-
-impl<const D: usize> Driver<D> {
-    /// The kinematic bound from the last increment, for the loads λ q with this λ at its end.
-    pub(crate) fn upper_bound(&self, load: &[f64], factor: f64) -> Option<UpperBound> {
-        let (v, _) = self.state.last.as_ref()?;
-        let power = |f: &dyn Fn(usize) -> f64| -> f64 { (0..v.len()).map(|d| f(d) * v[d]).sum() };
-        let proportional = power(&|d| load[d]);
-        let dead = power(&|d| self.state.loading.force[d] - factor * load[d]);
-        let mut flow = FlowPower::default();
-        for block in &self.blocks {
-            flow = flow.with(1.0, block.flow_power(v)?);
-        }
-        let contacts = &self.state.contacts;
-        let slip = |c: &ContactRecord<D>| (1..D).map(|j| -c.t[j] * c.u[j]).sum::<f64>();
-        let friction: f64 = contacts.iter().map(slip).sum();
-        let mut pairs = self.points.iter().zip(contacts);
-        let coulomb = pairs.any(|(p, c)| c.status == Status::Slip && p.law.friction() > 0.0);
-        (proportional > 0.0).then(|| UpperBound {
-            load_factor: (flow.total + friction - dead) / proportional,
-            elastic_share: flow.elastic / proportional,
-            coulomb,
-        })
     }
 }

@@ -226,6 +226,12 @@ impl<const D: usize> Driver<D> {
         self.system.as_ref().map_or(0, System::size)
     }
 
+    /// Entries stored of the factor of the stiffness, by which orders of elimination are compared;
+    /// 0 before the first step.
+    pub fn factor_entries(&self) -> usize {
+        self.system.as_ref().map_or(0, System::factor_entries)
+    }
+
     /// Where the time went so far.
     pub fn timings(&self) -> Timings {
         self.system

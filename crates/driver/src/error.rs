@@ -254,7 +254,7 @@ pub enum StepError {
     /// The step was cut as far as allowed.
     #[error(
         "step {step:?} stopped at {:.4} % of its load: increments were cut to {smallest:.2e} of the \
-         step. {} Last attempt: {cause}", 100.0 * .reached, collapse_hint(*.plastic_fraction)
+         step. {} Last attempt: {cause}", 100.0 * .reached, collapse_hint(*.plastic_fraction, *.limit)
     )]
     Stopped {
         /// Name of the step.
@@ -266,6 +266,10 @@ pub enum StepError {
         /// Part of the volume that flowed plastically in the last attempt that tells, or in the
         /// last converged increment.
         plastic_fraction: f64,
+        /// Estimate of the load factor at collapse from the last two increments, λ∞ of a hyperbola over
+        /// the work of the loads; `None` where only part of what is applied are loads, or the
+        /// structure does not soften.
+        limit: Option<f64>,
         /// Why the last attempt failed.
         cause: Box<StepError>,
     },
@@ -282,11 +286,16 @@ fn worst_nodes(worst: &[Imbalance]) -> String {
     worst.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-fn collapse_hint(plastic_fraction: f64) -> &'static str {
-    if plastic_fraction > 0.02 {
-        "Plastic flow is widespread: the load is probably at the limit load; prescribe \
-         displacements to pass it."
-    } else {
-        "Hardly anything flows plastically: look for a contact that opens or a missing support."
+fn collapse_hint(plastic_fraction: f64, limit: Option<f64>) -> String {
+    if plastic_fraction <= 0.02 {
+        return "Hardly anything flows plastically: look for a contact that opens or a missing support."
+            .into();
     }
+    let estimate = limit.map_or_else(String::new, |limit| {
+        format!(", which the last increments put at {:.1} %", 100.0 * limit)
+    });
+    format!(
+        "Plastic flow is widespread: the load is probably at the limit load{estimate}; prescribe \
+         displacements to pass it."
+    )
 }

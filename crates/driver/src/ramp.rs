@@ -31,8 +31,19 @@ pub struct Ramp<const D: usize> {
     plastic_fraction: f64,
     /// Work of the loads at the end of the step on the displacements of the step so far \[N·mm\].
     work: f64,
+    /// How the structure yielded to the loads in the last two increments, the last one first.
+    yielded: [Option<Yielded>; 2],
     /// The load factor as an unknown, once that is what it takes.
     path: Option<Path>,
+}
+
+/// Stiffness against the loads of a step in an increment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Yielded {
+    /// Mean of λ.
+    factor: f64,
+    /// Δλ over the work of the whole loads on the displacements of the increment \[1/(N·mm)\].
+    stiffness: f64,
 }
 
 /// How the path of equilibria is followed.
@@ -51,6 +62,9 @@ struct Path {
     /// Whether that was the end.
     ended: bool,
 }
+
+/// Least relative loss of the root of the stiffness from which a limit load is estimated.
+const SOFTER: f64 = 0.02;
 
 /// Compliance of the spring, over that of the structure: small, to stay on the path where the
 /// structure softens.
@@ -74,6 +88,10 @@ impl<const D: usize> Ramp<D> {
         out.extend([self.whole as f64, self.done, self.length]);
         out.extend([self.easy as f64, self.cuts as f64, self.plastic_fraction]);
         out.extend([self.work, f64::from(u8::from(self.path.is_some()))]);
+        for y in self.yielded {
+            let numbers = |y: Yielded| [1.0, y.factor, y.stiffness];
+            out.extend(y.map_or([0.0; 3], numbers));
+        }
         if let Some(p) = &self.path {
             out.extend([p.compliance, p.length, p.last, p.peak, p.growth]);
             out.push(f64::from(u8::from(p.ended)));
@@ -89,7 +107,7 @@ impl<const D: usize> Ramp<D> {
         increments: Increments,
         from: &mut Reader<'_>,
     ) -> Result<Self, ModelError> {
-        Ok(Self {
+        let mut ramp = Self {
             step: step.name.clone(),
             start: from.loading()?,
             end: from.loading()?,
@@ -101,18 +119,25 @@ impl<const D: usize> Ramp<D> {
             cuts: from.count()?,
             plastic_fraction: from.number()?,
             work: from.number()?,
-            path: match from.count()? {
-                0 => None,
-                _ => Some(Path {
-                    compliance: from.number()?,
-                    length: from.number()?,
-                    last: from.number()?,
-                    peak: from.number()?,
-                    growth: from.number()?,
-                    ended: from.count()? == 1,
-                }),
-            },
-        })
+            yielded: [None; 2],
+            path: None,
+        };
+        let on_path = from.count()? == 1;
+        for y in &mut ramp.yielded {
+            let (known, factor, stiffness) = (from.count()?, from.number()?, from.number()?);
+            *y = (known == 1).then_some(Yielded { factor, stiffness });
+        }
+        if on_path {
+            ramp.path = Some(Path {
+                compliance: from.number()?,
+                length: from.number()?,
+                last: from.number()?,
+                peak: from.number()?,
+                growth: from.number()?,
+                ended: from.count()? == 1,
+            });
+        }
+        Ok(ramp)
     }
 }
 
@@ -123,11 +148,35 @@ impl<const D: usize> Ramp<D> {
         pairs.map(|(end, start)| end - start).collect()
     }
 
-    /// Takes note of an increment and of the work that the loads of the whole step did in it.
-    fn converged(&mut self, report: &StepReport, work: f64) {
+    /// Takes note of an increment from λ = `before`, and of the work that the loads of the whole step
+    /// did in it.
+    fn converged(&mut self, report: &StepReport, before: f64, work: f64) {
+        let growth = report.fraction - before;
+        let yielded = Yielded {
+            factor: before + 0.5 * growth,
+            stiffness: growth / work,
+        };
+        self.yielded = [(work > 0.0).then_some(yielded), self.yielded[0]];
         self.cuts = 0;
         self.plastic_fraction = report.plastic_fraction;
         self.work += work;
+    }
+
+    /// Where the last two increments tend to if λ = λ∞ − A/(w + w₀) over the work w: the square root
+    /// of the stiffness is then linear in λ, and zero at λ∞; no less than what was reached. `None` where
+    /// nothing yields, or something is moved.
+    fn estimated_limit(&self) -> Option<f64> {
+        let [Some(last), Some(first)] = self.yielded else {
+            return None;
+        };
+        let moves = self.start.displacement != self.end.displacement;
+        let roots = [first, last].map(|y| y.stiffness.sqrt());
+        let softer = roots[1] < (1.0 - SOFTER) * roots[0] && last.factor > first.factor;
+        (softer && !moves).then(|| {
+            let ahead = roots[1] / (roots[0] - roots[1]);
+            let limit = last.factor + (last.factor - first.factor) * ahead;
+            limit.max(self.done)
+        })
     }
 
     /// The error of a step that has been cut as far as allowed.
@@ -144,6 +193,7 @@ impl<const D: usize> Ramp<D> {
             reached: self.done,
             smallest,
             plastic_fraction,
+            limit: self.estimated_limit(),
             cause: Box::new(cause),
         }
     }
@@ -177,6 +227,7 @@ impl<const D: usize> Driver<D> {
             cuts: 0,
             plastic_fraction: 0.0,
             work: 0.0,
+            yielded: [None; 2],
             path: None,
         })
     }
@@ -219,13 +270,13 @@ impl<const D: usize> Driver<D> {
                 Ok(mut report) => {
                     report.fraction = target;
                     report.cuts = cuts;
-                    ramp.done = target;
+                    let before = std::mem::replace(&mut ramp.done, target);
                     ramp.whole += usize::from(at_end);
                     let iterations = report.newton_iterations;
                     ramp.length = ramp
                         .increments
                         .next(ramp.length, &mut ramp.easy, iterations);
-                    ramp.converged(&report, self.last_work(&ramp.load()));
+                    ramp.converged(&report, before, self.last_work(&ramp.load()));
                     return Ok(report);
                 }
                 Err(error @ StepError::Model(_)) => return Err(error),
@@ -318,7 +369,7 @@ impl<const D: usize> Driver<D> {
                     report.cuts = cuts;
                     let work = self.last_work(&load);
                     let before = std::mem::replace(&mut ramp.done, report.fraction);
-                    ramp.converged(&report, work);
+                    ramp.converged(&report, before, work);
                     path.last = report.fraction - before;
                     path.peak = path.peak.max(report.fraction);
                     path.growth = path.last * (ramp.work / work).abs() / path.peak;

@@ -178,6 +178,11 @@ impl System {
         self.dofs.len()
     }
 
+    /// Entries stored of the factor.
+    pub(crate) fn factor_entries(&self) -> usize {
+        self.cholesky.entries()
+    }
+
     /// Whether a displacement is unknown.
     pub(crate) fn is_free(&self, dof: usize) -> bool {
         self.position[dof] != FIXED

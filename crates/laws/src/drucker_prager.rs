@@ -46,6 +46,42 @@ impl DruckerPrager {
         })
     }
 
+    /// The cone through the edges of Mohr and Coulomb's pyramid in triaxial compression, from the
+    /// cohesion c > 0 \[MPa\], the friction angle φ ∈ \]0°, 90°\[ and the dilatancy angle
+    /// ψ ∈ \[0°, φ\], in degrees:
+    ///
+    /// k_f = 2√6 sin φ/(3 − sin φ), k_t = 2√6 sin ψ/(3 − sin ψ), c₀ = c cot φ.
+    ///
+    /// Its strength in uniaxial compression is that of the pyramid, 2 c cos φ/(1 − sin φ); in
+    /// triaxial extension and in plane strain it is stronger than the pyramid.
+    ///
+    /// # Errors
+    /// `NotPositive` or `AngleOutOfRange` when these do not hold.
+    pub fn mohr_coulomb(
+        cohesion: f64,
+        friction_angle: f64,
+        dilatancy_angle: f64,
+    ) -> Result<Self, LawError> {
+        let range = |name, degrees, range| LawError::AngleOutOfRange {
+            name,
+            degrees,
+            range,
+        };
+        if !(friction_angle > 0.0 && friction_angle < 90.0) {
+            return Err(range("the friction angle", friction_angle, "]0, 90["));
+        }
+        if !(0.0..=friction_angle).contains(&dilatancy_angle) {
+            let most = "[0, friction angle]";
+            return Err(range("the dilatancy angle", dilatancy_angle, most));
+        }
+        let slope = |degrees: f64| {
+            let sine = degrees.to_radians().sin();
+            2.0 * 6f64.sqrt() * sine / (3.0 - sine)
+        };
+        let apex = positive("the cohesion", cohesion)? / friction_angle.to_radians().tan();
+        Self::new(slope(friction_angle), slope(dilatancy_angle), apex)
+    }
+
     /// The friction k_f.
     pub fn friction(&self) -> f64 {
         self.cone.friction()

@@ -1,7 +1,7 @@
 //! An elastic body with Drucker–Prager plasticity, integrated over a step; its plastic part is the
 //! bipotential of `drucker_prager`.
 
-use crate::bulk::{BulkLaw, Numbers, ON_SURFACE, Response};
+use crate::bulk::{BulkLaw, FlowPower, Numbers, ON_SURFACE, Response};
 use crate::drucker_prager::DruckerPrager;
 use crate::elastic::Elastic;
 use crate::error::{LawError, positive};
@@ -169,5 +169,20 @@ impl BulkLaw for ElasticDruckerPrager {
         // ψ₁ − ψ₀ − σ₀ : Δεᵉ is the energy of Δεᵉ, free of the rounding of the difference.
         let elastic = self.elastic.energy(&(d_eps - flow)) - self.stress(old).dot(&flow);
         Some(elastic + self.plastic.apex() * trace(&flow))
+    }
+
+    /// c₀ e_v⁺ + σ_m (e_v − e_v⁺) of associated flow, with e_v⁺ = max(e_v, k_f ‖e‖): what a rate
+    /// lacks of the dilation of flow is elastic. `None` where k_t < k_f.
+    fn flow_power(&self, state: &DruckerPragerState, rate: &Sym2) -> Option<FlowPower> {
+        let friction = self.plastic.friction();
+        if self.plastic.dilatancy() < friction {
+            return None;
+        }
+        let dilation = trace(rate).max(friction * deviator(rate).norm());
+        let lacking = trace(&self.stress(state)) / 3.0 * (trace(rate) - dilation);
+        Some(FlowPower {
+            total: self.plastic.apex() * dilation + lacking,
+            elastic: lacking.abs(),
+        })
     }
 }

@@ -40,6 +40,16 @@ pub enum LawError {
         /// The friction k_f that bounds it.
         friction: f64,
     },
+    /// An angle of a soil outside its range.
+    #[error("{name} must lie in {range}, in degrees, got {degrees}")]
+    AngleOutOfRange {
+        /// The angle.
+        name: &'static str,
+        /// Its value in degrees.
+        degrees: f64,
+        /// The range in words.
+        range: &'static str,
+    },
     /// A table of hardening that is none.
     #[error("row {row} of the hardening table {problem}")]
     Table {

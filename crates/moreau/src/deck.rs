@@ -34,6 +34,7 @@
 //! ```
 
 mod build;
+mod columns;
 mod echo;
 mod entries;
 mod finding;
@@ -44,13 +45,13 @@ mod units;
 pub use build::{Body, GroupFacts, Problem, Setup, Stage};
 pub use entries::{
     Action, Adjust, Analysis, BlockEntry, ConditionEntry, ContactEntry, Deck, Expectation,
-    FrictionEntry, Grid, GroupEntry, Hardening, MaterialEntry, Method, Part, Shape, SolverEntry,
-    StepEntry, ToolEntry, Vtu,
+    FrictionEntry, Grid, GroupEntry, Hardening, MaterialEntry, Method, Part, Shape, SoilEntry,
+    SolverEntry, StepEntry, ToolEntry, Vtu,
 };
 pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;
 
-use crate::columns::columns;
+pub(crate) use columns::{Unit, columns};
 use std::path::Path;
 
 /// JSON schema of decks, for editors: `docs/deck.schema.json`.

@@ -7,19 +7,21 @@ mod checkpoint;
 mod contact;
 mod diagnosis;
 mod files;
+mod grid;
 mod history;
 mod log;
 mod outcome;
 mod pictures;
 mod report;
+mod surface;
 mod table;
 mod view;
 mod vtu;
 
 pub use diagnosis::{Diagnosis, Flip};
+pub(crate) use grid::vtu_of_mesh;
 pub use outcome::{Outcome, RunStatus, Verdict};
 pub use view::View;
-pub(crate) use vtu::vtu_of_mesh;
 
 use crate::deck::{Deck, Setup, Vtu};
 use crate::driver::{Driver, Ramp, Reader, StepError, StepReport};
@@ -207,7 +209,7 @@ fn pictures_of<const D: usize>(
     driver: &Driver<D>,
     deck: &Deck,
     directory: &Path,
-    last: Option<&[vtu::Array]>,
+    last: Option<&[grid::Array]>,
     drawing: &Drawing,
 ) -> Result<Vec<PathBuf>, RunError>
 where
@@ -427,7 +429,7 @@ where
         };
         let driver = &self.setup.driver;
         if let Some(out) = &mut self.out {
-            if diagnosis.is_some() && !self.trace.d_u.is_empty() {
+            if diagnosis.is_some() && self.trace.is_of_next(driver) {
                 let displacement = self.trace.displacement(driver);
                 let residual = &self.trace.residual;
                 out.collection.failed(driver, &displacement, residual)?;

@@ -556,6 +556,118 @@ move = [{{ on = "b.top", u = {{ y = 0.01 }} }}]
     assert_eq!(status, 0, "{out}{err}");
 }
 
+/// Uzawa's method around the nonlinear solve follows no path: beyond collapse it stops, and says how
+/// far that was. Without contacts it has nothing to do otherwise.
+#[test]
+fn a_run_that_stops_below_collapse_says_how_far_it_is() {
+    let example = examples().join("cylinder-to-collapse.toml");
+    let example = fs::read_to_string(example).expect("the example");
+    let head = example.split("[expect]").next().expect("a deck");
+    let head = head.replace("until = \"collapse\"\n", "");
+    let solver = |nesting: &str| format!("{head}[solver]\ncontact = \"uzawa\"\n{nesting}\n");
+    let (status, _, err, _) = run("no-contact", &solver(""), &["--quiet"]);
+    assert!(
+        status == 2 && err.contains("collapse at load factor 0.5"),
+        "{err}"
+    );
+    let outside = solver("nesting = \"outside\"");
+    let (status, _, err, results) = run("outside", &outside, &["--quiet"]);
+    assert_eq!(status, 2, "{err}");
+    assert!(err.contains("the last increments put at 50.0 %"), "{err}");
+    let json = fs::read_to_string(results.join("run.json")).expect("a summary");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("json");
+    let told = &json["diagnosis"];
+    let limit = told["load_factor"].as_f64().expect("an estimate");
+    assert!((limit / 0.5 - 1.0).abs() < 2e-2, "{limit}");
+    assert!(told["plastic_fraction"].as_f64().is_some_and(|p| p > 0.5));
+}
+
+/// A footing on soil without dilatancy, in one increment that Newton's method is too slow for and that
+/// must not be cut: what is out of balance is told and shown.
+#[test]
+fn a_run_that_fails_says_what_is_out_of_balance() {
+    let deck = r#"
+units = "mm-N-MPa"
+analysis = "plane-strain"
+mesh.block = [{ name = "b", element = "quad8", x = [0, 4], y = [0, 4], cells = [8, 8] }]
+mesh.group = [{ name = "foot", on = "b.top", x = [0, 1] }]
+[[material]]
+on = "b"
+young = 20.0
+poisson = 0.3
+cohesion = 0.02
+friction-angle = 40
+dilatancy-angle = 0
+[[step]]
+name = "press"
+increments = { start = 1, min = 1, max = 1 }
+fix = [
+  { on = "b.bottom", u = ["x", "y"] },
+  { on = "b.left", u = ["x"] },
+  { on = "b.right", u = ["x"] },
+]
+move = [{ on = "foot", u = { y = -0.4 } }]
+"#;
+    let (status, out, err, results) = run("footing", deck, &[]);
+    assert_eq!(status, 2, "{out}{err}");
+    assert!(out.contains("nodes farthest out of balance"), "{out}");
+    let json = fs::read_to_string(results.join("run.json")).expect("a summary");
+    let json: serde_json::Value = serde_json::from_str(&json).expect("json");
+    let told = &json["diagnosis"];
+    assert!(told["plastic_fraction"].as_f64().is_some_and(|p| p > 0.1));
+    assert!(
+        told["load_factor"].is_null(),
+        "the footing is moved, not loaded"
+    );
+    let worst = told["worst"].as_array().expect("nodes");
+    let force = |k: usize| worst[k]["force"].as_f64().expect("a force");
+    assert_eq!(worst.len(), 5);
+    assert!((1..5).all(|k| force(k) <= force(k - 1)) && force(4) > 1e-6);
+    // The attempt is there to be looked at, beside what nothing balances.
+    let shown = text(&fs::read(results.join("failed.vtu")).expect("a file"));
+    assert!(shown.contains("NumberOfPoints=\"225\"") && shown.contains("\"out_of_balance\""));
+}
+
+/// A cylinder of soil between smooth plates carries 2 c cos φ/(1 − sin φ), associated or not, and says
+/// what it is made of.
+#[test]
+fn a_soil_has_its_strength_in_compression() {
+    let (sine, cosine) = 30f64.to_radians().sin_cos();
+    let force = -2.0 * 0.02 * cosine / (1.0 - sine) * 4.0 * std::f64::consts::PI;
+    for dilatancy in [30, 15] {
+        let deck = format!(
+            r#"
+units = "mm-N-MPa"
+analysis = "axisymmetric"
+mesh.block = [{{ name = "b", element = "quad8", x = [0, 2], y = [0, 4], cells = [2, 2] }}]
+[[material]]
+on = "b"
+young = 20.0
+poisson = 0.3
+cohesion = 0.02
+friction-angle = 30
+dilatancy-angle = {dilatancy}
+[[step]]
+name = "compress"
+increments = 10
+fix = [{{ on = "b.bottom", u = ["y"] }}, {{ on = "b.left", u = ["x"] }}]
+move = [{{ on = "b.top", u = {{ y = -0.08 }} }}]
+[expect]
+"force.b.top.y" = {{ value = {force}, relative = 1e-7 }}
+"#
+        );
+        let (status, out, err, results) = run("soil", &deck, &["--verify"]);
+        assert_eq!(status, 0, "{out}{err}");
+        let resolved = results.join("deck.resolved.toml");
+        let again = fs::read_to_string(resolved).expect("a deck");
+        assert!(again.contains("friction-angle = 30.0"), "{again}");
+        assert!(
+            again.contains(&format!("dilatancy-angle = {dilatancy}.0")),
+            "{again}"
+        );
+    }
+}
+
 #[test]
 fn a_contact_that_never_closes_is_told() {
     let hover = punched()

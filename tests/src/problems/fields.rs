@@ -3,9 +3,12 @@
 
 use moreau::driver::{Driver, Loading, ModelError, Step};
 use moreau::laws::{BulkLaw, Elastic};
-use moreau::mandel::Sym2;
-use moreau::mesh::{CellKind, Element, Hypothesis, Mesh, Quad4, Quad8, Quad9, Rule, Tri3, Tri6};
-use nalgebra::SVector;
+use moreau::mandel::{Sym2, from_matrix};
+use moreau::mesh::{
+    CellKind, Element, Hex8, Hex20, Hex27, Hypothesis, PlaneStrain, Quad4, Quad8, Quad9, Rule,
+    Solid, Tet4, Tet10, Tri3, Tri6,
+};
+use nalgebra::{Matrix3, SVector};
 
 /// The loading of a step, with all displacements of some nodes prescribed by a field besides.
 ///
@@ -27,60 +30,95 @@ pub fn prescribed<const D: usize>(
     Ok(loading)
 }
 
-/// An exact solution: displacement and its gradient ∂u_i/∂x_j in the plane.
-pub trait PlaneField {
+/// An exact solution: displacement and its gradient ∂u_i/∂x_j, in space or in plane strain.
+pub trait Field<const D: usize> {
     /// u(x) \[mm\].
-    fn displacement(&self, x: &[f64; 2]) -> [f64; 2];
+    fn displacement(&self, x: &[f64; D]) -> [f64; D];
 
     /// ∂u_i/∂x_j \[–\].
-    fn gradient(&self, x: &[f64; 2]) -> [[f64; 2]; 2];
+    fn gradient(&self, x: &[f64; D]) -> [[f64; D]; D];
 
-    /// The Mandel strain in plane strain.
-    fn strain(&self, x: &[f64; 2]) -> Sym2 {
+    /// The Mandel strain.
+    fn strain(&self, x: &[f64; D]) -> Sym2 {
         let g = self.gradient(x);
-        let shear = (g[0][1] + g[1][0]) / 2f64.sqrt();
-        Sym2::from_column_slice(&[g[0][0], g[1][1], 0.0, 0.0, 0.0, shear])
+        from_matrix(&Matrix3::from_fn(|i, j| {
+            if i.max(j) < D {
+                0.5 * (g[i][j] + g[j][i])
+            } else {
+                0.0
+            }
+        }))
     }
 }
 
-/// Norms of the error of a plane strain solution: energy norm √∫ e·S·e dx and L² norm √∫ ‖e‖² dx.
-pub fn error_norms<H: Hypothesis<2>>(
-    driver: &Driver<2>,
+/// Norms of the error of a solution: energy norm √∫ e·S·e dx and L² norm √∫ ‖e‖² dx, of the
+/// strains that the displacements have, whatever the elements make of them.
+pub fn error_norms<const D: usize, H: Meshed<D>>(
+    driver: &Driver<D>,
     law: &Elastic,
-    exact: &impl PlaneField,
+    exact: &impl Field<D>,
 ) -> (f64, f64) {
-    let mesh = driver.mesh();
-    let mut sum = (0.0, 0.0);
-    for cell in 0..mesh.cell_count() {
-        let part = match mesh.kind(cell) {
-            CellKind::Tri3 => {
-                on_cell::<Tri3, H, 3>(driver, mesh, cell, law, exact, &Rule::triangle(5))
-            }
-            CellKind::Tri6 => {
-                on_cell::<Tri6, H, 6>(driver, mesh, cell, law, exact, &Rule::triangle(5))
-            }
-            CellKind::Quad4 => on_cell::<Quad4, H, 4>(driver, mesh, cell, law, exact, &square()),
-            CellKind::Quad8 => on_cell::<Quad8, H, 8>(driver, mesh, cell, law, exact, &square()),
-            CellKind::Quad9 => on_cell::<Quad9, H, 9>(driver, mesh, cell, law, exact, &square()),
-            kind => panic!("{kind} is no plane cell"),
-        };
-        sum = (sum.0 + part.0, sum.1 + part.1);
-    }
+    let cells = 0..driver.mesh().cell_count();
+    let parts = cells.map(|cell| H::on_cell(driver, cell, law, exact));
+    let sum = parts.fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
     (sum.0.sqrt(), sum.1.sqrt())
 }
 
-fn square() -> Rule<2> {
-    Rule::quadrilateral(4)
+/// A hypothesis with the cells that it has, each with a rule that is finer than its own.
+pub trait Meshed<const D: usize>: Hypothesis<D> {
+    /// Squares of the norms on one cell.
+    fn on_cell(driver: &Driver<D>, cell: usize, law: &Elastic, exact: &impl Field<D>)
+    -> (f64, f64);
 }
 
-fn on_cell<E: Element<2, N>, H: Hypothesis<2>, const N: usize>(
-    driver: &Driver<2>,
-    mesh: &Mesh<2>,
+impl Meshed<2> for PlaneStrain {
+    fn on_cell(
+        driver: &Driver<2>,
+        cell: usize,
+        law: &Elastic,
+        exact: &impl Field<2>,
+    ) -> (f64, f64) {
+        let (triangle, square) = (Rule::triangle(5), Rule::quadrilateral(4));
+        match driver.mesh().kind(cell) {
+            CellKind::Tri3 => squares::<Tri3, Self, 2, 3>(driver, cell, law, exact, &triangle),
+            CellKind::Tri6 => squares::<Tri6, Self, 2, 6>(driver, cell, law, exact, &triangle),
+            CellKind::Quad4 => squares::<Quad4, Self, 2, 4>(driver, cell, law, exact, &square),
+            CellKind::Quad8 => squares::<Quad8, Self, 2, 8>(driver, cell, law, exact, &square),
+            CellKind::Quad9 => squares::<Quad9, Self, 2, 9>(driver, cell, law, exact, &square),
+            kind => panic!("{kind} is no plane cell"),
+        }
+    }
+}
+
+impl Meshed<3> for Solid {
+    fn on_cell(
+        driver: &Driver<3>,
+        cell: usize,
+        law: &Elastic,
+        exact: &impl Field<3>,
+    ) -> (f64, f64) {
+        let (tetrahedron, cube) = (Rule::tetrahedron(5), Rule::hexahedron(4));
+        match driver.mesh().kind(cell) {
+            CellKind::Tet4 => squares::<Tet4, Self, 3, 4>(driver, cell, law, exact, &tetrahedron),
+            CellKind::Tet10 => {
+                squares::<Tet10, Self, 3, 10>(driver, cell, law, exact, &tetrahedron)
+            }
+            CellKind::Hex8 => squares::<Hex8, Self, 3, 8>(driver, cell, law, exact, &cube),
+            CellKind::Hex20 => squares::<Hex20, Self, 3, 20>(driver, cell, law, exact, &cube),
+            CellKind::Hex27 => squares::<Hex27, Self, 3, 27>(driver, cell, law, exact, &cube),
+            kind => panic!("{kind} is no solid cell"),
+        }
+    }
+}
+
+fn squares<E: Element<D, N>, H: Hypothesis<D>, const D: usize, const N: usize>(
+    driver: &Driver<D>,
     cell: usize,
     law: &Elastic,
-    exact: &impl PlaneField,
-    rule: &Rule<2>,
+    exact: &impl Field<D>,
+    rule: &Rule<D>,
 ) -> (f64, f64) {
+    let mesh = driver.mesh();
     let nodes: [usize; N] = std::array::from_fn(|a| mesh.cell_nodes(cell)[a]);
     let positions = nodes.map(|a| mesh.nodes()[a]);
     let mut sum = (0.0, 0.0);

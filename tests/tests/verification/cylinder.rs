@@ -6,17 +6,14 @@
 //! limit pressure is exact for any ν.
 
 use crate::close;
-use moreau::driver::{Axis, Driver, Model, Settings, Step};
-use moreau::laws::{Elastic, VonMises};
+use moreau::driver::{Driver, Model, Settings};
+use moreau::laws::Elastic;
 use moreau::mesh::{Axisymmetric, CellKind, Integration, block2, uniform};
-use std::f64::consts::TAU;
 use verification::problems::Fallible;
-use verification::problems::limit::{collapse_of, final_slope, load_curve};
-
-const A: f64 = 100.0;
-const B: f64 = 200.0;
-const E: f64 = 210e3;
-const YIELD: f64 = 240.0;
+use verification::problems::collapsing::cylinder::{
+    A, B, E, HEIGHT, YIELD, body, collapse, held, limit,
+};
+use verification::problems::limit::collapse_of;
 
 /// Twice the shear yield stress.
 fn y() -> f64 {
@@ -29,24 +26,6 @@ fn pressure(c: f64) -> f64 {
 
 fn growth(c: f64, nu: f64) -> f64 {
     y() * c * c * (1.0 - nu * nu) / (E * B)
-}
-
-fn limit() -> f64 {
-    y() * (B / A).ln()
-}
-
-/// Height of the slice [mm].
-const HEIGHT: f64 = 10.0;
-
-fn cylinder(kind: CellKind, rule: Integration, n: usize, nu: f64) -> Fallible<Driver<2>> {
-    let mesh = block2("body", kind, &uniform(A, B, n), &uniform(0.0, HEIGHT, 1))?;
-    let model =
-        Model::new(mesh, Axisymmetric).material("body", VonMises::new(E, nu, YIELD)?, rule)?;
-    Ok(Driver::new(model, Settings::default())?)
-}
-
-fn plane(name: &str) -> Step<2> {
-    Step::new(name).fix("body", &[Axis::Y])
 }
 
 fn outer_growth(driver: &Driver<2>) -> Fallible<f64> {
@@ -62,8 +41,8 @@ fn outer_growth(driver: &Driver<2>) -> Fallible<f64> {
 fn lame_cylinder_is_elastic_up_to_its_yield_pressure() -> Fallible {
     let p_e = 0.5 * y() * (1.0 - (A / B).powi(2));
     close("yield pressure", p_e, 103.92305, 1e-7);
-    let mut driver = cylinder(CellKind::Quad8, Integration::Reduced, 64, 0.3)?;
-    let reports = driver.run(&plane("load").pressure("body.left", 100.0), 1, |_, _| {})?;
+    let mut driver = body(CellKind::Quad8, Integration::Reduced, 64, 0.3)?;
+    let reports = driver.run(&held("load").pressure("body.left", 100.0), 1, |_, _| {})?;
     assert_eq!(reports[0].plastic_fraction, 0.0);
     // u_b = 2 p a² b (1 − ν²) / (E (b² − a²)).
     let exact = 2.0 * 100.0 * A * A * B * (1.0 - 0.09) / (E * (B * B - A * A));
@@ -71,13 +50,13 @@ fn lame_cylinder_is_elastic_up_to_its_yield_pressure() -> Fallible {
     close("growth", outer_growth(&driver)?, exact, 1e-6);
     // Yielding starts at the bore at p_e, between 0.99 and 1.01 of it.
     let below = driver.run(
-        &plane("load").pressure("body.left", 0.99 * p_e),
+        &held("load").pressure("body.left", 0.99 * p_e),
         1,
         |_, _| {},
     )?;
     assert_eq!(below[0].plastic_fraction, 0.0);
     let above = driver.run(
-        &plane("load").pressure("body.left", 1.01 * p_e),
+        &held("load").pressure("body.left", 1.01 * p_e),
         1,
         |_, _| {},
     )?;
@@ -110,9 +89,9 @@ fn hill_cylinder_grows_as_von_mises_demands() -> Fallible {
     ];
     for (nu, rows) in table {
         for &(c, expected) in rows {
-            let mut driver = cylinder(CellKind::Quad8, Integration::Reduced, 64, nu)?;
+            let mut driver = body(CellKind::Quad8, Integration::Reduced, 64, nu)?;
             driver.run(
-                &plane("load").pressure("body.left", pressure(c)),
+                &held("load").pressure("body.left", pressure(c)),
                 5,
                 |_, _| {},
             )?;
@@ -146,9 +125,9 @@ fn hill_cylinder_grows_as_von_mises_demands() -> Fallible {
 #[test]
 fn hill_cylinder_close_to_collapse_needs_steps() -> Fallible {
     for (steps, expected) in [(5, 0.198200), (20, 0.198111), (80, 0.197973)] {
-        let mut driver = cylinder(CellKind::Quad8, Integration::Reduced, 64, 0.3)?;
+        let mut driver = body(CellKind::Quad8, Integration::Reduced, 64, 0.3)?;
         driver.run(
-            &plane("load").pressure("body.left", pressure(180.0)),
+            &held("load").pressure("body.left", pressure(180.0)),
             steps,
             |_, _| {},
         )?;
@@ -166,10 +145,10 @@ fn hill_cylinder_close_to_collapse_needs_steps() -> Fallible {
 #[test]
 fn hill_cylinder_unloads_to_a_bore_in_compression() -> Fallible {
     let p = pressure(180.0);
-    let mut driver = cylinder(CellKind::Quad8, Integration::Reduced, 64, 0.4999)?;
-    driver.run(&plane("load").pressure("body.left", p), 20, |_, _| {})?;
+    let mut driver = body(CellKind::Quad8, Integration::Reduced, 64, 0.4999)?;
+    driver.run(&held("load").pressure("body.left", p), 20, |_, _| {})?;
     let loaded = driver.points();
-    let reports = driver.run(&plane("unload"), 1, |_, _| {})?;
+    let reports = driver.run(&held("unload"), 1, |_, _| {})?;
     assert_eq!(reports[0].plastic_fraction, 0.0, "no reverse yielding");
     for (before, after) in loaded.iter().zip(driver.points()) {
         let hoop = p * (B * B / before.position[0].powi(2) + 1.0) / (B * B / (A * A) - 1.0);
@@ -189,16 +168,6 @@ fn hill_cylinder_unloads_to_a_bore_in_compression() -> Fallible {
         2e-2,
     );
     Ok(())
-}
-
-/// Pressure at the bore moved outwards by 2 mm in 30 increments, over the limit pressure.
-pub(crate) fn collapse(kind: CellKind, rule: Integration, n: usize) -> Fallible<(f64, f64)> {
-    let mut driver = cylinder(kind, rule, n, 0.3)?;
-    let step = plane("grow").displace("body.left", Axis::X, 2.0);
-    let curve = load_curve(&mut driver, &step, 30, |driver| {
-        driver.reaction("body.left").map_or(f64::NAN, |f| f[0]) / (TAU * A * HEIGHT)
-    })?;
-    Ok((curve[29] / limit(), final_slope(&curve)))
 }
 
 #[test]
@@ -252,8 +221,8 @@ fn pressure_beyond_collapse_ends_at_the_limit_pressure() -> Fallible {
         (CellKind::Quad8, Integration::Reduced, 4, 1.00001),
         (CellKind::Tri6, Integration::Reduced, 8, 1.000002),
     ] {
-        let mut driver = cylinder(kind, rule, n, 0.3)?;
-        let step = plane("too much").pressure("body.left", 1.25 * limit());
+        let mut driver = body(kind, rule, n, 0.3)?;
+        let step = held("too much").pressure("body.left", 1.25 * limit());
         let found = collapse_of(&mut driver, &step, 25)?;
         let name = format!("{kind} {rule:?} n = {n}");
         close(&name, 1.25 * found.load_factor, expected, 1e-5);
@@ -281,7 +250,7 @@ fn elastic_cylinder_takes_any_pressure_in_one_iteration() -> Fallible {
     )?;
     let mut driver = Driver::new(model, Settings::default())?;
     let reports = driver.run(
-        &plane("load").pressure("body.left", 10.0 * limit()),
+        &held("load").pressure("body.left", 10.0 * limit()),
         1,
         |_, _| {},
     )?;

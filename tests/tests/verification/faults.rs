@@ -195,6 +195,7 @@ fn an_increment_that_cannot_converge_says_by_how_much() -> Fallible {
             smallest,
             plastic_fraction,
             cause,
+            ..
         } => {
             assert_eq!((step.as_str(), reached, smallest), ("press", 0.0, 1.0));
             match *cause {

@@ -5,45 +5,17 @@
 //! 2k in the net section does.
 
 use crate::close;
-use moreau::driver::{Axis, Driver, Model, Settings, Step};
-use moreau::laws::VonMises;
-use moreau::mesh::{CellKind, Integration, PlaneStrain};
+use moreau::driver::Axis;
+use moreau::mesh::{CellKind, Integration};
 use verification::problems::Fallible;
+use verification::problems::collapsing::strip::{E, EXACT, WIDTH, YIELD, body, held};
 use verification::problems::limit::{collapse_of, final_slope, load_at, load_curve};
-use verification::problems::shapes::{Hole, holed_plate};
-
-const WIDTH: f64 = 10.0;
-const YIELD: f64 = 300.0;
-const E: f64 = 210e3;
-/// Remote stress at collapse over the yield stress: (1 − ½) 2/√3.
-const EXACT: f64 = 0.577_350_269_189_625_8;
-
-fn strip(
-    hole: Hole,
-    length: f64,
-    kind: CellKind,
-    rule: Integration,
-    n: usize,
-) -> Fallible<Driver<2>> {
-    let mesh = holed_plate(kind, hole, (WIDTH, length, 0.5 * WIDTH), n)?;
-    let model = Model::new(mesh, PlaneStrain::default()).material(
-        "body",
-        VonMises::new(E, 0.3, YIELD)?,
-        rule,
-    )?;
-    Ok(Driver::new(model, Settings::default())?)
-}
-
-fn symmetric(name: &str) -> Step<2> {
-    Step::new(name)
-        .fix("body.top", &[Axis::X])
-        .fix("body.bottom", &[Axis::Y])
-}
+use verification::problems::shapes::Hole;
 
 /// Remote stress at collapse over the yield stress, and the final slope.
 fn collapse(hole: Hole, kind: CellKind, rule: Integration, n: usize) -> Fallible<(f64, f64)> {
-    let mut driver = strip(hole, 0.9 * WIDTH, kind, rule, n)?;
-    let step = symmetric("pull").displace("plate.top", Axis::Y, 20.0 * YIELD / E * WIDTH);
+    let mut driver = body(hole, 0.9 * WIDTH, kind, rule, n)?;
+    let step = held("pull").displace("plate.top", Axis::Y, 20.0 * YIELD / E * WIDTH);
     let curve = load_curve(&mut driver, &step, 30, |driver| {
         driver.reaction("plate.top").map_or(f64::NAN, |f| f[1]) / (0.5 * WIDTH * YIELD)
     })?;
@@ -120,11 +92,11 @@ fn traction_beyond_collapse_ends_at_the_limit_load() -> Fallible {
     for (hole, coarse) in [(Hole::Round, 1.5e-2), (Hole::Square, 2e-3)] {
         // Long enough for the bridge above the hole to hold.
         let length = 3.0 * WIDTH;
-        let mut driver = strip(hole, length, CellKind::Quad8, rule, 8)?;
-        let step = symmetric("too much").pressure("plate.top", -1.2 * EXACT * YIELD);
+        let mut driver = body(hole, length, CellKind::Quad8, rule, 8)?;
+        let step = held("too much").pressure("plate.top", -1.2 * EXACT * YIELD);
         let found = collapse_of(&mut driver, &step, 12)?;
-        let mut moved = strip(hole, length, CellKind::Quad8, rule, 8)?;
-        let plateau = load_at(&driver, &mut moved, "plate.top", symmetric)?;
+        let mut moved = body(hole, length, CellKind::Quad8, rule, 8)?;
+        let plateau = load_at(&driver, &mut moved, "plate.top", held)?;
         let plateau = plateau / (0.5 * WIDTH * YIELD) / EXACT;
         let reached = 1.2 * found.load_factor;
         close("load factor", reached, plateau, 1e-4);

@@ -1,11 +1,11 @@
 //! Who locks in plastic flow: limit loads of every element under every rule, in the plane and in
 //! space; not the benchmarks themselves, which are in files of their own.
 
-use crate::{cylinder, notch};
 use moreau::driver::{Axis, Driver, Model, Settings, Step};
 use moreau::laws::VonMises;
 use moreau::mesh::{CellKind, Integration, Solid};
 use verification::problems::Fallible;
+use verification::problems::collapsing::{cylinder, notch};
 use verification::problems::limit::{final_slope, load_curve};
 use verification::problems::shapes::{Hole, holed_slab};
 

@@ -20,6 +20,7 @@ mod modes;
 mod newton;
 mod notch;
 mod patch;
+mod prandtl;
 mod rates;
 mod report;
 mod sliders;

@@ -5,45 +5,11 @@
 //! Engineering* 4 (1974) 153-177.
 
 use crate::close;
-use moreau::driver::{Axis, Driver, Model, Settings, Step};
-use moreau::laws::VonMises;
-use moreau::mesh::{CellKind, Integration, PlaneStrain};
+use moreau::mesh::{CellKind, Integration};
 use std::f64::consts::PI;
 use verification::problems::Fallible;
-use verification::problems::limit::{collapse_of, final_slope, load_at, load_curve};
-use verification::problems::shapes::notched_plate;
-
-const YIELD: f64 = 0.45;
-
-fn notched(kind: CellKind, rule: Integration, n: usize) -> Fallible<Driver<2>> {
-    let model = Model::new(notched_plate(kind, n)?, PlaneStrain::default()).material(
-        "body",
-        VonMises::new(206.9, 0.29, YIELD)?,
-        rule,
-    )?;
-    Ok(Driver::new(model, Settings::default())?)
-}
-
-fn symmetric(name: &str) -> Step<2> {
-    Step::new(name)
-        .fix("body.left", &[Axis::X])
-        .fix("ligament", &[Axis::Y])
-}
-
-/// The load at collapse, (2 + π) k over half a ligament.
-fn exact() -> f64 {
-    (2.0 + PI) * YIELD / 3f64.sqrt() * 0.5
-}
-
-/// Net stress over the exact one, (2 + π) k, and the final slope, with n cells in half a ligament.
-pub(crate) fn net_stress(kind: CellKind, rule: Integration, n: usize) -> Fallible<(f64, f64)> {
-    let mut driver = notched(kind, rule, n)?;
-    let step = symmetric("pull").displace("body.top", Axis::Y, 0.3);
-    let curve = load_curve(&mut driver, &step, 60, |driver| {
-        driver.reaction("body.top").map_or(f64::NAN, |f| f[1])
-    })?;
-    Ok((curve[59] / exact(), final_slope(&curve)))
-}
+use verification::problems::collapsing::notch::{body, exact, held, net_stress};
+use verification::problems::limit::{collapse_of, load_at};
 
 #[test]
 fn nagtegaal_parks_rice_notch_collapses_from_above() -> Fallible {
@@ -101,14 +67,14 @@ fn linear_quadrilaterals_lock_in_the_notch() -> Fallible {
 /// A load goes along the plateau of the displacements, and the mechanism bounds it.
 #[test]
 fn a_load_beyond_that_of_the_notch_ends_on_its_plateau() -> Fallible {
-    let quad8 = || notched(CellKind::Quad8, Integration::Reduced, 4);
+    let quad8 = || body(CellKind::Quad8, Integration::Reduced, 4);
     let mut driver = quad8()?;
     // The top stays almost plane: it is far away.
-    let step = symmetric("pull").pressure("body.top", -1.5 * exact() / 5.0);
+    let step = held("pull").pressure("body.top", -1.5 * exact() / 5.0);
     let found = collapse_of(&mut driver, &step, 10)?;
     // The load still creeps up on the plateau: compared at the same displacement, reached alike.
     let mut moved = quad8()?;
-    let plateau = load_at(&driver, &mut moved, "body.top", symmetric)? / exact();
+    let plateau = load_at(&driver, &mut moved, "body.top", held)? / exact();
     close("load factor", 1.5 * found.load_factor, plateau, 1e-4);
     let bound = found.upper_bound.ok_or("von Mises has a bound")?;
     assert!(bound.load_factor >= found.load_factor && 1.5 * bound.load_factor > 1.0);

@@ -9,7 +9,7 @@ use moreau::mesh::{
 };
 use nalgebra::SMatrix;
 use verification::problems::Fallible;
-use verification::problems::fields::{PlaneField, prescribed};
+use verification::problems::fields::{Field, prescribed};
 use verification::problems::patches::{plane_patch, solid_patch};
 
 const E: f64 = 210e3;
@@ -208,7 +208,7 @@ fn patch_stays_uniform_in_plastic_flow() -> Fallible {
 /// A displacement quadratic in x and y.
 struct Quadratic;
 
-impl PlaneField for Quadratic {
+impl Field<2> for Quadratic {
     fn displacement(&self, &[x, y]: &[f64; 2]) -> [f64; 2] {
         [
             1e-4 * (x * x - 0.5 * x * y + 0.3 * y * y + x),

@@ -78,3 +78,8 @@ fn punch_with_a_rounded_edge() {
 fn ring_compression() {
     assert_passes("ring");
 }
+
+#[test]
+fn loads_beyond_collapse() {
+    assert_passes("collapse");
+}

@@ -4,22 +4,15 @@
 //! Source: R. Hill, *The Mathematical Theory of Plasticity*, Clarendon Press 1950, chapter V.
 
 use crate::close;
-use moreau::driver::{Axis, Driver, Model, Settings, Step};
-use moreau::laws::{BulkLaw, Elastic, VonMises};
+use moreau::driver::Driver;
+use moreau::laws::{Elastic, VonMises};
 use moreau::mandel::Sym2;
-use moreau::mesh::{Axisymmetric, CellKind, Integration};
 use nalgebra::Vector2;
 use std::f64::consts::PI;
 use verification::problems::Fallible;
+use verification::problems::collapsing::sphere::{A, B, E, NU, YIELD, body, held, limit};
 use verification::problems::fields::prescribed;
 use verification::problems::limit::{collapse_of, final_slope};
-use verification::problems::shapes::quarter_ring;
-
-const A: f64 = 100.0;
-const B: f64 = 200.0;
-const E: f64 = 210e3;
-const NU: f64 = 0.3;
-const YIELD: f64 = 240.0;
 
 /// Pressure at which the elastic-plastic front is at radius c [MPa].
 fn pressure(c: f64) -> f64 {
@@ -31,20 +24,8 @@ fn growth(c: f64) -> f64 {
     YIELD * c.powi(3) * (1.0 - NU) / (E * B * B)
 }
 
-fn sphere(law: impl BulkLaw) -> Fallible<Driver<2>> {
-    let mesh = quarter_ring(CellKind::Quad8, (A, B), (12, 6))?;
-    let model = Model::new(mesh, Axisymmetric).material("body", law, Integration::Reduced)?;
-    Ok(Driver::new(model, Settings::default())?)
-}
-
 fn steel() -> Fallible<VonMises> {
     Ok(VonMises::new(E, NU, YIELD)?)
-}
-
-fn supported(name: &str) -> Step<2> {
-    Step::new(name)
-        .fix("body.bottom", &[Axis::Y])
-        .fix("body.top", &[Axis::X])
 }
 
 /// Mean radial displacement of the outer surface.
@@ -70,19 +51,15 @@ fn hollow_sphere_grows_as_the_exact_solution() -> Fallible {
         close("pressure", pressure(c), p, 1e-7);
         close("growth", growth(c), u, 1e-7);
     }
-    let mut driver = sphere(steel()?)?;
+    let mut driver = body(steel()?)?;
     // Elastic up to p_e = 140 MPa: u_b = 3 p a³ b (1 − ν) / (2 E (b³ − a³)) by Lamé.
-    driver.run(
-        &supported("elastic").pressure("body.left", 139.0),
-        1,
-        |_, _| {},
-    )?;
+    driver.run(&held("elastic").pressure("body.left", 139.0), 1, |_, _| {})?;
     let (a3, b3) = (A.powi(3), B.powi(3));
     let elastic = 3.0 * 139.0 * a3 * B * (1.0 - NU) / (2.0 * E * (b3 - a3));
     close("elastic growth", outer_growth(&driver)?, elastic, 2e-3);
     for c in [120.0, 150.0, 180.0] {
         driver.run(
-            &supported("load").pressure("body.left", pressure(c)),
+            &held("load").pressure("body.left", pressure(c)),
             10,
             |_, _| {},
         )?;
@@ -111,17 +88,17 @@ fn hollow_sphere_unloads_elastically_below_twice_the_yield_pressure() -> Fallibl
     let c = 120.0;
     let p = pressure(c);
     assert!(p < 2.0 * 140.0);
-    let mut driver = sphere(steel()?)?;
-    driver.run(&supported("load").pressure("body.left", p), 10, |_, _| {})?;
+    let mut driver = body(steel()?)?;
+    driver.run(&held("load").pressure("body.left", p), 10, |_, _| {})?;
     let loaded = driver.points();
     let grown = outer_growth(&driver)?;
-    let report = driver.run(&supported("unload"), 1, |_, _| {})?;
+    let report = driver.run(&held("unload"), 1, |_, _| {})?;
     assert_eq!(report[0].plastic_fraction, 0.0, "no reverse yielding");
     let unloaded = driver.points();
     // Elastic superposition: the change is the elastic solution under −p, and Lamé's to the error
     // of the mesh.
-    let mut elastic = sphere(Elastic::new(E, NU)?)?;
-    elastic.run(&supported("load").pressure("body.left", p), 1, |_, _| {})?;
+    let mut elastic = body(Elastic::new(E, NU)?)?;
+    elastic.run(&held("load").pressure("body.left", p), 1, |_, _| {})?;
     for ((before, after), exact) in loaded.iter().zip(&unloaded).zip(elastic.points()) {
         let error = (before.stress - after.stress - exact.stress).norm();
         assert!(error <= 1e-9 * YIELD, "superposition off by {error:e} MPa");
@@ -175,13 +152,13 @@ fn hollow_sphere_unloads_elastically_below_twice_the_yield_pressure() -> Fallibl
 
 #[test]
 fn hollow_sphere_yields_in_reverse_above_twice_the_yield_pressure() -> Fallible {
-    let mut driver = sphere(steel()?)?;
+    let mut driver = body(steel()?)?;
     driver.run(
-        &supported("load").pressure("body.left", pressure(180.0)),
+        &held("load").pressure("body.left", pressure(180.0)),
         20,
         |_, _| {},
     )?;
-    let reports = driver.run(&supported("unload"), 10, |_, _| {})?;
+    let reports = driver.run(&held("unload"), 10, |_, _| {})?;
     assert_eq!(reports[0].plastic_fraction, 0.0);
     assert!(
         reports[9].plastic_fraction > 0.0,
@@ -192,14 +169,14 @@ fn hollow_sphere_yields_in_reverse_above_twice_the_yield_pressure() -> Fallible 
 
 #[test]
 fn hollow_sphere_reaches_its_limit_pressure() -> Fallible {
-    let exact = 2.0 * YIELD * (B / A).ln();
+    let exact = limit();
     close("limit pressure", exact, 332.7106467, 1e-9);
-    let mut driver = sphere(steel()?)?;
+    let mut driver = body(steel()?)?;
     let bore = driver.mesh().node_group("body.left")?;
     let mut curve = Vec::new();
     for step in 1..=20 {
         let u = 0.1 * f64::from(step);
-        let loading = prescribed(&driver, &supported("grow"), &bore, |x| x.map(|v| v * u / A))?;
+        let loading = prescribed(&driver, &held("grow"), &bore, |x| x.map(|v| v * u / A))?;
         driver.advance(&loading)?;
         // The work of the pressure over that of the radial motion of a half sphere.
         let work: f64 = bore
@@ -225,10 +202,10 @@ fn hollow_sphere_reaches_its_limit_pressure() -> Fallible {
 /// Pressed beyond its limit: the exact limit pressure, from the path and from the mechanism.
 #[test]
 fn hollow_sphere_collapses_at_its_limit_pressure_under_load_control() -> Fallible {
-    let exact = 2.0 * YIELD * (B / A).ln();
+    let exact = limit();
     close("limit pressure", exact, 332.7106467, 1e-9);
-    let mut driver = sphere(steel()?)?;
-    let step = supported("too much").pressure("body.left", 2.0 * exact);
+    let mut driver = body(steel()?)?;
+    let step = held("too much").pressure("body.left", 2.0 * exact);
     let found = collapse_of(&mut driver, &step, 10)?;
     close("limit pressure", 2.0 * found.load_factor, 1.0, 2e-4);
     let bound = found

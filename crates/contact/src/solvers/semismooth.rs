@@ -2,9 +2,10 @@
 
 use super::linearised::{self, Row};
 use super::{ContactSolution, ContactSolver, GaussSeidel, Tolerance, Uzawa};
+use crate::discrete::{Auto, BlockMatrix, LocalProblem, LocalSolver};
 use crate::problem::stack;
-use crate::{ContactError, ContactProblem};
-use moreau_laws::{Friction, Local};
+use crate::{ContactError, ContactProblem, Delassus};
+use moreau_laws::{Coulomb, Friction, Local};
 use nalgebra::{DVector, SMatrix};
 
 /// Newton's method on t − proj(t − α ũ) = 0, \[90′\], with t = S (u − g) − f.
@@ -192,23 +193,25 @@ impl<const D: usize> Newton<'_, D> {
         }
         // A sweep costs 2 n² operations and a step up to ⅔ n³: no more of them than the attempts
         // with all parts may have taken, or a problem that neither solves takes a hundred times as
-        // long as to cut the increment.
+        // long as to cut the increment. What takes a tenth of a second is never too much.
         let size = D * p.contacts();
+        let quick = 50_000_000 / (size * size).max(1);
         let tolerance = Tolerance {
             relative: 1e-8,
-            iterations: (ATTEMPT * size).clamp(1_000, 20_000),
+            iterations: (ATTEMPT * size).max(quick).min(20_000),
         };
-        // Where sweeps cycle, which takes a large friction, corrections may not, and conversely.
-        let swept = GaussSeidel { tolerance }
+        // Where sweeps cycle, which takes a large friction, corrections may not, and conversely; and
+        // the methods for the discrete problem arrive where neither does.
+        let (seidel, uzawa) = (GaussSeidel { tolerance }, Uzawa { tolerance });
+        let swept = seidel
             .sweeps(p, &form, stack(t))
-            .or_else(|_| Uzawa { tolerance }.corrections(p, &form, stack(t)))?;
-        let displacement = |(i, v): (usize, &Local<D>)| v - spring(i, &swept.force[i]);
-        Ok(swept
-            .displacement
-            .iter()
-            .enumerate()
-            .map(displacement)
-            .collect())
+            .or_else(|_| uzawa.corrections(p, &form, stack(t)));
+        let (force, displacement) = match swept {
+            Ok(swept) => (swept.force, swept.displacement),
+            Err(error) => discrete(p.friction(), &form, t).ok_or(error)?,
+        };
+        let own = |(i, v): (usize, &Local<D>)| v - spring(i, &force[i]);
+        Ok(displacement.iter().enumerate().map(own).collect())
     }
 
     /// The next iterate: a Newton step, halved until the map decreases; `None` if it does not or
@@ -278,4 +281,23 @@ fn add<const D: usize>(u: &[Local<D>], step: &DVector<f64>, s: f64) -> Vec<Local
         .enumerate()
         .map(|(i, u)| Local::from_fn(|k, _| u[k] + s * step[D * i + k]))
         .collect()
+}
+
+/// Forces and displacements by the methods for the discrete problem, which know Coulomb's law.
+fn discrete<const D: usize>(
+    friction: &[Friction],
+    form: &Delassus<D>,
+    guess: &[Local<D>],
+) -> Option<(Vec<Local<D>>, Vec<Local<D>>)> {
+    let coulomb = |law: &Friction| match law {
+        Friction::Coulomb(law) => Some(*law),
+        _ => None,
+    };
+    let laws: Option<Vec<Coulomb>> = friction.iter().map(coulomb).collect();
+    let free = form.free.as_slice().chunks_exact(D);
+    let free = free.map(Local::<D>::from_column_slice).collect();
+    let operator = BlockMatrix::from_dense(&form.operator);
+    let problem = LocalProblem::new(operator, free, laws?).ok()?;
+    let solution = Auto::default().solve(&problem, Some(guess)).ok()?;
+    Some((solution.force, solution.displacement))
 }

@@ -3,8 +3,8 @@
 
 use moreau_contact::Plane;
 use moreau_driver::{
-    Axis, Collapse, Driver, Increments, Model, ModelError, Ramp, Reader, Settings, Step, StepError,
-    StepReport,
+    Axis, Collapse, Driver, Increments, Model, ModelError, Nesting, Ramp, Reader, Settings, Step,
+    StepError, StepReport,
 };
 use moreau_laws::{Coulomb, Elastic, VonMises};
 use moreau_mesh::{Axisymmetric, CellKind, Integration, PlaneStrain, block2, uniform};
@@ -203,5 +203,39 @@ fn a_path_that_is_read_back_goes_on_to_the_bit() {
         other.read(&mut from).expect("fits");
         let cut = Ramp::read(&step, Increments::equal(5), &mut from);
         assert!(matches!(cut, Err(ModelError::Saved { .. })), "{cut:?}");
+    }
+}
+
+/// Where the path is not followed, the last increments say where it leads; not where nothing yields.
+#[test]
+fn a_step_that_stops_before_collapse_says_how_far_it_is() {
+    let outside = Settings {
+        nesting: Nesting::Outside {
+            tolerance: 1e-8,
+            iterations: 100,
+        },
+        ..Settings::default()
+    };
+    let mut driver = cylinder(outside);
+    match driver.run(&pressed(1.25 * limit()), 20, |_, _| {}) {
+        Err(error @ StepError::Stopped { .. }) => {
+            assert!(
+                error.to_string().contains("the last increments put at "),
+                "{error}"
+            );
+            let StepError::Stopped {
+                limit: Some(limit),
+                reached,
+                ..
+            } = error
+            else {
+                panic!("no estimate")
+            };
+            assert!(
+                limit >= reached && (limit / 0.8 - 1.0).abs() < 1e-2,
+                "{limit}"
+            );
+        }
+        other => panic!("{other:?}"),
     }
 }

@@ -279,3 +279,41 @@ fn soils_without_friction_are_refused() -> Result<(), LawError> {
     assert!(response.stress.iter().any(|c| c.is_nan()));
     Ok(())
 }
+
+/// The cone touches Mohr and Coulomb's pyramid in triaxial compression: under a lateral pressure p the
+/// axial one is N p + 2 c √N, N = (1 + sin φ)/(1 − sin φ).
+#[test]
+fn a_soil_of_mohr_and_coulomb_has_its_strength_in_triaxial_compression() -> Result<(), LawError> {
+    for (cohesion, angle) in [(1.0f64, 30.0f64), (20.0, 5.0), (0.1, 45.0)] {
+        let law = DruckerPrager::mohr_coulomb(cohesion, angle, 0.5 * angle)?;
+        let sine = angle.to_radians().sin();
+        let n = (1.0 + sine) / (1.0 - sine);
+        for lateral in [0.0, cohesion, 30.0 * cohesion] {
+            let axial = n * lateral + 2.0 * cohesion * n.sqrt();
+            let stress = Sym2::from_column_slice(&[-lateral, -lateral, -axial, 0.0, 0.0, 0.0]);
+            let bound = law.friction() * (law.apex() - trace(&stress) / 3.0);
+            let found = deviator(&stress).norm();
+            assert!((found / bound - 1.0).abs() < 1e-13, "{found} {bound}");
+        }
+        assert!(law.dilatancy() > 0.0 && law.dilatancy() < law.friction());
+    }
+    let of = DruckerPrager::mohr_coulomb;
+    assert!(matches!(
+        of(0.0, 30.0, 0.0),
+        Err(LawError::NotPositive { .. })
+    ));
+    for (friction, dilatancy) in [
+        (0.0, 0.0),
+        (90.0, 0.0),
+        (f64::NAN, 0.0),
+        (30.0, 31.0),
+        (30.0, -1.0),
+    ] {
+        let error = of(1.0, friction, dilatancy);
+        assert!(
+            matches!(error, Err(LawError::AngleOutOfRange { .. })),
+            "{error:?}"
+        );
+    }
+    Ok(())
+}

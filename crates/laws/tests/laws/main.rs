@@ -8,6 +8,7 @@ mod contract;
 mod coulomb;
 mod data;
 mod drucker_prager;
+mod flow_power;
 mod friction;
 mod hardening;
 mod lemaitre;

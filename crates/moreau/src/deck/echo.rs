@@ -91,6 +91,11 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
             let terms: Vec<String> = terms.collect();
             writeln!(out, "kinematic = [{}]", terms.join(", "))?;
         }
+        if let Some(soil) = &material.soil {
+            writeln!(out, "cohesion = {:?}", soil.cohesion.value)?;
+            writeln!(out, "friction-angle = {:?}", soil.friction_angle.value)?;
+            writeln!(out, "dilatancy-angle = {:?}", soil.dilatancy_angle.value)?;
+        }
         let quadrature = deck.quadrature(material);
         if quadrature != BY_ELEMENT {
             writeln!(out, "quadrature = \"{quadrature}\"")?;

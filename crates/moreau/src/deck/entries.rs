@@ -142,10 +142,31 @@ pub struct MaterialEntry {
     pub isotropic: Option<At<Hardening>>,
     /// Modulus and recall of each term of kinematic hardening.
     pub kinematic: Vec<[At<f64>; 2]>,
+    /// Strength of a soil, if it is one.
+    pub soil: Option<SoilEntry>,
     /// Quadrature, if given.
     pub quadrature: Option<At<Integration>>,
     /// Kinds of the cells that have it; known when the mesh is.
     pub kinds: Vec<CellKind>,
+}
+
+/// A soil of Drucker and Prager, as Mohr and Coulomb's data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SoilEntry {
+    /// Cohesion.
+    pub cohesion: At<f64>,
+    /// Friction angle in degrees.
+    pub friction_angle: At<f64>,
+    /// Dilatancy angle in degrees; where none is given the friction angle.
+    pub dilatancy_angle: At<f64>,
+}
+
+impl MaterialEntry {
+    /// Where it is said that the material yields; none: elastic.
+    pub fn yields(&self) -> Option<&Range<usize>> {
+        let soil = self.soil.as_ref().map(|s| &s.cohesion.span);
+        self.yield_stress.as_ref().map(|y| &y.span).or(soil)
+    }
 }
 
 /// Surface of a tool.

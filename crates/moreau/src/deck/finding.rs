@@ -49,15 +49,13 @@ pub enum Class {
     Bodies,
     /// Conditions of a step that contradict each other.
     Steps,
-    /// What this version cannot do.
-    Unavailable,
     /// What can be run, but perhaps is not what was meant.
     Warnings,
 }
 
 impl Class {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 9] = [
         Self::Syntax,
         Self::Keys,
         Self::Values,
@@ -66,23 +64,13 @@ impl Class {
         Self::Meshes,
         Self::Bodies,
         Self::Steps,
-        Self::Unavailable,
         Self::Warnings,
     ];
 
     /// Name of the section.
     pub fn name(self) -> &'static str {
         [
-            "syntax",
-            "keys",
-            "values",
-            "names",
-            "groups",
-            "meshes",
-            "bodies",
-            "steps",
-            "unavailable",
-            "warnings",
+            "syntax", "keys", "values", "names", "groups", "meshes", "bodies", "steps", "warnings",
         ][self as usize]
     }
 }

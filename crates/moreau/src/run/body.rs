@@ -1,6 +1,6 @@
 //! The body with its fields as a grid: recovered at points, as means of what was computed in cells.
 
-use super::vtu::{Array, Grid, three, vtk_cell};
+use super::grid::{Array, Grid, three, vtk_cell};
 use crate::driver::Driver;
 use crate::mandel::{Sym2, von_mises};
 use crate::recovery::recover;

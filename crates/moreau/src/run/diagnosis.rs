@@ -30,6 +30,9 @@ pub struct Diagnosis {
     pub flips: Vec<Flip>,
     /// Part of the volume that flows plastically.
     pub plastic_fraction: f64,
+    /// Estimate of the load factor at collapse from the last increments, in parts of the loads of the
+    /// step, if they tell.
+    pub limit: Option<f64>,
     /// What to change first.
     pub suggestion: String,
     /// Units of the deck.
@@ -45,13 +48,14 @@ impl Diagnosis {
         trace: &Trace,
         error: &StepError,
     ) -> Self {
-        let (cause, plastic_fraction) = match error {
+        let (cause, plastic_fraction, limit) = match error {
             StepError::Stopped {
                 cause,
                 plastic_fraction,
+                limit,
                 ..
-            } => (cause.as_ref(), *plastic_fraction),
-            other => (other, 0.0),
+            } => (cause.as_ref(), *plastic_fraction, *limit),
+            other => (other, 0.0, None),
         };
         let flip = |(k, c): (usize, &crate::driver::ContactRecord<D>)| {
             let statuses = trace.statuses.iter().filter_map(|s| s.get(k).copied());
@@ -70,11 +74,16 @@ impl Diagnosis {
             .filter_map(flip)
             .collect();
         let suggestion = suggestion(deck, stage, cause, plastic_fraction, !flips.is_empty());
-        let worst = driver.worst(&trace.residual);
+        let worst = match cause {
+            StepError::NotConverged { worst, .. } => worst.clone(),
+            _ if trace.is_of_next(driver) => driver.worst(&trace.residual),
+            _ => Vec::new(),
+        };
         Self {
             worst: worst.into_iter().filter(|w| w.force != 0.0).collect(),
             flips,
             plastic_fraction,
+            limit,
             suggestion,
             units: deck.units,
         }
@@ -91,6 +100,7 @@ impl Diagnosis {
             "worst": self.worst.iter().map(worst).collect::<Vec<_>>(),
             "flips": self.flips.iter().map(flip).collect::<Vec<_>>(),
             "plastic_fraction": self.plastic_fraction,
+            "load_factor": self.limit,
             "suggestion": self.suggestion,
         })
     }
@@ -166,6 +176,13 @@ impl fmt::Display for Diagnosis {
         }
         let percent = 100.0 * self.plastic_fraction;
         writeln!(f, "  plastic flow in {percent:.1} % of the volume")?;
+        if let Some(limit) = self.limit {
+            writeln!(
+                f,
+                "  the last increments tend to collapse at {:.1} % of the loads of the step",
+                100.0 * limit
+            )?;
+        }
         writeln!(f, "  try: {}", self.suggestion)
     }
 }

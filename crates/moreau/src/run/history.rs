@@ -1,8 +1,8 @@
 //! `history.csv`: a row for each converged increment; contact points have a file of their own.
 
 use super::number;
-use crate::columns::{Unit, columns};
 use crate::deck::{Setup, Units};
+use crate::deck::{Unit, columns};
 use crate::driver::{Driver, StepReport};
 
 /// Where an increment is.

@@ -11,6 +11,8 @@ const REMEMBERED: usize = 5;
 /// What an attempt has come to.
 pub(super) struct Trace {
     started: Instant,
+    /// Number of the increment that was attempted.
+    increment: usize,
     /// Displacement increments of the last iterate.
     pub(super) d_u: Vec<f64>,
     /// Force that nothing balances in it.
@@ -23,6 +25,7 @@ impl Trace {
     pub(super) fn new() -> Self {
         Self {
             started: Instant::now(),
+            increment: 0,
             d_u: Vec::new(),
             residual: Vec::new(),
             statuses: VecDeque::new(),
@@ -31,6 +34,7 @@ impl Trace {
 
     /// Remembers an iteration, and tells it as a line of JSON.
     pub(super) fn note(&mut self, step: &str, i: &Iteration<'_>) -> String {
+        self.increment = i.increment;
         self.d_u.clear();
         self.d_u.extend_from_slice(i.d_u);
         self.residual.clear();
@@ -58,6 +62,12 @@ impl Trace {
             "seconds": self.started.elapsed().as_secs_f64(),
         })
         .to_string()
+    }
+
+    /// Whether it is of the increment after those that converged: an attempt may fail before it has
+    /// an iterate to tell of.
+    pub(super) fn is_of_next<const D: usize>(&self, driver: &Driver<D>) -> bool {
+        self.increment == driver.increments() + 1
     }
 
     /// Displacement of the last iterate, at every degree of freedom.

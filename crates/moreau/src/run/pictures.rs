@@ -2,8 +2,8 @@
 //! contact, the deformed body with a field.
 
 use super::RunError;
+use super::grid::Array;
 use super::table::Table;
-use super::vtu::Array;
 use crate::deck::{Deck, Units};
 use crate::mesh::Mesh;
 use crate::plot::{Chart, MeshPicture, Style};
@@ -116,7 +116,7 @@ pub(super) fn tractions(contacts: &Table, increment: usize, deck: &Deck) -> Opti
 
 /// Name of the field that is drawn if none is asked for.
 pub(super) fn usual_field(deck: &Deck) -> &'static str {
-    match deck.materials.iter().any(|m| m.yield_stress.is_some()) {
+    match deck.materials.iter().any(|m| m.yields().is_some()) {
         true => "equivalent_plastic_strain",
         false => "von_mises",
     }

@@ -1,12 +1,13 @@
 //! `report.html`: a run on one page that needs nothing but a browser; its template is beside it.
 
 use super::files::read_text;
+use super::grid::Array;
 use super::pictures::{
     ContactLine, TRACTIONS, contact_axis, contact_labels, contact_lines, field, fields, forces,
     label, tractions, usual_field, usual_magnification,
 };
 use super::table::Table;
-use super::vtu::{Array, bodies, read_point_data};
+use super::vtu::{bodies, read_point_data};
 use super::{RunError, pictures};
 use crate::deck::Deck;
 use crate::driver::Driver;

@@ -384,11 +384,6 @@ fn every_class_of_findings_is_explained() {
     assert_eq!(classes("on = \"punch\"", "on = \"pinch\""), [Class::Names]);
     assert_eq!(classes("x = [0, 25]", "x = [60, 70]"), [Class::Groups]);
     assert_eq!(classes("u = [\"x\"]", "u = [\"y\"]")[0], Class::Steps);
-    let driven = "[[step]]\nname=\"b\"\nincrements=1\ntools=[{name=\"foundation\",force=[0,1]}]\n";
-    assert_eq!(
-        classes("[expect]", &format!("{driven}[expect]")),
-        [Class::Unavailable]
-    );
     assert_eq!(classes("friction = 0.1", "friction = 0"), [Class::Warnings]);
     let out = shown("title", "titel");
     assert!(out.contains("see docs/errors.md#keys"), "{out}");
@@ -638,4 +633,62 @@ fn laws_that_are_none_are_pointed_at() {
         "kinematic =",
         &["given without a yield-stress"],
     );
+}
+
+/// A soil has a cohesion and angles, which belong together and have ranges.
+#[test]
+fn what_is_no_soil_is_told() {
+    let soil = |strength: &str, at: &str, word: &str| {
+        says("yield-stress = 300.0", strength, at, &[word]);
+    };
+    for (angles, at, word) in [
+        (
+            "friction-angle = 90",
+            "friction-angle",
+            "must lie in ]0, 90[",
+        ),
+        (
+            "friction-angle = 30\ndilatancy-angle = 31",
+            "dilatancy-angle",
+            "[0, friction angle]",
+        ),
+        (
+            "yield-stress = 1\nfriction-angle = 30",
+            "cohesion",
+            "expected one law",
+        ),
+        ("", "cohesion", "without a friction-angle"),
+        (
+            "friction-angel = 30",
+            "friction-angel",
+            "did you mean \"friction-angle\"?",
+        ),
+        (
+            "friction-angle = 30\nhardening = { linear = 1 }",
+            "hardening =",
+            "given without",
+        ),
+    ] {
+        soil(&format!("cohesion = 1\n{angles}"), at, word);
+    }
+    soil(
+        "cohesion = -1\nfriction-angle = 30",
+        "cohesion",
+        "cohesion must be positive",
+    );
+    soil(
+        "dilatancy-angle = 30",
+        "dilatancy-angle",
+        "without a cohesion",
+    );
+    let strength = "cohesion = 1\nfriction-angle = 30";
+    let text = DECK.replace("yield-stress = 300.0", strength);
+    let (deck, problem, findings) = open(&text);
+    assert!(
+        problem.is_some(),
+        "{}",
+        findings.render("deck.toml", &text, false)
+    );
+    let soil = deck.materials[0].soil.as_ref().expect("a soil");
+    assert_eq!(soil.dilatancy_angle.value, 30.0);
 }

@@ -81,9 +81,13 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
     }
     let stress = deck.units.stress();
     for m in &deck.materials {
-        let plastic = match &m.yield_stress {
-            None => "elastic".to_owned(),
-            Some(y) => {
+        let plastic = match (&m.yield_stress, &m.soil) {
+            (None, None) => "elastic".to_owned(),
+            (None, Some(soil)) => format!(
+                "cohesion {} {stress}, friction angle {}°, dilatancy angle {}°",
+                soil.cohesion.value, soil.friction_angle.value, soil.dilatancy_angle.value
+            ),
+            (Some(y), _) => {
                 let hardening = match &m.isotropic {
                     Some(h) => h.value.to_string(),
                     None => "none".to_owned(),

@@ -3,11 +3,14 @@
 
 use super::groups::HIDDEN;
 use crate::contact::{Ball, ContactError, Cylinder, Obstacle, Plane, Polyline};
-use crate::deck::entries::{Adjust, Deck, FrictionEntry, Hardening, MaterialEntry, Shape};
+use crate::deck::entries::{
+    Adjust, Deck, FrictionEntry, Hardening, MaterialEntry, Shape, SoilEntry,
+};
 use crate::deck::finding::{At, Findings};
 use crate::driver::{Analysis, Model, ModelError};
 use crate::laws::{
-    Coulomb, Elastic, Friction, Isotropic, LawError, LimitedCoulomb, Tresca, VonMises,
+    Coulomb, DruckerPrager, Elastic, ElasticDruckerPrager, Friction, Isotropic, LawError,
+    LimitedCoulomb, Tresca, VonMises,
 };
 use crate::mesh::{CellKind, Integration, Mesh, MeshError};
 use std::ops::Range;
@@ -17,6 +20,7 @@ use std::ops::Range;
 enum Law {
     Elastic(Elastic),
     VonMises(VonMises),
+    DruckerPrager(ElasticDruckerPrager),
 }
 
 /// What a model needs beside its mesh.
@@ -102,6 +106,11 @@ fn law(material: &MaterialEntry) -> Result<Law, (Range<usize>, String)> {
         };
         (at.span.clone(), error.to_string())
     };
+    if let Some(soil) = &material.soil {
+        let plastic = self::soil(soil)?;
+        let law = ElasticDruckerPrager::new(young, poisson, plastic).map_err(moduli)?;
+        return Ok(Law::DruckerPrager(law));
+    }
     let Some(yield_stress) = &material.yield_stress else {
         return Ok(Law::Elastic(Elastic::new(young, poisson).map_err(moduli)?));
     };
@@ -121,6 +130,19 @@ fn law(material: &MaterialEntry) -> Result<Law, (Range<usize>, String)> {
             })?;
     }
     Ok(Law::VonMises(law))
+}
+
+/// The plastic law of a soil; or what is wrong with it, and where.
+fn soil(soil: &SoilEntry) -> Result<DruckerPrager, (Range<usize>, String)> {
+    let (c, friction, dilatancy) = (&soil.cohesion, &soil.friction_angle, &soil.dilatancy_angle);
+    DruckerPrager::mohr_coulomb(c.value, friction.value, dilatancy.value).map_err(|error| {
+        let at = match &error {
+            LawError::AngleOutOfRange { name, .. } if name.contains("dilatancy") => dilatancy,
+            LawError::AngleOutOfRange { .. } => friction,
+            _ => c,
+        };
+        (at.span.clone(), error.to_string())
+    })
 }
 
 /// Relative difference of a yield stress and that at which a curve starts: what is rounded off in a
@@ -195,7 +217,7 @@ pub(in crate::deck) fn quadratures(material: &MaterialEntry) -> Vec<(Integration
 }
 
 fn locking(material: &MaterialEntry, findings: &mut Findings) {
-    let Some(yield_stress) = &material.yield_stress else {
+    let Some(yields) = material.yields() else {
         return;
     };
     for &kind in &material.kinds {
@@ -205,7 +227,7 @@ fn locking(material: &MaterialEntry, findings: &mut Findings) {
                 false => (" with full quadrature", "quadrature = \"b-bar\""),
             };
             findings.warning(
-                &yield_stress.span,
+                yields,
                 format!(
                     "{kind}{rule} locks in plastic flow: loads come out too high; use {remedy}"
                 ),
@@ -282,7 +304,7 @@ pub(super) fn shortest_side<const D: usize>(mesh: &Mesh<D>, surface: &str) -> f6
 /// more than the part ε of the shortest side h of the cells in contact while the pressure stays
 /// below p: k = p A / (ε h), with A the largest share of a node in the surface. The pressure p is
 /// three times the largest yield stress, which a flat punch just does not reach (2.97, Prandtl), or
-/// Young's modulus where a material does not yield.
+/// Young's modulus where a material has no yield stress.
 pub(super) fn stiffness<const D: usize, H: Analysis<D>>(
     deck: &Deck,
     mesh: &Mesh<D>,
@@ -363,6 +385,7 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
         let added = match law {
             Law::Elastic(law) => model.material(&name, law, rule),
             Law::VonMises(law) => model.material(&name, law, rule),
+            Law::DruckerPrager(law) => model.material(&name, law, rule),
         };
         model = added.map_err(|e| note(&entry.on.span, e)).ok()?;
     }

@@ -1,6 +1,6 @@
 //! `[[material]]`: moduli as they are given; whether they define a law is for the laws to say.
 
-use crate::deck::entries::{Hardening, MaterialEntry};
+use crate::deck::entries::{Hardening, MaterialEntry, SoilEntry};
 use crate::deck::finding::At;
 use crate::deck::reader::{self, Log, Table, Value};
 use crate::mesh::Integration;
@@ -13,6 +13,7 @@ pub(super) fn read(table: Table<'_>) -> Option<MaterialEntry> {
     let yield_stress = table.number_if("yield-stress");
     let isotropic = isotropic(&table);
     let kinematic = kinematic(&table);
+    let soil = soil(&table);
     let quadrature = table.choice_if("quadrature", &["reduced", "full", "b-bar"]);
     let quadrature = quadrature.map(|q| {
         let rule = match q.value {
@@ -27,7 +28,7 @@ pub(super) fn read(table: Table<'_>) -> Option<MaterialEntry> {
             log.borrow_mut().error(
                 &given.span(),
                 format!("{key} is given without a yield-stress"),
-                "an elastic material does not harden",
+                "what has none does not harden",
             );
         }
     }
@@ -40,8 +41,55 @@ pub(super) fn read(table: Table<'_>) -> Option<MaterialEntry> {
         yield_stress,
         isotropic,
         kinematic,
+        soil,
         quadrature,
         kinds: Vec::new(),
+    })
+}
+
+/// `cohesion` and the angles.
+fn soil(table: &Table<'_>) -> Option<SoilEntry> {
+    let log = table.log();
+    let cohesion = table.number_if("cohesion");
+    let friction_angle = table.number_if("friction-angle");
+    let dilatancy_angle = table.number_if("dilatancy-angle");
+    let refuse = |given: &At<f64>, message: &str, label: &str| {
+        log.borrow_mut().error(&given.span, message, label);
+    };
+    let Some(cohesion) = cohesion else {
+        for (key, angle) in [
+            ("friction-angle", friction_angle),
+            ("dilatancy-angle", dilatancy_angle),
+        ] {
+            if let Some(angle) = angle {
+                let message = format!("{key} is given without a cohesion");
+                refuse(&angle, &message, "part of the strength of a soil");
+            }
+        }
+        return None;
+    };
+    if table.get("yield-stress").is_some() {
+        let message = "the material has a cohesion and a yield-stress, expected one law";
+        refuse(
+            &cohesion,
+            message,
+            "yield-stress is von Mises', cohesion a soil's",
+        );
+    }
+    let Some(friction_angle) = friction_angle else {
+        let message = "cohesion is given without a friction-angle";
+        refuse(
+            &cohesion,
+            message,
+            "a clay without friction has a yield-stress",
+        );
+        return None;
+    };
+    let dilatancy_angle = dilatancy_angle.unwrap_or_else(|| friction_angle.clone());
+    Some(SoilEntry {
+        cohesion,
+        friction_angle,
+        dilatancy_angle,
     })
 }
 

@@ -1,6 +1,7 @@
 //! The columns of `history.csv`, which expectations name; not their values.
 
-use crate::deck::{Setup, Units};
+use super::build::Setup;
+use super::units::Units;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
