@@ -6,6 +6,7 @@ mod groups;
 mod meshes;
 mod names;
 mod parts;
+mod slips;
 
 use super::entries::{Analysis, Deck, Method};
 use super::finding::{Class, Findings};
@@ -164,6 +165,7 @@ fn setup<const D: usize, H: Cells<D>>(
     let supports = supports(&driver, deck, &stages, &groups, findings);
     conditions::doubts(deck, findings);
     conditions::inner_surfaces(deck, &groups, findings);
+    slips::warn(deck, &groups, surface, findings);
     let held = conditions::held(deck, &groups);
     Some(Setup {
         driver,

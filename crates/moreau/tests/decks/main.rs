@@ -486,6 +486,39 @@ const LAWS: [(&str, &str); 8] = [
     ),
 ];
 
+/// What is possible and hardly ever meant: said, and the deck can be run.
+#[test]
+fn units_and_normals_that_look_wrong_are_doubted() {
+    says(
+        "young = 210000.0",
+        "young = 210.0",
+        "young = 210.0",
+        &[
+            "yields at 300 MPa",
+            "Young's modulus of 210 MPa",
+            "another unit?",
+        ],
+    );
+    says(
+        "y = -0.2",
+        "y = -200",
+        "y = -200",
+        &["moved by 200 mm", "the whole mesh is", "another unit?"],
+    );
+    says(
+        "normal = [0, 1]",
+        "normal = [0, -1]",
+        "normal = [0, -1]",
+        &["all cells at \"block.bottom\" lie inside", "turned round?"],
+    );
+    says(
+        "surface = \"block.bottom\"",
+        "surface = \"foundation\"",
+        "surface = \"foundation\"",
+        &["\"foundation\" is a tool, expected a group of the mesh"],
+    );
+}
+
 #[test]
 fn laws_of_every_kind_are_built_and_echoed() {
     for (from, to) in LAWS {

@@ -19,13 +19,22 @@ pub(super) fn check<const D: usize>(
     findings: &mut Findings,
 ) {
     let mut used = BTreeSet::new();
+    let tools = &deck.tool_names;
     for material in &deck.materials {
-        group(&material.on, Needed::Cells, groups, &mut used, findings);
+        group(
+            &material.on,
+            Needed::Cells,
+            tools,
+            groups,
+            &mut used,
+            findings,
+        );
     }
     for contact in &deck.contacts {
         group(
             &contact.surface,
             Needed::Facets,
+            tools,
             groups,
             &mut used,
             findings,
@@ -39,13 +48,34 @@ pub(super) fn check<const D: usize>(
                     tool(&condition.on, deck, &mut used, findings)
                 }
                 Action::Fix(_) | Action::Move(_) | Action::Force(_) => {
-                    group(&condition.on, Needed::Nodes, groups, &mut used, findings);
+                    group(
+                        &condition.on,
+                        Needed::Nodes,
+                        tools,
+                        groups,
+                        &mut used,
+                        findings,
+                    );
                 }
                 Action::Pressure(_) | Action::Traction(_) => {
-                    group(&condition.on, Needed::Facets, groups, &mut used, findings);
+                    group(
+                        &condition.on,
+                        Needed::Facets,
+                        tools,
+                        groups,
+                        &mut used,
+                        findings,
+                    );
                 }
                 Action::BodyForce(_) => {
-                    group(&condition.on, Needed::Cells, groups, &mut used, findings);
+                    group(
+                        &condition.on,
+                        Needed::Cells,
+                        tools,
+                        groups,
+                        &mut used,
+                        findings,
+                    );
                 }
             }
         }
@@ -102,6 +132,7 @@ fn idle_names<const D: usize>(
 fn group<const D: usize>(
     name: &At<String>,
     needed: Needed,
+    tools: &[String],
     groups: Option<&Groups<D>>,
     used: &mut BTreeSet<String>,
     findings: &mut Findings,
@@ -109,6 +140,16 @@ fn group<const D: usize>(
     used.insert(name.value.clone());
     let Some(groups) = groups else { return };
     if groups.is_broken(&name.value) {
+        return;
+    }
+    if tools.contains(&name.value) && !groups.has(&name.value) {
+        let message = format!(
+            "\"{}\" is a tool, expected a group of the mesh: tools stand in `against` and in `tools`",
+            name.value
+        );
+        findings
+            .error(&name.span, message, "a tool")
+            .about(Class::Names);
         return;
     }
     let fits = |n: &str| match needed {

@@ -1,0 +1,97 @@
+//! What a deck may say and hardly ever means: another unit, a normal turned round. Warnings only.
+
+use super::groups::Groups;
+use super::parts::Surface;
+use crate::deck::entries::{Action, Deck};
+use crate::deck::finding::Findings;
+use nalgebra::SVector;
+
+/// Part of Young's modulus that the yield stress of a solid stays below: metals a hundredth, polymers
+/// a twentieth.
+const STRONGEST: f64 = 0.1;
+
+pub(super) fn warn<const D: usize>(
+    deck: &Deck,
+    groups: &Groups<D>,
+    surface: Surface<D>,
+    findings: &mut Findings,
+) {
+    soft(deck, findings);
+    far(deck, groups, findings);
+    inside(deck, groups, surface, findings);
+}
+
+/// A modulus in another unit than the yield stress.
+fn soft(deck: &Deck, findings: &mut Findings) {
+    let unit = deck.units.stress();
+    for material in &deck.materials {
+        let Some(strength) = &material.yield_stress else {
+            continue;
+        };
+        if strength.value > STRONGEST * material.young.value {
+            let message = format!(
+                "\"{}\" yields at {} {unit}, more than a tenth of its Young's modulus of {} {unit}: \
+                 both are in {unit}",
+                material.on.value, strength.value, material.young.value
+            );
+            findings.warning(&material.young.span, message, "in another unit?");
+        }
+    }
+}
+
+/// Displacements, or a mesh, in another unit of length.
+fn far<const D: usize>(deck: &Deck, groups: &Groups<D>, findings: &mut Findings) {
+    let (size, unit) = (groups.mesh.size(), deck.units.length());
+    for condition in deck.steps.iter().flat_map(|s| &s.conditions) {
+        let Action::Move(components) = &condition.action else {
+            continue;
+        };
+        let largest = components.iter().fold(0.0, |m: f64, c| c.1.abs().max(m));
+        if largest > size {
+            let message = format!(
+                "\"{}\" is moved by {largest} {unit}, but the whole mesh is {size:.3} {unit} in size: \
+                 both are in {unit}",
+                condition.on.value
+            );
+            findings.warning(&condition.span, message, "in another unit?");
+        }
+    }
+}
+
+/// Tools that face away from the body: its cells at the contact are within them.
+fn inside<const D: usize>(
+    deck: &Deck,
+    groups: &Groups<D>,
+    surface: Surface<D>,
+    findings: &mut Findings,
+) {
+    for contact in &deck.contacts {
+        let tool = deck
+            .tools
+            .iter()
+            .find(|t| t.name.value == contact.against.value);
+        let (Some(tool), Ok(facets)) = (tool, groups.mesh.facet_group(&contact.surface.value))
+        else {
+            continue;
+        };
+        let Some(Ok(obstacle)) = surface(&tool.shape.value) else {
+            continue;
+        };
+        let center = |cell: usize| {
+            let nodes = groups.mesh.cell_nodes(cell);
+            let at = |&n: &usize| SVector::from(groups.mesh.nodes()[n]);
+            nodes.iter().map(at).sum::<SVector<f64, D>>() / nodes.len() as f64
+        };
+        if facets
+            .iter()
+            .all(|f| obstacle.distance(&center(f.cell)) < 0.0)
+        {
+            let message = format!(
+                "all cells at \"{}\" lie inside of the tool \"{}\": a normal points out of the tool, \
+                 a polyline has it on its right, and `inside = true` makes a tool hollow",
+                contact.surface.value, tool.name.value
+            );
+            findings.warning(&tool.shape.span, message, "turned round?");
+        }
+    }
+}
