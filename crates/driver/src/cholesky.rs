@@ -1,14 +1,11 @@
-//! Sparse Cholesky factorisation with kept symbolic work: the symbolic part, the dense kernels and
-//! the solves; the only file that names the sparse library.
+//! Sparse Cholesky factorisation with kept symbolic work and buffers; the only file that names
+//! the sparse library.
 
-use crate::fronts::{Fronts, Supernode};
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::cholesky::llt::factor::LltError;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::prelude::{Reborrow, ReborrowMut};
-use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::cholesky::{simplicial, supernodal};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
 use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::DMatrix;
 use std::fmt;
@@ -76,9 +73,11 @@ pub(crate) struct NotPositiveDefinite {
 
 /// L Lᵀ = A, in the order in which A is given.
 pub(crate) struct Cholesky {
-    lower: Pattern,
-    fronts: Fronts,
+    /// The pattern, checked once.
+    lower: SymbolicSparseColMat<u32>,
+    symbolic: supernodal::SymbolicSupernodalCholesky<u32>,
     factor: Vec<f64>,
+    memory: MemBuffer,
     /// Room for the rows below a supernode.
     below: Vec<f64>,
 }
@@ -86,7 +85,7 @@ pub(crate) struct Cholesky {
 impl fmt::Debug for Cholesky {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Cholesky")
-            .field("size", &self.lower.size())
+            .field("size", &self.lower.nrows())
             .field("entries", &self.factor.len())
             .finish_non_exhaustive()
     }
@@ -118,27 +117,20 @@ impl Cholesky {
             Default::default(),
         )
         .ok()?;
-        let (begin, end) = (symbolic.supernode_begin(), symbolic.supernode_end());
-        let (at, of) = (symbolic.col_ptr_for_val(), symbolic.col_ptr_for_row_idx());
-        let supernode = |s: usize| {
-            let (start, width) = (begin[s] as usize, (end[s] - begin[s]) as usize);
-            let values = at[s] as usize..at[s + 1] as usize;
-            let below = values.len() / width - width;
-            Supernode {
-                start,
-                width,
-                below: of[s] as usize..of[s] as usize + below,
-                values,
-            }
-        };
-        let supernodes: Vec<Supernode> = (0..symbolic.n_supernodes()).map(supernode).collect();
-        let below = supernodes.iter().map(|s| s.below.len()).max().unwrap_or(0);
-        let fronts = Fronts::new(supernodes, symbolic.row_idx().to_vec());
+        let request = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
+            &symbolic,
+            Par::Seq,
+            Default::default(),
+        );
+        let rows = symbolic.col_ptr_for_row_idx().windows(2);
+        let below = rows.map(|r| (r[1] - r[0]) as usize).max().unwrap_or(0);
+        let Pattern { column_start, row } = pattern;
         Some(Self {
-            factor: vec![0.0; fronts.value_count()],
+            factor: vec![0.0; symbolic.len_val()],
+            memory: MemBuffer::try_new(request).ok()?,
             below: vec![0.0; below],
-            lower: pattern,
-            fronts,
+            lower: SymbolicSparseColMat::new_checked(n, n, column_start, None, row),
+            symbolic,
         })
     }
 
@@ -149,21 +141,33 @@ impl Cholesky {
 
     /// Position of a diagonal entry among the values.
     pub(crate) fn diagonal(&self, row: usize) -> usize {
-        self.lower.column_start[row] as usize
+        self.lower.col_ptr()[row] as usize
     }
 
     /// Factorises the matrix with these values on the pattern.
     pub(crate) fn factorise(&mut self, values: &[f64]) -> Result<(), NotPositiveDefinite> {
-        self.fronts.factorise(&self.lower, values, &mut self.factor)
+        // One thread: the factor is then the same to the bit wherever it runs.
+        supernodal::factorize_supernodal_numeric_llt(
+            &mut self.factor,
+            SparseColMatRef::new(self.lower.as_ref(), values),
+            Default::default(),
+            &self.symbolic,
+            Par::Seq,
+            MemStack::new(&mut self.memory),
+            Default::default(),
+        )
+        .map(|_| ())
+        .map_err(|LltError::NonPositivePivot { index }| NotPositiveDefinite { row: index })
     }
 
     /// b − A x for the matrix with these values.
     pub(crate) fn residual(&self, values: &[f64], x: &[f64], b: &[f64]) -> Vec<f64> {
         let mut r = b.to_vec();
+        let (start, rows) = (self.lower.col_ptr(), self.lower.row_idx());
         for j in 0..x.len() {
-            let column = self.lower.range(j as u32);
+            let column = start[j] as usize..start[j + 1] as usize;
             let mut sum = 0.0;
-            for (&i, a) in self.lower.row[column.clone()].iter().zip(&values[column]) {
+            for (&i, a) in rows[column.clone()].iter().zip(&values[column]) {
                 let i = i as usize;
                 sum += a * x[i];
                 if i != j {
@@ -177,16 +181,20 @@ impl Cholesky {
 
     /// First column, number of columns, rows below and values, column by column, of supernode s.
     fn supernode(&self, s: usize) -> (usize, usize, &[u32], &[f64]) {
-        let own = &self.fronts.supernodes[s];
-        let values = &self.factor[own.values.clone()];
-        let rows = &self.fronts.rows[own.below.clone()];
-        (own.start, own.width, rows, values)
+        let all = &self.symbolic;
+        let (start, end) = (all.supernode_begin()[s], all.supernode_end()[s]);
+        let width = (end - start) as usize;
+        let (at, of) = (all.col_ptr_for_val(), all.col_ptr_for_row_idx());
+        let values = &self.factor[at[s] as usize..at[s + 1] as usize];
+        let below = values.len().checked_div(width).unwrap_or(0) - width;
+        let rows = &all.row_idx()[of[s] as usize..][..below];
+        (start as usize, width, rows, values)
     }
 
     /// x ← L⁻¹ x.
     pub(crate) fn forward(&mut self, x: &mut [f64]) {
         let mut below = std::mem::take(&mut self.below);
-        for s in 0..self.fronts.supernodes.len() {
+        for s in 0..self.symbolic.n_supernodes() {
             let (start, width, rows, values) = self.supernode(s);
             let sum = &mut below[..rows.len()];
             sum.fill(0.0);
@@ -211,7 +219,7 @@ impl Cholesky {
     /// x ← L⁻ᵀ x.
     pub(crate) fn backward(&mut self, x: &mut [f64]) {
         let mut below = std::mem::take(&mut self.below);
-        for s in (0..self.fronts.supernodes.len()).rev() {
+        for s in (0..self.symbolic.n_supernodes()).rev() {
             let (start, width, rows, values) = self.supernode(s);
             let known = &mut below[..rows.len()];
             for (&i, known) in rows.iter().zip(known.iter_mut()) {
@@ -229,9 +237,9 @@ impl Cholesky {
 
     /// The last `size` rows and columns of L, lower triangular.
     pub(crate) fn trailing(&self, size: usize) -> DMatrix<f64> {
-        let first = self.lower.size() - size;
+        let first = self.lower.nrows() - size;
         let mut block = DMatrix::zeros(size, size);
-        for s in (0..self.fronts.supernodes.len()).rev() {
+        for s in (0..self.symbolic.n_supernodes()).rev() {
             let (start, width, rows, values) = self.supernode(s);
             if start + width <= first {
                 break;
@@ -249,72 +257,11 @@ impl Cholesky {
         block
     }
 
-    #[cfg(test)]
-    pub(crate) fn fronts(&self) -> &Fronts {
-        &self.fronts
-    }
-
     /// Multiplies an entry of the factor, as a fault of memory or of a kernel would.
     #[cfg(test)]
     pub(crate) fn corrupt(&mut self, entry: usize, by: f64) {
         let count = self.factor.len();
         self.factor[entry % count] *= by;
-    }
-}
-
-/// The dense kernels of a front, with their room.
-pub(crate) struct Kernels(MemBuffer);
-
-impl Kernels {
-    /// For fronts of supernodes of at most this width.
-    pub(crate) fn new(width: usize) -> Self {
-        Self(MemBuffer::new(cholesky_in_place_scratch::<f64>(
-            width,
-            Par::Seq,
-            Default::default(),
-        )))
-    }
-
-    /// Eliminates the first `width` rows of a front: the panel \[A₁₁; A₂₁\] becomes \[L₁₁; L₂₁\], and
-    /// L₂₁ L₂₁ᵀ is taken off the lower triangle of `update`.
-    ///
-    /// # Errors
-    /// The row of a pivot that is not positive.
-    pub(crate) fn eliminate(
-        &mut self,
-        panel: &mut [f64],
-        width: usize,
-        update: &mut [f64],
-    ) -> Result<(), usize> {
-        let height = panel.len() / width;
-        let below = height - width;
-        let panel = MatMut::from_column_major_slice_mut(panel, height, width);
-        let (mut top, mut bottom) = panel.split_at_row_mut(width);
-        // One thread: what is side by side are whole subtrees.
-        cholesky_in_place(
-            top.rb_mut(),
-            Default::default(),
-            Par::Seq,
-            MemStack::new(&mut self.0),
-            Default::default(),
-        )
-        .map_err(|LltError::NonPositivePivot { index }| index)?;
-        if below == 0 {
-            return Ok(());
-        }
-        solve_lower_triangular_in_place(top.rb(), bottom.rb_mut().transpose_mut(), Par::Seq);
-        triangular::matmul(
-            MatMut::from_column_major_slice_mut(update, below, below),
-            BlockStructure::TriangularLower,
-            Accum::Add,
-            bottom.rb(),
-            BlockStructure::Rectangular,
-            bottom.rb().transpose(),
-            BlockStructure::Rectangular,
-            -1.0,
-            Par::Seq,
-        );
-        Ok(())
     }
 }
 

@@ -35,7 +35,6 @@ mod condensation;
 mod control;
 mod driver;
 mod error;
-mod fronts;
 mod increment;
 mod increments;
 mod interface;
