@@ -80,7 +80,14 @@ pub(crate) struct Cholesky {
     memory: MemBuffer,
     /// Room for the rows below a supernode.
     below: Vec<f64>,
+    /// Multiplications of a factorisation.
+    operations: f64,
+    par: Par,
 }
+
+/// Operations from which on a factorisation runs on all threads: some seconds, for threads have to
+/// wait for each other, and on a busy machine long.
+const PARALLEL: f64 = 1e11;
 
 impl fmt::Debug for Cholesky {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -117,18 +124,38 @@ impl Cholesky {
             Default::default(),
         )
         .ok()?;
+        let rows = symbolic.col_ptr_for_row_idx().windows(2);
+        let below = rows.map(|r| (r[1] - r[0]) as usize);
+        let starts = symbolic
+            .supernode_begin()
+            .iter()
+            .zip(symbolic.supernode_end());
+        let operations = starts.zip(below.clone()).map(|((start, end), below)| {
+            let width = (end - start) as usize;
+            // Σ (h − j)² over the columns j of a supernode of height h.
+            (0..width)
+                .map(|j| ((width + below - j) as f64).powi(2))
+                .sum::<f64>()
+        });
+        let operations = operations.sum();
+        let par = if operations > PARALLEL {
+            Par::rayon(0)
+        } else {
+            Par::Seq
+        };
+        let below = below.max().unwrap_or(0);
         let request = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
             &symbolic,
-            Par::Seq,
+            par,
             Default::default(),
         );
-        let rows = symbolic.col_ptr_for_row_idx().windows(2);
-        let below = rows.map(|r| (r[1] - r[0]) as usize).max().unwrap_or(0);
         let Pattern { column_start, row } = pattern;
         Some(Self {
             factor: vec![0.0; symbolic.len_val()],
             memory: MemBuffer::try_new(request).ok()?,
             below: vec![0.0; below],
+            operations,
+            par,
             lower: SymbolicSparseColMat::new_checked(n, n, column_start, None, row),
             symbolic,
         })
@@ -139,6 +166,11 @@ impl Cholesky {
         self.factor.len()
     }
 
+    /// Multiplications of a factorisation.
+    pub(crate) fn operations(&self) -> f64 {
+        self.operations
+    }
+
     /// Position of a diagonal entry among the values.
     pub(crate) fn diagonal(&self, row: usize) -> usize {
         self.lower.col_ptr()[row] as usize
@@ -146,13 +178,14 @@ impl Cholesky {
 
     /// Factorises the matrix with these values on the pattern.
     pub(crate) fn factorise(&mut self, values: &[f64]) -> Result<(), NotPositiveDefinite> {
-        // One thread: the factor is then the same to the bit wherever it runs.
+        // Threads share out the entries of the dense updates, not their sums: the factor is the same
+        // to the bit wherever it runs.
         supernodal::factorize_supernodal_numeric_llt(
             &mut self.factor,
             SparseColMatRef::new(self.lower.as_ref(), values),
             Default::default(),
             &self.symbolic,
-            Par::Seq,
+            self.par,
             MemStack::new(&mut self.memory),
             Default::default(),
         )

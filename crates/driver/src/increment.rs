@@ -2,6 +2,7 @@
 //! the sequence of increments.
 
 use crate::block::Stiffness;
+use crate::chord::Chord;
 use crate::condensation::Condensation;
 use crate::control::Control;
 use crate::driver::{Driver, State};
@@ -72,8 +73,11 @@ impl<const D: usize> Driver<D> {
         watch: &mut dyn FnMut(&Self, &Iteration<'_>),
     ) -> Result<StepReport, StepError> {
         let guess = self.predictor(start, end);
-        let candidate = self.balance(system, (start, end), guess, None, watch)?;
-        Ok(self.commit(start, end, candidate))
+        let candidate = self.balance(system, (start, end), guess, None, watch);
+        if candidate.is_err() {
+            system.forget();
+        }
+        Ok(self.commit(start, end, candidate?))
     }
 
     /// Finds the equilibrium at the end of an increment from a first guess of its displacements.
@@ -98,6 +102,9 @@ impl<const D: usize> Driver<D> {
             ..Counts::default()
         };
         let mut solution = self.state.solution.clone();
+        let mut chord = Chord::default();
+        // What an increment has left serves the next that goes on alike.
+        let goes_on = control.is_none() && now.d_u.iter().any(|&u| u != 0.0);
         loop {
             // The step to come makes up for what is missing.
             let reached: Vec<f64> = now.d_u.iter().zip(&missing).map(|(u, m)| u + m).collect();
@@ -151,7 +158,18 @@ impl<const D: usize> Driver<D> {
             }
             counts.newton += 1;
 
-            self.factorise(system, &mut now, &missing)?;
+            let arrived = missing.iter().all(|&m| m == 0.0);
+            let serves = if counts.newton == 1 {
+                goes_on && !system.kept().is_empty()
+            } else {
+                let worth = system.steps_per_factorisation();
+                chord.serves(out_of_balance, target, worth)
+            };
+            let fresh = !(arrived && serves);
+            if fresh {
+                self.factorise(system, &mut now, &missing)?;
+            }
+            chord.begin(out_of_balance, fresh);
             let load =
                 |d: usize| end.force[d] - now.assembly.internal[d] - now.assembly.coupling[d];
             let load: Vec<f64> = (0..now.d_u.len()).map(load).collect();
@@ -160,7 +178,7 @@ impl<const D: usize> Driver<D> {
             let tools = self.mesh_dofs()..;
             let moved = counts.newton == 1
                 && !(start.displacement.range(tools.clone())).eq(end.displacement.range(tools));
-            let complete = !moved && missing.iter().all(|&m| m == 0.0);
+            let complete = !moved && arrived;
             let border = control.as_ref().map(|c| {
                 let equation = (c.compliance, c.missing(&now.d_u));
                 system.border(&mut condensed, c.load, equation)
@@ -197,6 +215,7 @@ impl<const D: usize> Driver<D> {
                 slack,
             };
             now = self.search(system, &line, now);
+            chord.taken(now.part);
             counts.shortened += usize::from(now.part < 1.0);
             if let Some(control) = &mut control {
                 control.factor += now.part * growth;

@@ -30,6 +30,7 @@
 mod block;
 mod cells;
 mod cholesky;
+mod chord;
 mod collapse;
 mod condensation;
 mod control;

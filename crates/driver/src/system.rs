@@ -4,6 +4,7 @@
 use crate::ModelError;
 use crate::block::{Block, Stiffness};
 use crate::cholesky::{Cholesky, NotPositiveDefinite, Pattern, square};
+use crate::chord::PRECIOUS;
 use crate::norm::largest;
 use crate::ordering::nested_dissection;
 use crate::scatter::{FIXED, Scatter};
@@ -33,11 +34,22 @@ pub(crate) struct System {
     shift: f64,
     stiffest: f64,
     cholesky: Cholesky,
-    /// Whether the factor held is that of the elastic stiffness.
-    elastic_factor: bool,
+    held: Held,
+    /// Whether the values are those that the factor was made of.
+    current: bool,
+    /// What the factor was made of, where it is precious.
+    kept: Vec<f64>,
     /// Factorisations done since the system was set up.
     pub(crate) factorisations: usize,
     pub(crate) timings: Timings,
+}
+
+/// What the factor held is of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Held {
+    Nothing,
+    Elastic,
+    Tangent,
 }
 
 /// Internal forces of an assembly.
@@ -54,6 +66,9 @@ pub(crate) struct Assembly {
 /// Residual of a solve with the factor, over the size of the terms that it is a difference of, up
 /// to which the factor is right: a thousand times what rounding leaves.
 const ACCURATE: f64 = 1e-12;
+
+/// Operations of a factorisation in the time in which a step takes up an entry of the factor.
+const OPERATIONS: f64 = 200.0;
 
 /// A factor that does not solve the system it was made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -164,7 +179,9 @@ impl System {
             shift: 0.0,
             stiffest: 0.0,
             cholesky,
-            elastic_factor: false,
+            held: Held::Nothing,
+            current: false,
+            kept: Vec::new(),
             factorisations: 0,
             timings: Timings {
                 ordering: clock.elapsed(),
@@ -222,6 +239,7 @@ impl System {
         let mut flows = false;
         if stiffness != Stiffness::None {
             self.values.fill(0.0);
+            self.current = false;
         }
         let missing = missing.iter().any(|&m| m != 0.0).then_some(missing);
         let (position, values) = (&self.position, &mut self.values);
@@ -258,7 +276,41 @@ impl System {
 
     /// Whether the factor held is that of the elastic stiffness.
     pub(crate) fn holds_elastic_factor(&self) -> bool {
-        self.elastic_factor
+        self.held == Held::Elastic
+    }
+
+    /// How many steps without a factorisation take about as long as one: operations of the one over
+    /// what the others read of the factor.
+    pub(crate) fn steps_per_factorisation(&self) -> f64 {
+        self.cholesky.operations() / (OPERATIONS * self.cholesky.entries() as f64)
+    }
+
+    /// Whether the factor held takes so long that an increment leaves it to the next.
+    fn is_precious(&self) -> bool {
+        self.steps_per_factorisation() >= PRECIOUS
+    }
+
+    /// What the precious factor of a tangent was made of; empty without one.
+    pub(crate) fn kept(&self) -> &[f64] {
+        match self.held {
+            Held::Tangent => &self.kept,
+            Held::Nothing | Held::Elastic => &[],
+        }
+    }
+
+    /// Makes the factor again that [`System::kept`] told of.
+    pub(crate) fn restore(&mut self, kept: &[f64]) {
+        if kept.len() + 1 == self.values.len() && self.cholesky.factorise(kept).is_ok() {
+            self.kept = kept.to_vec();
+            self.held = Held::Tangent;
+        }
+    }
+
+    /// Drops the factor of a tangent that led nowhere.
+    pub(crate) fn forget(&mut self) {
+        if self.held == Held::Tangent {
+            self.held = Held::Nothing;
+        }
     }
 
     /// Largest diagonal of the elastic stiffness \[N/mm\].
@@ -272,21 +324,32 @@ impl System {
     /// # Errors
     /// The degree of freedom at which K + σE is not positive definite.
     pub(crate) fn factorise(&mut self, elastic: bool) -> Result<(), usize> {
-        if elastic && self.elastic_factor {
+        if elastic && self.held == Held::Elastic {
+            self.current = true;
             return Ok(());
         }
         let first = self.size() - self.interface;
         for p in first..self.size() {
             self.values[self.cholesky.diagonal(p)] += self.shift;
         }
-        self.elastic_factor = false;
+        self.held = Held::Nothing;
         self.factorisations += 1;
         timed(&mut self.timings.factorisation, || {
             let (_, values) = self.values.split_last().unwrap_or((&0.0, &[]));
             self.cholesky.factorise(values)
         })
         .map_err(|NotPositiveDefinite { row }| self.dofs[row])?;
-        self.elastic_factor = elastic;
+        self.held = if elastic {
+            Held::Elastic
+        } else {
+            Held::Tangent
+        };
+        self.current = true;
+        self.kept.clear();
+        if !elastic && self.is_precious() {
+            let (_, values) = self.values.split_last().unwrap_or((&0.0, &[]));
+            self.kept.extend_from_slice(values);
+        }
         Ok(())
     }
 
@@ -415,8 +478,12 @@ impl System {
     }
 
     /// Checks the first `rows` rows of K u = f, with the others of u given, and corrects u once
-    /// where they do not hold: faults of memory and of kernels corrupt a factor silently.
+    /// where they do not hold: faults of memory and of kernels corrupt a factor silently. The first
+    /// solve with a factor tells; later ones are of another matrix.
     fn refine(&mut self, f: &[f64], u: &mut [f64], rows: usize) -> Result<(), Inaccurate> {
+        if !self.current {
+            return Ok(());
+        }
         let (_, values) = self.values.split_last().unwrap_or((&0.0, &[]));
         let mut refined = false;
         loop {
@@ -430,7 +497,7 @@ impl System {
                 return Ok(());
             }
             if refined {
-                self.elastic_factor = false;
+                self.held = Held::Nothing;
                 return Err(Inaccurate { found, expected });
             }
             self.cholesky.forward(&mut residual);
@@ -517,6 +584,25 @@ mod tests {
         assert_eq!(outcome, Ok(()));
         let largest_error = largest(u.iter().zip(&right).map(|(u, v)| u - v));
         assert!(largest_error < 1e-11 * largest(right.iter().copied()));
+    }
+
+    #[test]
+    fn a_factor_that_was_kept_is_made_again_to_the_bit() {
+        let (mut system, load) = pulled();
+        let mut u = vec![0.0; load.len()];
+        assert_eq!(system.solve(&load, &mut u), Ok(()));
+        let (_, kept) = system.values.split_last().expect("values");
+        let (mut other, _) = pulled();
+        other.restore(kept);
+        assert_eq!(other.kept(), kept);
+        let mut v = vec![0.0; load.len()];
+        assert_eq!(other.solve(&load, &mut v), Ok(()));
+        assert_eq!(u, v);
+        other.forget();
+        assert!(other.kept().is_empty());
+        // What is of another mesh is not taken over.
+        other.restore(&kept[1..]);
+        assert!(other.kept().is_empty());
     }
 
     #[test]
