@@ -21,10 +21,6 @@ const AGEING: f64 = 4.0;
 /// Contraction from which on a factor is of no use.
 const POOR: f64 = 0.5;
 
-/// Steps worth a factorisation from which on the first step of an increment tries the factor that
-/// the increment before has left.
-pub(crate) const PRECIOUS: f64 = 8.0;
-
 impl Chord {
     /// Takes note of a step that begins at this imbalance \[N\].
     pub(crate) fn begin(&mut self, imbalance: f64, fresh: bool) {

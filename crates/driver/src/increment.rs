@@ -73,11 +73,8 @@ impl<const D: usize> Driver<D> {
         watch: &mut dyn FnMut(&Self, &Iteration<'_>),
     ) -> Result<StepReport, StepError> {
         let guess = self.predictor(start, end);
-        let candidate = self.balance(system, (start, end), guess, None, watch);
-        if candidate.is_err() {
-            system.forget();
-        }
-        Ok(self.commit(start, end, candidate?))
+        let candidate = self.balance(system, (start, end), guess, None, watch)?;
+        Ok(self.commit(start, end, candidate))
     }
 
     /// Finds the equilibrium at the end of an increment from a first guess of its displacements.
@@ -103,8 +100,6 @@ impl<const D: usize> Driver<D> {
         };
         let mut solution = self.state.solution.clone();
         let mut chord = Chord::default();
-        // What an increment has left serves the next that goes on alike.
-        let goes_on = control.is_none() && now.d_u.iter().any(|&u| u != 0.0);
         loop {
             // The step to come makes up for what is missing.
             let reached: Vec<f64> = now.d_u.iter().zip(&missing).map(|(u, m)| u + m).collect();
@@ -159,13 +154,8 @@ impl<const D: usize> Driver<D> {
             counts.newton += 1;
 
             let arrived = missing.iter().all(|&m| m == 0.0);
-            let serves = if counts.newton == 1 {
-                goes_on && !system.kept().is_empty()
-            } else {
-                let worth = system.steps_per_factorisation();
-                chord.serves(out_of_balance, target, worth)
-            };
-            let fresh = !(arrived && serves);
+            let worth = system.steps_per_factorisation();
+            let fresh = !(arrived && chord.serves(out_of_balance, target, worth));
             if fresh {
                 self.factorise(system, &mut now, &missing)?;
             }

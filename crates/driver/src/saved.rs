@@ -163,7 +163,6 @@ impl<const D: usize> Driver<D> {
         let elastic = held.is_some_and(crate::system::System::holds_elastic_factor);
         out.push(f64::from(u8::from(held.is_some())));
         out.push(f64::from(u8::from(elastic)));
-        write_list(held.map_or(&[], crate::system::System::kept), out);
         let pivot = held.and_then(|s| s.pivot);
         out.push(pivot.map_or(-1.0, |node| node as f64));
     }
@@ -240,8 +239,6 @@ impl<const D: usize> Driver<D> {
             }
         }
         let (held, elastic) = (from.count()? == 1, from.count()? == 1);
-        let kept = from.count()?;
-        let kept = from.take(kept)?.to_vec();
         let nodes = 0..self.mesh.nodes().len();
         let pivot = Some(from.number()?)
             .filter(|&n| n >= 0.0)
@@ -266,7 +263,6 @@ impl<const D: usize> Driver<D> {
                 // The elastic stiffness was positive definite when it was first factorised.
                 let _ = system.factorise(true);
             }
-            system.restore(&kept);
             self.system = Some(system);
         }
         Ok(())

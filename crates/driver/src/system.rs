@@ -4,7 +4,6 @@
 use crate::ModelError;
 use crate::block::{Block, Stiffness};
 use crate::cholesky::{Cholesky, NotPositiveDefinite, Pattern, square};
-use crate::chord::PRECIOUS;
 use crate::norm::largest;
 use crate::ordering::nested_dissection;
 use crate::scatter::{FIXED, Scatter};
@@ -34,22 +33,13 @@ pub(crate) struct System {
     shift: f64,
     stiffest: f64,
     cholesky: Cholesky,
-    held: Held,
+    /// Whether the factor held is that of the elastic stiffness.
+    elastic_factor: bool,
     /// Whether the values are those that the factor was made of.
     current: bool,
-    /// What the factor was made of, where it is precious.
-    kept: Vec<f64>,
     /// Factorisations done since the system was set up.
     pub(crate) factorisations: usize,
     pub(crate) timings: Timings,
-}
-
-/// What the factor held is of.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Held {
-    Nothing,
-    Elastic,
-    Tangent,
 }
 
 /// Internal forces of an assembly.
@@ -179,9 +169,8 @@ impl System {
             shift: 0.0,
             stiffest: 0.0,
             cholesky,
-            held: Held::Nothing,
+            elastic_factor: false,
             current: false,
-            kept: Vec::new(),
             factorisations: 0,
             timings: Timings {
                 ordering: clock.elapsed(),
@@ -276,41 +265,13 @@ impl System {
 
     /// Whether the factor held is that of the elastic stiffness.
     pub(crate) fn holds_elastic_factor(&self) -> bool {
-        self.held == Held::Elastic
+        self.elastic_factor
     }
 
     /// How many steps without a factorisation take about as long as one: operations of the one over
     /// what the others read of the factor.
     pub(crate) fn steps_per_factorisation(&self) -> f64 {
         self.cholesky.operations() / (OPERATIONS * self.cholesky.entries() as f64)
-    }
-
-    /// Whether the factor held takes so long that an increment leaves it to the next.
-    fn is_precious(&self) -> bool {
-        self.steps_per_factorisation() >= PRECIOUS
-    }
-
-    /// What the precious factor of a tangent was made of; empty without one.
-    pub(crate) fn kept(&self) -> &[f64] {
-        match self.held {
-            Held::Tangent => &self.kept,
-            Held::Nothing | Held::Elastic => &[],
-        }
-    }
-
-    /// Makes the factor again that [`System::kept`] told of.
-    pub(crate) fn restore(&mut self, kept: &[f64]) {
-        if kept.len() + 1 == self.values.len() && self.cholesky.factorise(kept).is_ok() {
-            self.kept = kept.to_vec();
-            self.held = Held::Tangent;
-        }
-    }
-
-    /// Drops the factor of a tangent that led nowhere.
-    pub(crate) fn forget(&mut self) {
-        if self.held == Held::Tangent {
-            self.held = Held::Nothing;
-        }
     }
 
     /// Largest diagonal of the elastic stiffness \[N/mm\].
@@ -324,7 +285,7 @@ impl System {
     /// # Errors
     /// The degree of freedom at which K + σE is not positive definite.
     pub(crate) fn factorise(&mut self, elastic: bool) -> Result<(), usize> {
-        if elastic && self.held == Held::Elastic {
+        if elastic && self.elastic_factor {
             self.current = true;
             return Ok(());
         }
@@ -332,24 +293,15 @@ impl System {
         for p in first..self.size() {
             self.values[self.cholesky.diagonal(p)] += self.shift;
         }
-        self.held = Held::Nothing;
+        self.elastic_factor = false;
         self.factorisations += 1;
         timed(&mut self.timings.factorisation, || {
             let (_, values) = self.values.split_last().unwrap_or((&0.0, &[]));
             self.cholesky.factorise(values)
         })
         .map_err(|NotPositiveDefinite { row }| self.dofs[row])?;
-        self.held = if elastic {
-            Held::Elastic
-        } else {
-            Held::Tangent
-        };
+        self.elastic_factor = elastic;
         self.current = true;
-        self.kept.clear();
-        if !elastic && self.is_precious() {
-            let (_, values) = self.values.split_last().unwrap_or((&0.0, &[]));
-            self.kept.extend_from_slice(values);
-        }
         Ok(())
     }
 
@@ -497,7 +449,7 @@ impl System {
                 return Ok(());
             }
             if refined {
-                self.held = Held::Nothing;
+                self.elastic_factor = false;
                 return Err(Inaccurate { found, expected });
             }
             self.cholesky.forward(&mut residual);
@@ -584,25 +536,6 @@ mod tests {
         assert_eq!(outcome, Ok(()));
         let largest_error = largest(u.iter().zip(&right).map(|(u, v)| u - v));
         assert!(largest_error < 1e-11 * largest(right.iter().copied()));
-    }
-
-    #[test]
-    fn a_factor_that_was_kept_is_made_again_to_the_bit() {
-        let (mut system, load) = pulled();
-        let mut u = vec![0.0; load.len()];
-        assert_eq!(system.solve(&load, &mut u), Ok(()));
-        let (_, kept) = system.values.split_last().expect("values");
-        let (mut other, _) = pulled();
-        other.restore(kept);
-        assert_eq!(other.kept(), kept);
-        let mut v = vec![0.0; load.len()];
-        assert_eq!(other.solve(&load, &mut v), Ok(()));
-        assert_eq!(u, v);
-        other.forget();
-        assert!(other.kept().is_empty());
-        // What is of another mesh is not taken over.
-        other.restore(&kept[1..]);
-        assert!(other.kept().is_empty());
     }
 
     #[test]
