@@ -102,6 +102,17 @@ impl Cholesky {
     /// Symbolic factorisation, once for a pattern. `None` if memory or the 32-bit index of the
     /// factor does not suffice.
     pub(crate) fn analyse(pattern: Pattern) -> Option<Self> {
+        Self::analyse_for(pattern, |operations| {
+            if operations > PARALLEL {
+                Par::rayon(0)
+            } else {
+                Par::Seq
+            }
+        })
+    }
+
+    /// The threads may depend on the number of operations.
+    fn analyse_for(pattern: Pattern, threads: impl Fn(f64) -> Par) -> Option<Self> {
         let n = pattern.size();
         let upper = pattern.transposed();
         let request = StackReq::or(
@@ -138,11 +149,7 @@ impl Cholesky {
                 .sum::<f64>()
         });
         let operations = operations.sum();
-        let par = if operations > PARALLEL {
-            Par::rayon(0)
-        } else {
-            Par::Seq
-        };
+        let par = threads(operations);
         let below = below.max().unwrap_or(0);
         let request = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
             &symbolic,
@@ -340,6 +347,7 @@ pub(crate) fn square(l: &DMatrix<f64>) -> DMatrix<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ordering::nested_dissection;
     use nalgebra::DVector;
     use proptest::prelude::*;
 
@@ -401,6 +409,58 @@ mod tests {
                 - &coupling * inner.try_inverse().expect("definite") * coupling.transpose();
             prop_assert!((&l * l.transpose() - &schur).norm() < 1e-10);
             prop_assert!((square(&l) - schur).norm() < 1e-10);
+        }
+    }
+
+    /// Seven-point Laplacian of a cube of nodes, made definite, in nested-dissection order.
+    fn laplacian(n: usize) -> (Pattern, Vec<f64>) {
+        let at = |k: usize| [k % n, k / n % n, k / (n * n)];
+        let points: Vec<[f64; 3]> = (0..n * n * n).map(|k| at(k).map(|i| i as f64)).collect();
+        let step = [1, n, n * n];
+        let beside = |k: usize| -> Vec<usize> {
+            let axis = |a: usize| {
+                let below = (at(k)[a] > 0).then(|| k - step[a]);
+                let above = (at(k)[a] + 1 < n).then(|| k + step[a]);
+                below.into_iter().chain(above)
+            };
+            (0..3).flat_map(axis).collect()
+        };
+        let adjacency: Vec<Vec<usize>> = (0..n * n * n).map(beside).collect();
+        let all: Vec<usize> = (0..n * n * n).collect();
+        let order = nested_dissection(&all, &points, |a| &adjacency[a]);
+        let mut position = vec![0; order.len()];
+        for (k, &a) in order.iter().enumerate() {
+            position[a] = k as u32;
+        }
+        let (mut column_start, mut row, mut values) = (vec![0], Vec::new(), Vec::new());
+        for (k, &a) in order.iter().enumerate() {
+            let mut below: Vec<u32> = adjacency[a].iter().map(|&b| position[b]).collect();
+            below.retain(|&i| i as usize > k);
+            below.sort_unstable();
+            values.push(6.0 + 1.0 / (2.0 + a as f64));
+            values.extend(below.iter().map(|_| -1.0));
+            row.push(k as u32);
+            row.extend(below);
+            column_start.push(row.len() as u32);
+        }
+        (Pattern { column_start, row }, values)
+    }
+
+    #[test]
+    fn the_factor_is_the_same_to_the_bit_on_any_number_of_threads() {
+        let (pattern, values) = laplacian(22);
+        let factor = |par: Par, threads: usize| {
+            let mut cholesky = Cholesky::analyse_for(pattern.clone(), |_| par).expect("small");
+            assert!(cholesky.operations() > 1e8);
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            let pool = pool.build().expect("threads");
+            pool.install(|| cholesky.factorise(&values))
+                .expect("definite");
+            cholesky.factor
+        };
+        let one = factor(Par::Seq, 1);
+        for threads in [1, 2, 3] {
+            assert!(one == factor(Par::rayon(0), threads), "{threads} threads");
         }
     }
 

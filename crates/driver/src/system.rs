@@ -3,9 +3,9 @@
 
 use crate::ModelError;
 use crate::block::{Block, Stiffness};
-use crate::cholesky::{Cholesky, NotPositiveDefinite, Pattern, square};
+use crate::cholesky::{Cholesky, NotPositiveDefinite, square};
 use crate::norm::largest;
-use crate::ordering::nested_dissection;
+use crate::numbering::Numbering;
 use crate::scatter::{FIXED, Scatter};
 use crate::timings::{Timings, timed};
 use moreau_mesh::Mesh;
@@ -112,45 +112,12 @@ impl System {
         tools: usize,
     ) -> Result<Self, ModelError> {
         let clock = Instant::now();
-        let nodes = mesh.nodes().len() + tools;
-        let adjacency = adjacency(mesh, nodes);
-        let neighbours = |a: usize| &adjacency.entries[adjacency.start[a]..adjacency.start[a + 1]];
-        let mut is_interface = vec![false; nodes];
-        for &a in interface_nodes.iter().chain(&pivot) {
-            is_interface[a] = true;
-        }
-        is_interface[mesh.nodes().len()..].fill(true);
-        let interior: Vec<usize> = (0..nodes).filter(|&a| !is_interface[a]).collect();
-        let mut order = nested_dissection(&interior, mesh.nodes(), neighbours);
-        order.extend((0..nodes).filter(|&a| is_interface[a]));
-        let mut position = vec![FIXED; D * nodes];
-        let mut dofs = Vec::new();
-        let mut interface = 0;
-        for &a in &order {
-            for dof in D * a..D * a + D {
-                if !fixed(dof) {
-                    position[dof] = dofs.len() as u32;
-                    dofs.push(dof);
-                    interface += usize::from(is_interface[a]);
-                }
-            }
-        }
-        let mut column_start = Vec::with_capacity(dofs.len() + 1);
-        column_start.push(0u32);
-        let mut row: Vec<u32> = Vec::new();
-        let mut column = Vec::new();
-        for (p, &dof) in dofs.iter().enumerate() {
-            column.clear();
-            let own = dof / D;
-            for &b in neighbours(own).iter().chain(std::iter::once(&own)) {
-                let rows = position[D * b..D * b + D].iter();
-                column.extend(rows.copied().filter(|&q| q != FIXED && q as usize >= p));
-            }
-            column.sort_unstable();
-            row.extend_from_slice(&column);
-            column_start.push(row.len() as u32);
-        }
-        let pattern = Pattern { column_start, row };
+        let Numbering {
+            position,
+            dofs,
+            interface,
+            pattern,
+        } = Numbering::new(mesh, fixed, interface_nodes, pivot, tools);
         let scatter = blocks
             .iter()
             .map(|b| Scatter::new(b.as_ref(), &position, &pattern))
@@ -461,36 +428,6 @@ impl System {
             refined = true;
         }
     }
-}
-
-struct Adjacency {
-    start: Vec<usize>,
-    entries: Vec<usize>,
-}
-
-/// Nodes that share a cell with each node, without the node itself, sorted.
-fn adjacency<const D: usize>(mesh: &Mesh<D>, nodes: usize) -> Adjacency {
-    let mut cells_of = vec![Vec::new(); nodes];
-    for cell in 0..mesh.cell_count() {
-        for &a in mesh.cell_nodes(cell) {
-            cells_of[a].push(cell);
-        }
-    }
-    let mut start = Vec::with_capacity(nodes + 1);
-    start.push(0);
-    let mut entries = Vec::new();
-    let mut row = Vec::new();
-    for (a, cells) in cells_of.iter().enumerate() {
-        row.clear();
-        for &cell in cells {
-            row.extend(mesh.cell_nodes(cell).iter().copied().filter(|&b| b != a));
-        }
-        row.sort_unstable();
-        row.dedup();
-        entries.extend_from_slice(&row);
-        start.push(entries.len());
-    }
-    Adjacency { start, entries }
 }
 
 #[cfg(test)]
