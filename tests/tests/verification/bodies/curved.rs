@@ -222,6 +222,9 @@ fn a_ring_shrunk_on_another_is_pressed_evenly() -> Fallible {
         }
         Ok(())
     }
-    use CellKind::Quad8;
-    check::<PlaneStrain, 2>([Quad8; 2], [[8, 32], [8, 23]])
+    use CellKind::{Hex20, Hex27, Quad8};
+    check::<PlaneStrain, 2>([Quad8; 2], [[8, 32], [8, 23]])?;
+    check::<Solid, 3>([Hex20; 2], [[4, 32, 2], [4, 23, 1]])?;
+    check::<Solid, 3>([Hex27; 2], [[3, 32, 1], [3, 23, 2]])?;
+    check::<Solid, 3>([Hex20, Hex27], [[4, 32, 1], [3, 23, 1]])
 }
