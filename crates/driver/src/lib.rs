@@ -36,6 +36,7 @@ mod condensation;
 mod control;
 mod driver;
 mod error;
+mod handover;
 mod increment;
 mod increments;
 mod interface;

@@ -4,7 +4,7 @@
 use super::*;
 use moreau::contact::{ContactSolver, GaussSeidel, SemismoothNewton, Uzawa};
 use moreau::driver::{Loading, Nesting};
-use moreau::laws::Status;
+use moreau::laws::{Status, Tresca};
 use moreau::mesh::Solid;
 
 /// A stack and the motions of its upper side, in its own frame: pressed, then dragged, along changing
@@ -209,6 +209,51 @@ fn the_energy_of_two_bodies_is_balanced() -> Fallible {
         "{left:?}"
     );
     Ok(())
+}
+
+/// A bound of the shear that does not hang on the pressure is that of what is covered, also where
+/// facets of the non-mortar side are covered in part.
+#[test]
+fn a_constant_bound_of_the_shear_counts_where_bodies_meet() -> Fallible {
+    const BOUND: f64 = 5.0;
+    fn check<H: Blocks<D>, const D: usize>(mut stack: Stack<H, D>) -> Fallible {
+        stack.lines[1][0] = uniform(-1.1, 7.2, 6);
+        for swapped in [false, true] {
+            stack.swapped = swapped;
+            let [own, other] = stack.surfaces();
+            let mut model = Model::new(stack.mesh()?, stack.hypothesis);
+            for (name, kind) in ["upper", "lower"].into_iter().zip(stack.kinds) {
+                model = model.material(name, Elastic::new(E, NU)?, kind.integration())?;
+            }
+            let model = model.contact(own, other, Tresca::new(BOUND)?)?;
+            let mut driver = Driver::new(model, Settings::default())?;
+            let mut step = Step::new("drag")
+                .fix("lower.bottom", &[Axis::X, Axis::Y])
+                .displace("upper.top", Axis::X, 0.02)
+                .pressure("upper.top", PRESSURE);
+            if D == 3 {
+                step = step
+                    .fix("lower.bottom", &[Axis::Z])
+                    .fix("upper.top", &[Axis::Z]);
+            }
+            driver.run(&step, 1, |_, _| {})?;
+            let what = stack.what();
+            let open = driver
+                .contacts()
+                .iter()
+                .filter(|c| c.status == Status::Open);
+            assert!(open.clone().all(|c| c.area == 0.0), "{what}");
+            action_is_reaction(&driver, stack.surfaces())?;
+            let shear = driver.contacts().iter().map(|c| c.t.rows(1, D - 1).norm());
+            close(&what, shear.sum(), BOUND * H::FOOTPRINT, 1e-9);
+        }
+        Ok(())
+    }
+    check(Stack::<PlaneStrain, 2>::new([CellKind::Quad8; 2], PLANE))?;
+    check(Stack::<Solid, 3>::new(
+        [CellKind::Hex20, CellKind::Hex8],
+        SPACE,
+    ))
 }
 
 /// 3.6, NAFEMS CGS-4: F/G = (tan α + μ)/(1 − μ tan α), for any meshes.
