@@ -2,7 +2,6 @@
 //! on the coarser: their multipliers go to their neighbours, and nothing else is lost.
 
 use super::*;
-use moreau::driver::Loading;
 use moreau::laws::Status;
 use moreau::mesh::Solid;
 
@@ -43,14 +42,14 @@ fn exact<H: Blocks<D>, const D: usize>(x: &[f64; D], shear: f64) -> [f64; D] {
     })
 }
 
-/// A stack under a pressure, and a shear that sticks, with sides of bodies that move as in the exact
-/// solution.
-fn pressed<H: Blocks<D>, const D: usize>(
+/// Puts a stack under a pressure, and a shear that sticks, with sides of bodies that move as in the
+/// exact solution: its state is that.
+fn press<H: Blocks<D>, const D: usize>(
+    driver: &mut Driver<D>,
     stack: &Stack<H, D>,
     sides: &[&str],
     shear: f64,
-) -> Fallible<Driver<D>> {
-    let mut driver = stack.driver(stack.mesh()?, Settings::default())?;
+) -> Fallible {
     let top = from_fn(|i| [shear, -PRESSURE, 0.0][i]);
     let mut step = Step::new("press").traction("upper.top", top);
     for (side, sign) in [("left", -1.0), ("right", 1.0)] {
@@ -63,13 +62,13 @@ fn pressed<H: Blocks<D>, const D: usize>(
     for side in sides {
         held.extend(driver.mesh().node_group(side)?);
     }
-    let end: Loading<D> = prescribed(&driver, &step, &held, |x| exact::<H, D>(x, shear))?;
+    let end = prescribed(driver, &step, &held, |x| exact::<H, D>(x, shear))?;
     driver.advance(&end)?;
     let mut stress = squeezed::<H, D>();
     stress[5] = 2f64.sqrt() * shear;
-    uniform_stress(&driver, stress, &format!("{} {sides:?}", stack.what()));
-    action_is_reaction(&driver, stack.surfaces())?;
-    Ok(driver)
+    uniform_stress(driver, stress, &format!("{} {sides:?}", stack.what()));
+    action_is_reaction(driver, stack.surfaces())?;
+    Ok(())
 }
 
 /// Sides of one body or of both, where the interface ends, without friction and sticking under a
@@ -89,7 +88,8 @@ fn a_uniform_state_passes_beside_nodes_that_are_held() -> Fallible {
                     friction: 2.0 * shear / PRESSURE,
                     ..stack.clone()
                 };
-                let driver = pressed(&stack, sides, shear)?;
+                let mut driver = stack.driver(stack.mesh()?, Settings::default())?;
+                press(&mut driver, &stack, sides, shear)?;
                 let what = format!("{} {sides:?}", stack.what());
                 uniform_pressure(&driver, PRESSURE, &what);
                 let area: f64 = driver.contacts().iter().map(|c| c.area).sum();
@@ -104,6 +104,26 @@ fn a_uniform_state_passes_beside_nodes_that_are_held() -> Fallible {
                     }
                 }
             }
+        }
+        Ok(())
+    }
+    check(plane())?;
+    check(space())
+}
+
+/// Held in one step and not in the next, under the same load: the state stays, and the nodes have
+/// their multipliers again.
+#[test]
+fn a_node_that_is_released_has_a_multiplier_again() -> Fallible {
+    fn check<H: Blocks<D>, const D: usize>(stacks: Vec<Stack<H, D>>) -> Fallible {
+        for stack in stacks.into_iter().step_by(3) {
+            let friction = 0.5;
+            let stack = Stack { friction, ..stack };
+            let mut driver = stack.driver(stack.mesh()?, Settings::default())?;
+            press(&mut driver, &stack, &["upper.left", "lower.left"], 20.0)?;
+            assert!(driver.contacts().iter().any(|c| c.area == 0.0));
+            press(&mut driver, &stack, &[], 20.0)?;
+            assert!(driver.contacts().iter().all(|c| c.area > 0.0));
         }
         Ok(())
     }
