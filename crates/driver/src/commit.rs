@@ -3,6 +3,7 @@
 
 use crate::driver::{Driver, State};
 use crate::increment::Candidate;
+use crate::interface::laws;
 use crate::load::Loading;
 use crate::report::{ContactRecord, StepReport};
 use moreau_contact::Certificate;
@@ -31,7 +32,7 @@ impl<const D: usize> Driver<D> {
             out_of_balance,
             counts,
         } = candidate;
-        let laws: Vec<_> = self.points.iter().map(|p| p.law).collect();
+        let laws = laws(&self.points, &self.footings);
         let mut irreversible = Vec::with_capacity(kinematics.len());
         let mut contacts = Vec::with_capacity(kinematics.len());
         let mut friction = 0.0;

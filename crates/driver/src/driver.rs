@@ -141,12 +141,13 @@ impl<const D: usize> Driver<D> {
             state,
             system: None,
         };
-        driver.pair()?;
+        driver.pair(&Loading::none(dofs))?;
         Ok(driver)
     }
 
-    /// Finds what the contact points stand on, at the committed positions.
-    pub(crate) fn pair(&mut self) -> Result<(), ModelError> {
+    /// Finds what the contact points stand on, at the committed positions, under the displacement
+    /// conditions of a loading.
+    pub(crate) fn pair(&mut self, loading: &Loading<D>) -> Result<(), ModelError> {
         let on_tool = |p: &ContactPoint<D>| match p.tool {
             Some(tool) => Footing::on_tool(p, self.tool_node(tool)),
             None => Footing::default(),
@@ -175,6 +176,7 @@ impl<const D: usize> Driver<D> {
                         footings[point] = Footing::on_surface(coupling, &positions);
                     }
                 }
+                self.hand_over(&mut footings, (k, surfaces.0), loading);
             }
         }
         self.footings = footings;
@@ -335,7 +337,7 @@ impl<const D: usize> Driver<D> {
         watch: &mut dyn FnMut(&Iteration<'_>),
     ) -> Result<StepReport, StepError> {
         end.check(self.mesh.nodes().len())?;
-        self.pair()?;
+        self.pair(end)?;
         self.check_pushes(end)?;
         let mut system = self.prepare(end, None)?;
         let start = self.start_of(end);

@@ -7,7 +7,7 @@ use crate::condensation::Condensation;
 use crate::control::Control;
 use crate::driver::Driver;
 use crate::error::{Imbalance, ModelError, StepError};
-use crate::interface::{ContactPoint, Footing, Kinematics};
+use crate::interface::{ContactPoint, Footing, Kinematics, laws};
 use crate::iterate::Iterate;
 use crate::line_search::Line;
 use crate::load::{Loading, axis_letter};
@@ -390,6 +390,7 @@ impl<const D: usize> Driver<D> {
         let rounding = 16.0 * f64::EPSILON * reach * stiffness;
         let tolerance =
             self.settings.tolerance * scale + CONTACT_SLACK * solution.residual + rounding;
+        let laws = laws(&self.points, &self.footings);
         (0..kinematics.len()).all(|i| {
             let elastic = solution.irreversible[i] - solution.displacement[i];
             let mut u = kinematics[i].u + elastic;
@@ -400,7 +401,7 @@ impl<const D: usize> Driver<D> {
                 }
             }
             // α of the size of the structure's stiffness, as in the contact problem.
-            self.points[i].law.natural_map(&u, &t, stiffness).norm() <= tolerance
+            laws[i].natural_map(&u, &t, stiffness).norm() <= tolerance
         })
     }
 

@@ -37,6 +37,7 @@ mod condensation;
 mod control;
 mod driver;
 mod error;
+mod handover;
 mod increment;
 mod increments;
 mod interface;
