@@ -879,6 +879,18 @@ fn a_run_is_drawn_again_from_its_files() {
     let svg = fs::read_to_string(results.join("deformed-displacement.y-7.svg"));
     assert!(svg.expect("a picture").contains("displacement.y [mm]"));
     assert!(results.join("contact-7.svg").exists());
+    let output = moreau(&["plot", at, "--png"]);
+    if cfg!(feature = "png") {
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        for name in ["history.png", "contact.png", "deformed.png"] {
+            let png = fs::read(results.join(name)).expect("a picture");
+            assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n", "{name}");
+        }
+    } else {
+        assert_eq!(output.status.code(), Some(1));
+        let told = text(&output.stderr);
+        assert!(told.contains("feature `png`") && told.contains("--features png"));
+    }
     for (key, value, named) in [
         ("--field", "pres", "von_mises"),
         ("--increment", "21", "1 to 20"),

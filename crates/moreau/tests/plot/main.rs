@@ -1,6 +1,8 @@
 //! Charts, pictures and nodal averages: well-formed, repeatable, exact where they should be, and
 //! errors where nothing can be drawn; not their looks.
 
+#[cfg(feature = "png")]
+mod png;
 mod recovery;
 
 use moreau::driver::PointState;
