@@ -18,6 +18,7 @@ mod surface;
 mod table;
 mod under_way;
 mod view;
+mod viewer;
 mod vtu;
 
 pub use diagnosis::{Diagnosis, Flip};

@@ -42,7 +42,12 @@ impl<'a, const D: usize> Run<'a, D>
 where
     Driver<D>: View,
 {
-    pub(super) fn unopened(setup: Setup<D>, deck: &'a Deck, directory: &'a Path, resolved: String) -> Self {
+    pub(super) fn unopened(
+        setup: Setup<D>,
+        deck: &'a Deck,
+        directory: &'a Path,
+        resolved: String,
+    ) -> Self {
         Self {
             history: History::new(deck.units, &setup),
             tally: Tally::new(&setup.driver),

@@ -1,6 +1,6 @@
 //! Runs with known answers: the examples, sums of forces, cylinders of metal and of soil.
 
-use super::{column, directory, examples, last, moreau, run, text};
+use super::{BALL, column, directory, examples, last, moreau, run, text};
 use std::fs;
 
 /// Every example has expectations, and meets them.
@@ -84,24 +84,7 @@ fn forces_balance_on_a_mesh_of_gmsh() {
 /// A sphere pressed into a block of hexahedra; and a ring squeezed along its axis.
 #[test]
 fn solids_and_rings_run() {
-    let solid = r#"
-units = "mm-N-MPa"
-analysis = "solid"
-mesh.block = [{ name = "b", element = "hex8", x = [0, 4], y = [0, 4], z = [0, 4], cells = [4, 4, 4] }]
-material = [{ on = "b", young = 1000.0, poisson = 0.3 }]
-tool = [{ name = "ball", sphere = { center = [0, 14, 0], radius = 10 } }]
-contact = [{ surface = "b.top", against = "ball", friction = 0.3 }]
-[[step]]
-name = "press"
-increments = 2
-fix = [
-  { on = "b.bottom", u = ["y"] },
-  { on = "b.left", u = ["x"] },
-  { on = "b.back", u = ["z"] },
-]
-tools = [{ name = "ball", move = [0, -0.2, 0] }]
-"#;
-    let (status, out, err, results) = run("solid", solid, &[]);
+    let (status, out, err, results) = run("solid", BALL, &[]);
     assert_eq!(status, 0, "{out}{err}");
     let vtu = fs::read(results.join("contact_00002.vtu")).expect("a surface");
     assert!(text(&vtu).contains("NumberOfPoints=\"25\" NumberOfCells=\"16\""));

@@ -11,6 +11,25 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+/// A ball pressed into a quarter of a block of hexahedra.
+const BALL: &str = r#"
+units = "mm-N-MPa"
+analysis = "solid"
+mesh.block = [{ name = "b", element = "hex8", x = [0, 4], y = [0, 4], z = [0, 4], cells = [4, 4, 4] }]
+material = [{ on = "b", young = 1000.0, poisson = 0.3 }]
+tool = [{ name = "ball", sphere = { center = [0, 14, 0], radius = 10 } }]
+contact = [{ surface = "b.top", against = "ball", friction = 0.3 }]
+[[step]]
+name = "press"
+increments = 2
+fix = [
+  { on = "b.bottom", u = ["y"] },
+  { on = "b.left", u = ["x"] },
+  { on = "b.back", u = ["z"] },
+]
+tools = [{ name = "ball", move = [0, -0.2, 0] }]
+"#;
+
 fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/examples")
 }

@@ -1,6 +1,6 @@
 //! Pictures and the report, drawn from the files of a run.
 
-use super::{moreau, punched, run, text};
+use super::{BALL, moreau, punched, run, text};
 use std::fs;
 
 /// From files alone: the same pictures, others on demand, and a report that needs no network.
@@ -72,4 +72,49 @@ fn a_run_is_drawn_again_from_its_files() {
     }
     assert!(page.contains("Certificate of every increment") && page.contains("force.punch.y"));
     assert!(page.contains("[[mesh.block]]"));
+}
+
+/// The contact surface of a body in space: every facet and every point of it in each frame, with the
+/// values of `contact.csv`; the run is drawn again from its files.
+#[test]
+fn a_contact_surface_in_space_is_in_the_report() {
+    let (status, _, err, results) = run("face", BALL, &["--quiet"]);
+    assert_eq!(status, 0, "{err}");
+    let page = fs::read(results.join("report.html")).expect("a report");
+    let output = moreau(&["plot", results.to_str().expect("a path")]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(page == fs::read(results.join("report.html")).expect("a report"));
+    let page = text(&page);
+    let data = page.split("id=\"data\">").nth(1);
+    let data = data.and_then(|d| d.split("</script>").next());
+    let data: serde_json::Value = serde_json::from_str(data.expect("data")).expect("json");
+    let contact = &data["contact"];
+    let count = |key: &str| contact[key].as_array().map(Vec::len);
+    // 4 × 4 faces on the top of the block.
+    assert_eq!((count("faces"), count("points")), (Some(16), Some(25)));
+    assert_eq!((count("frames"), count("statuses")), (Some(2), Some(3)));
+    let rows = fs::read_to_string(results.join("contact.csv")).expect("contacts");
+    let of = |frame: usize, value: &dyn Fn(&[&str]) -> f64| -> [f64; 2] {
+        let rows = rows.lines().map(|l| l.split(',').collect::<Vec<_>>());
+        let own = rows.filter(|r| r[1] == (frame + 1).to_string());
+        let values = own.map(|r| value(&r));
+        values.fold([f64::INFINITY, -f64::INFINITY], |[l, h], v| {
+            [l.min(v), h.max(v)]
+        })
+    };
+    let number = |row: &[&str], k: usize| row[k].parse::<f64>().expect("a number");
+    for frame in 0..2 {
+        let shown = |name: &str| {
+            let field = &contact["frames"][frame][name];
+            ["low", "high"].map(|key| field[key].as_f64().expect("a number"))
+        };
+        assert_eq!(shown("gap"), of(frame, &|r| number(r, 8)));
+        assert_eq!(shown("pressure"), of(frame, &|r| number(r, 14)));
+        let shear = |r: &[&str]| number(r, 15).hypot(number(r, 16));
+        assert_eq!(shown("shear"), of(frame, &shear));
+        // Open beside the ball, closed below it.
+        let [low, high] = shown("status");
+        assert!(low == 0.0 && high >= 1.0, "{low} {high}");
+        assert!(shown("pressure")[1] > 0.0 && shown("shear")[1] > 0.0);
+    }
 }

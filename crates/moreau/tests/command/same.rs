@@ -108,6 +108,8 @@ fn units_are_named_in_the_headers_and_change_nothing_else() {
     assert_eq!(status, 0, "{out}{err}");
     let history = fs::read_to_string(results.join("history.csv")).expect("a history");
     assert!(history.contains("external_work [N·m]") && history.contains("u.punch.y [m]"));
+    let body = fs::read_to_string(results.join("deformed.svg")).expect("a picture");
+    assert!(body.contains(" m</text>") && !body.contains("mm"), "{body}");
 }
 
 #[test]

@@ -41,6 +41,8 @@ fn pictures_are_well_formed_for_every_plane_cell() {
             assert!(texts.iter().any(|t| t == text), "{text} in {texts:?}");
         }
         assert_eq!(Ok(svg), picture.to_svg());
+        let inches = self::texts(&picture.unit("in").to_svg().expect("a picture"));
+        assert!(inches.iter().any(|t| t == "0.5 in"), "{inches:?}");
         self::texts(&MeshPicture::new(&mesh, "").to_svg().expect("a picture"));
     }
 }

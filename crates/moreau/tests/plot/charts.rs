@@ -3,6 +3,7 @@
 use super::{block, chart, texts};
 use moreau::mesh::CellKind;
 use moreau::plot::{Chart, MeshPicture, PlotError, Style};
+use std::collections::BTreeSet;
 
 #[test]
 fn charts_are_well_formed_and_named() {
@@ -194,4 +195,17 @@ fn impossible_ranges_are_errors() {
     assert!(chart().log_y().y_range(1.0, 10.0).to_svg().is_ok());
     let wide = Chart::new("", "x", "y").with("", Style::Line, [[-1e308, 0.0], [1e308, 1.0]]);
     assert!(matches!(wide.to_svg(), Err(PlotError::Range { .. })));
+}
+
+/// Of as many series as there are colours times markers, each seen alone: no two are drawn alike.
+#[test]
+fn no_two_series_look_alike() {
+    let alone = |series: i32| {
+        let chart = Chart::new("", "x", "y").x_range(0.0, 2.0).y_range(0.0, 2.0);
+        let point = |k| if k == series { [1.0, 1.0] } else { [1.0, 9.0] };
+        let chart = (0..=series).fold(chart, |c, k| c.with("", Style::Points, [point(k)]));
+        chart.to_svg().expect("a chart")
+    };
+    let looks: BTreeSet<String> = (0..49).map(alone).collect();
+    assert_eq!(looks.len(), 49);
 }

@@ -54,7 +54,7 @@ fn titles_are_drawn() {
         chart.to_svg().expect("a chart")
     };
     assert!(ink(&titled("Load of the punch"), 2.0, 36.0) > 500);
-    assert_eq!(ink(&titled(""), 2.0, 16.0), 0);
+    assert_eq!(ink(&titled(""), 2.0, 12.0), 0);
 }
 
 /// Every letter, sign and power of a picture has a shape of its own: none is the box of a character
@@ -86,6 +86,9 @@ fn what_is_no_picture_is_an_error() {
     };
     assert!(!reason("<svg", 1.0).is_empty());
     for zoom in [0.0, -1.0, 1e9, f32::NAN, f32::INFINITY] {
-        assert!(reason(&page(""), zoom).contains("cannot be drawn"), "{zoom}");
+        assert!(
+            reason(&page(""), zoom).contains("cannot be drawn"),
+            "{zoom}"
+        );
     }
 }
