@@ -538,10 +538,11 @@ impl<const D: usize> Driver<D> {
         for (&dof, &u) in &end.displacement {
             displacement[dof] = u;
         }
+        let last = self.repeatable(d_u, end);
         self.state = State {
             increment: self.state.increment + 1,
             displacement,
-            last: Some((d_u, end.increment_from(start))),
+            last: Some((last, end.increment_from(start))),
             internal,
             loading: end.clone(),
             energies,

@@ -203,3 +203,33 @@ fn a_reader_that_goes_away_is_no_error() {
         }
     }
 }
+
+/// A tool that a force takes past everything, and one that slides off: by name, with what to do.
+#[test]
+fn a_tool_that_nothing_holds_is_told() {
+    let example = examples().join("block-under-driven-roll.toml");
+    let example = fs::read_to_string(example).expect("the example");
+    let (head, _) = example
+        .split_once("[[step]]\nname = \"relax\"")
+        .expect("two steps");
+    let beside = head.replace("center = [0, 70]", "center = [90, 70]");
+    let (status, _, err, results) = run("beside", &beside, &["--quiet"]);
+    assert_eq!(status, 1, "{err}");
+    for words in [
+        "tool \"roll\"",
+        "nothing resists it",
+        "36.02",
+        "meets nothing",
+    ] {
+        assert!(err.contains(words), "{words} in {err}");
+    }
+    let json = fs::read_to_string(results.join("run.json")).expect("a summary");
+    assert!(json.contains("\"refused\"") && json.contains("nothing resists it"));
+    let askew = head.replace("force = [0, -1000]", "force = [500, -1000]");
+    let (status, _, err, _) = run("askew", &askew, &["--quiet"]);
+    assert_eq!(status, 2, "{err}");
+    assert!(
+        err.contains("nothing holds the tool \"roll\" against its force"),
+        "{err}"
+    );
+}
