@@ -1,6 +1,6 @@
 //! Values that are impossible, and such as are possible and hardly ever meant.
 
-use super::{DECK, flat, says};
+use super::{DECK, flat, says, shown};
 use moreau::deck::open;
 
 #[test]
@@ -241,4 +241,73 @@ fn units_and_normals_that_look_wrong_are_doubted() {
         "surface = \"foundation\"",
         &["\"foundation\" is a tool, expected a group of the mesh"],
     );
+}
+
+#[test]
+fn values_of_another_shape_say_what_is_expected() {
+    says(
+        "young = 210000.0",
+        "young = \"210 GPa\"",
+        "210 GPa",
+        &[
+            "the text \"210 GPa\"",
+            "without quotes, and in the units of the deck",
+        ],
+    );
+    says(
+        "u = { y = -0.2 }",
+        "u = -0.2",
+        "u = -0.2",
+        &["as in { y = -0.2 }"],
+    );
+    says(
+        "point = [0, 0]",
+        "point = 0",
+        "point = 0",
+        &["the integer 0, expected 2 numbers, [ …, … ]"],
+    );
+    says(
+        "point = [0, 0]",
+        "point = [0, 0, 0]",
+        "point =",
+        &["an array of 3, expected 2 numbers, [ …, … ]"],
+    );
+}
+
+#[test]
+fn moduli_and_friction_in_another_unit_are_doubted() {
+    let unit = "units = \"mm-N-MPa\"";
+    for (from, to, told) in [
+        (
+            unit,
+            "units = \"m-N-Pa\"",
+            ["softer than rubber", "another unit?"],
+        ),
+        (
+            "young = 210000.0",
+            "young = 210e9",
+            ["stiffer than diamond", "another unit?"],
+        ),
+        (
+            "friction = 0.1",
+            "friction = 10",
+            ["a tenth is 0.1", "in percent?"],
+        ),
+    ] {
+        let at = to.split(" =").next().expect("a key");
+        let at = if from == unit { "young" } else { at };
+        says(from, to, &format!("{at} ="), &told);
+    }
+}
+
+#[test]
+fn a_surface_has_one_contact() {
+    let again = "[[contact]]\nsurface = \"block.bottom\"\nagainst = \"foundation\"\nfriction = 0.2 # again\n\n[[step]]";
+    let out = shown("[[step]]", again);
+    for word in [
+        "\"block.bottom\" has a contact with \"foundation\" already",
+        "[[mesh.group]]",
+    ] {
+        assert!(flat(&out).contains(word), "{out}");
+    }
 }
