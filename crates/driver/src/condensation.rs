@@ -67,7 +67,7 @@ impl<const D: usize> Condensation<D> {
             }
         }
         let now: Vec<Local<D>> = kinematics.iter().map(|k| k.u).collect();
-        let laws = points.iter().map(|p| p.law).collect();
+        let laws = kinematics.iter().map(|k| k.law).collect();
         let problem = ContactProblem::new(stiffness, load, now.clone(), laws, previous)?;
         Ok(Self {
             problem,

@@ -74,6 +74,19 @@ pub enum ModelError {
         /// In the second.
         second: String,
     },
+    /// An axis of friction that has no direction on a surface.
+    #[error(
+        "the axis of friction is normal to {surface:?} at node {node} at {position:?}: expected a \
+         direction along the surface"
+    )]
+    NormalAxis {
+        /// The surface.
+        surface: String,
+        /// The node.
+        node: usize,
+        /// Its position \[mm\].
+        position: Vec<f64>,
+    },
     /// Two surfaces that share a node.
     #[error(
         "{surface:?} and {opposite:?} share node {node} at {position:?}: \

@@ -330,9 +330,9 @@ impl<const D: usize> Driver<D> {
             let slip = footing.relative(moved);
             let Some(tool) = p.tool else {
                 return match footing.plane(&slip) {
-                    Some((n, gap)) => Kinematics::new(&n, gap - p.offset, &slip, free),
+                    Some((n, gap)) => Kinematics::new(p, &n, gap - p.offset, &slip, free),
                     // Opposite to nothing: as far away as anything can be.
-                    None => Kinematics::open(self.mesh.size()),
+                    None => Kinematics::open(p.law, self.mesh.size()),
                 };
             };
             let obstacle = &self.tools[tool].obstacle;
@@ -343,7 +343,7 @@ impl<const D: usize> Driver<D> {
             };
             let x = footing.relative(now);
             let gap = obstacle.distance(&x) - p.offset;
-            Kinematics::new(&obstacle.normal(&x), gap, &slip, free)
+            Kinematics::new(p, &obstacle.normal(&x), gap, &slip, free)
         };
         self.points.iter().zip(&self.footings).map(at).collect()
     }
@@ -400,7 +400,7 @@ impl<const D: usize> Driver<D> {
                 }
             }
             // α of the size of the structure's stiffness, as in the contact problem.
-            self.points[i].law.natural_map(&u, &t, stiffness).norm() <= tolerance
+            kinematics[i].law.natural_map(&u, &t, stiffness).norm() <= tolerance
         })
     }
 
@@ -456,7 +456,7 @@ impl<const D: usize> Driver<D> {
             out_of_balance,
             counts,
         } = candidate;
-        let laws: Vec<_> = self.points.iter().map(|p| p.law).collect();
+        let laws: Vec<_> = kinematics.iter().map(|k| k.law).collect();
         let mut irreversible = Vec::with_capacity(kinematics.len());
         let mut contacts = Vec::with_capacity(kinematics.len());
         let mut friction = 0.0;

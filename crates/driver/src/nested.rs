@@ -62,7 +62,7 @@ impl<const D: usize> Driver<D> {
                 .iter()
                 .map(|k| Local::from_fn(|j, _| if k.active[j] || j == 0 { k.u[j] } else { 0.0 }))
                 .collect();
-            let law = |i: usize| &self.points[i].law;
+            let law = |i: usize| &kinematics[i].law;
             let scale = self.force_scale(&now.assembly, end, &now.contact);
             let residual = (0..t.len())
                 .map(|i| law(i).natural_map(&u[i], &t[i], common[i]).norm())

@@ -84,7 +84,7 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
         missing(root, "[[material]]", "on, young and poisson");
     }
     let (tools, tool_names) = tool::read_tools(root, analysis);
-    let contacts = tool::read_contacts(root);
+    let contacts = tool::read_contacts(root, dimension);
     let steps = root
         .tables("step", "[[step]]")
         .into_iter()

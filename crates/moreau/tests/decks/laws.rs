@@ -203,3 +203,75 @@ fn what_is_no_soil_is_told() {
     let soil = deck.materials[0].soil.as_ref().expect("a soil");
     assert_eq!(soil.dilatancy_angle.value, 30.0);
 }
+
+/// A solid on a rough floor whose friction has two coefficients.
+const SOLID: &str = r#"
+units = "mm-N-MPa"
+analysis = "solid"
+mesh.block = [{ name = "b", element = "hex8", x = [0, 9], y = [0, 9], z = [0, 3], cells = [2, 2, 1] }]
+material = [{ on = "b", young = 1000.0, poisson = 0.3 }]
+tool = [{ name = "floor", plane = { point = [0, 0, 0], normal = [0, 0, 1] } }]
+[[contact]]
+surface = "b.back"
+against = "floor"
+friction = { coulomb = [0.1, 0.4], axis = [1.0, 1.0, 0.0] }
+[[step]]
+name = "press"
+increments = 1
+move = [{ on = "b.front", u = { x = 1, y = 0, z = -0.01 } }]
+"#;
+
+#[test]
+fn two_coefficients_of_friction_have_an_axis() {
+    let (deck, problem, findings) = open(SOLID);
+    let shown = findings.render("deck.toml", SOLID, false);
+    assert!(problem.is_some() && findings.iter().count() == 0, "{shown}");
+    let once = deck.resolved();
+    assert!(
+        once.contains("friction = { coulomb = [0.1, 0.4], axis = [1.0, 1.0, 0.0] }"),
+        "{once}"
+    );
+    assert_eq!(open(&once).0.resolved(), once);
+    let friction = "{ coulomb = [0.1, 0.4], axis = [1.0, 1.0, 0.0] }";
+    for (to, words) in [
+        ("{ coulomb = [0.1, 0.4] }", &["has no key \"axis\""][..]),
+        (
+            "{ coulomb = 0.1, axis = [1, 0, 0] }",
+            &["coulomb is the number 0.1, expected 2 numbers"],
+        ),
+        (
+            "{ coulomb = [0.1, 0.4], axis = [1, 0] }",
+            &["axis is an array of 2, expected 3 numbers"],
+        ),
+        (
+            "{ coulomb = [0.1, 0], axis = [1, 0, 0] }",
+            &["friction along the second tangent", "positive"],
+        ),
+        (
+            "{ coulomb = [0.1, 0.4], axis = [0, 0, 2] }",
+            &["axis of friction is normal to \"b.back\""],
+        ),
+        (
+            "{ coulomb = [0.1, 0.4], axis = [0, 0, 0] }",
+            &["length of the axis of friction"],
+        ),
+        (
+            "{ coulomb = [0.1, 0.4], axis = [1, 0, 0], tau-max = 5 }",
+            &["tau-max limits friction of one"],
+        ),
+        ("[0.1, 0.4]", &["axis"]),
+    ] {
+        let text = SOLID.replace(friction, to);
+        let (_, problem, findings) = open(&text);
+        let out = findings.render("deck.toml", &text, false);
+        assert!(problem.is_none(), "{to}");
+        let out = crate::flat(&out);
+        assert!(words.iter().all(|w| out.contains(w)), "{to}: {out}");
+    }
+    says(
+        "friction = 0.1",
+        "friction = { coulomb = [0.1, 0.4], axis = [1, 0, 0] }",
+        "friction =",
+        &["needs analysis = \"solid\""],
+    );
+}
