@@ -178,6 +178,16 @@ where
 const RESOLVED: &str = "deck.resolved.toml";
 const CHECKPOINTS: &str = "checkpoint";
 
+/// A number for people, with so many significant digits at most: 322.114523, 40, 1.5e-17.
+pub fn shown(value: f64, digits: usize) -> String {
+    let rounded = format!("{value:.*e}", digits.saturating_sub(1)).parse();
+    let rounded: f64 = rounded.unwrap_or(value);
+    match rounded == 0.0 || (1e-4..1e9).contains(&rounded.abs()) {
+        true => format!("{}", rounded + 0.0),
+        false => format!("{rounded:e}"),
+    }
+}
+
 /// A number as text that is read back exactly.
 fn number(value: f64) -> String {
     // Adding zero turns −0 into 0.

@@ -5,7 +5,7 @@ use super::grid::Array;
 use super::pictures::{forces, tractions};
 use super::table::Table;
 use super::viewer::viewer;
-use super::{RunError, pictures};
+use super::{RunError, pictures, shown};
 use crate::deck::Deck;
 use crate::driver::Driver;
 use minijinja::value::Value;
@@ -112,7 +112,7 @@ fn summary(run: &serde_json::Value, deck: &Deck) -> Vec<[String; 2]> {
             false => units.length(),
         };
         let value = value.as_f64().unwrap_or(f64::NAN);
-        rows.push([format!("{name} [{unit}]"), format!("{value:.8e}")]);
+        rows.push([format!("{name} [{unit}]"), shown(value, 9)]);
     }
     rows
 }
@@ -122,9 +122,9 @@ fn expectations(run: &serde_json::Value) -> Vec<Value> {
         let number = |key: &str| v[key].as_f64().unwrap_or(f64::NAN);
         context! {
             column => v["column"].as_str().unwrap_or_default(),
-            expected => format!("{:.8e}", number("expected")),
-            tolerance => format!("{:.1e}", number("tolerance")),
-            found => format!("{:.8e}", number("found")),
+            expected => shown(number("expected"), 9),
+            tolerance => shown(number("tolerance"), 3),
+            found => shown(number("found"), 9),
             passed => v["passed"] == true,
         }
     };

@@ -157,3 +157,20 @@ fn the_schema_is_printed() {
     let schema: serde_json::Value = serde_json::from_slice(&output.stdout).expect("json");
     assert_eq!(schema["title"], "moreau deck");
 }
+
+#[test]
+fn numbers_for_people_have_powers_only_where_they_must() {
+    for (value, digits, text) in [
+        (0.0, 9, "0"),
+        (-0.0, 9, "0"),
+        (40.000000000001, 7, "40"),
+        (322.114523456, 9, "322.114523"),
+        (-1822.435412345, 9, "-1822.43541"),
+        (0.00012345678, 4, "0.0001235"),
+        (1.2345e-17, 3, "1.23e-17"),
+        (2.1e11, 7, "2.1e11"),
+        (f64::NAN, 9, "NaN"),
+    ] {
+        assert_eq!(moreau::run::shown(value, digits), text);
+    }
+}
