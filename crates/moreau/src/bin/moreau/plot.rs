@@ -17,7 +17,7 @@ const RASTER: Option<Raster> = Some(moreau::plot::png);
 const RASTER: Option<Raster> = None;
 
 const NO_RASTER: &str = "--png: this command was built without the feature `png`; to have it:
-  cargo install --path crates/moreau --features png
+  cargo install --locked --path crates/moreau --features png
 Without --png, pictures are drawn as SVG, which browsers show and print.";
 
 /// Pixels for a unit of a picture: sharp on paper and on dense screens.
