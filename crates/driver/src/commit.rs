@@ -3,7 +3,6 @@
 
 use crate::driver::{Driver, State};
 use crate::increment::Candidate;
-use crate::interface::laws;
 use crate::load::Loading;
 use crate::report::{ContactRecord, StepReport};
 use moreau_contact::Certificate;
@@ -32,7 +31,7 @@ impl<const D: usize> Driver<D> {
             out_of_balance,
             counts,
         } = candidate;
-        let laws = laws(&self.points, &self.footings);
+        let laws: Vec<_> = kinematics.iter().map(|k| k.law).collect();
         let mut irreversible = Vec::with_capacity(kinematics.len());
         let mut contacts = Vec::with_capacity(kinematics.len());
         let mut friction = 0.0;
@@ -114,10 +113,11 @@ impl<const D: usize> Driver<D> {
         for (&dof, &u) in &end.displacement {
             displacement[dof] = u;
         }
+        let last = self.repeatable(d_u, end);
         self.state = State {
             increment: self.state.increment + 1,
             displacement,
-            last: Some((d_u, end.increment_from(start))),
+            last: Some((last, end.increment_from(start))),
             internal,
             loading: end.clone(),
             energies,

@@ -1,7 +1,7 @@
 //! The contact problem condensed from the interface unknowns, and the way back to them; not how
 //! it is solved.
 
-use crate::interface::{ContactPoint, Footing, Kinematics, laws};
+use crate::interface::{ContactPoint, Footing, Kinematics};
 use crate::system::{Condensed, System};
 use moreau_contact::{ContactError, ContactProblem};
 use moreau_laws::Local;
@@ -57,7 +57,7 @@ impl<const D: usize> Condensation<D> {
             }
         }
         let now: Vec<Local<D>> = kinematics.iter().map(|k| k.u).collect();
-        let laws = laws(points, footings);
+        let laws = kinematics.iter().map(|k| k.law).collect();
         let problem = ContactProblem::new(stiffness, load, now.clone(), laws, previous)?;
         Ok(Self {
             problem,

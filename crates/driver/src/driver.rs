@@ -410,7 +410,11 @@ impl<const D: usize> Driver<D> {
                 let across = (force - n * along).norm();
                 along + if p.law.resists_slip() { across } else { 0.0 }
             };
-            let mut points = self.points.iter().filter(|p| p.tool == Some(k));
+            let mut points = self.points.iter().filter(|p| p.tool == Some(k)).peekable();
+            if force.norm() > 0.0 && points.peek().is_none() {
+                let tool = tool.name.clone();
+                return Err(ModelError::UntouchedTool { tool });
+            }
             if force.norm() > 0.0 && !points.any(|p| most(p) > 1e-9 * force.norm()) {
                 return Err(ModelError::PulledTool {
                     tool: tool.name.clone(),

@@ -1,6 +1,7 @@
 //! Errors of the driver: of setting up a model and of a step; facts with numbers.
 
 use crate::collapse::Collapse;
+use crate::loose::LooseTool;
 use crate::system::Inaccurate;
 use moreau_contact::ContactError;
 use moreau_mesh::MeshError;
@@ -73,6 +74,19 @@ pub enum ModelError {
         /// In the second.
         second: String,
     },
+    /// An axis of friction that has no direction on a surface.
+    #[error(
+        "the axis of friction is normal to {surface:?} at node {node} at {position:?}: expected a \
+         direction along the surface"
+    )]
+    NormalAxis {
+        /// The surface.
+        surface: String,
+        /// The node.
+        node: usize,
+        /// Its position \[mm\].
+        position: Vec<f64>,
+    },
     /// Two surfaces that share a node.
     #[error(
         "{surface:?} and {opposite:?} share node {node} at {position:?}: \
@@ -122,6 +136,18 @@ pub enum ModelError {
         /// The force on it \[N\].
         force: Vec<f64>,
     },
+    /// A tool driven by a force that no contact has.
+    #[error(
+        "tool {tool:?} is driven by a force, but no contact is against it: nothing can stand up to the \
+         force; add the contact, or prescribe the tool's motion"
+    )]
+    UntouchedTool {
+        /// The tool.
+        tool: String,
+    },
+    /// A tool driven by a force that touches nothing.
+    #[error("{0}")]
+    LooseTool(Box<LooseTool>),
     /// Two conditions that prescribe one displacement differently.
     #[error(
         "step {step:?} prescribes u_{axis} of node {node} as {first} and as {second} mm: remove one"

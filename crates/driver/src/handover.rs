@@ -41,7 +41,9 @@ impl<const D: usize> Driver<D> {
         let stiff = |&c: &usize| {
             let normal = footings[c].plane(&SVector::zeros()).map(|(n, _)| n);
             let free = from_free(own(c), is_free);
-            normal.is_none_or(|n| !Kinematics::new(&n, 0.0, &SVector::zeros(), free).active[0])
+            normal.is_none_or(|n| {
+                !Kinematics::new(&self.points[c], &n, 0.0, &SVector::zeros(), free).active[0]
+            })
         };
         let (held, mut kept): (BTreeSet<usize>, BTreeSet<usize>) = all.into_iter().partition(stiff);
         let mut stranded = Vec::new();
@@ -143,7 +145,7 @@ impl<const D: usize> Driver<D> {
                 continue;
             };
             let free = footing.free(self.points[c].node, is_free);
-            let k = Kinematics::new(&n, gap, &SVector::zeros(), free);
+            let k = Kinematics::new(&self.points[c], &n, gap, &SVector::zeros(), free);
             let unknown = |dof: usize| is_free(dof).then_some(dof);
             let active = (0..D).filter(|&j| k.active[j]);
             let all: Vec<_> = active

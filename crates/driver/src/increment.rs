@@ -7,7 +7,7 @@ use crate::condensation::Condensation;
 use crate::control::Control;
 use crate::driver::Driver;
 use crate::error::{Imbalance, ModelError, StepError};
-use crate::interface::{ContactPoint, Footing, Kinematics, laws};
+use crate::interface::{ContactPoint, Footing, Kinematics};
 use crate::iterate::Iterate;
 use crate::line_search::Line;
 use crate::load::{Loading, axis_letter};
@@ -329,11 +329,12 @@ impl<const D: usize> Driver<D> {
             let free = footing.free(p.node, |dof| system.is_free(dof));
             let slip = footing.relative(moved);
             let Some(tool) = p.tool else {
-                return match footing.plane(&slip) {
-                    Some((n, gap)) => Kinematics::new(&n, gap - p.offset, &slip, free),
+                let kinematics = match footing.plane(&slip) {
+                    Some((n, gap)) => Kinematics::new(p, &n, gap - p.offset, &slip, free),
                     // Opposite to nothing: as far away as anything can be.
-                    None => Kinematics::open(self.mesh.size()),
+                    None => Kinematics::open(p.law, self.mesh.size()),
                 };
+                return kinematics.between_forces(footing.area);
             };
             let obstacle = &self.tools[tool].obstacle;
             let tool = self.tool_position(tool, end, d_u);
@@ -343,7 +344,8 @@ impl<const D: usize> Driver<D> {
             };
             let x = footing.relative(now);
             let gap = obstacle.distance(&x) - p.offset;
-            Kinematics::new(&obstacle.normal(&x), gap, &slip, free)
+            let kinematics = Kinematics::new(p, &obstacle.normal(&x), gap, &slip, free);
+            kinematics.between_forces(footing.area)
         };
         self.points.iter().zip(&self.footings).map(at).collect()
     }
@@ -390,7 +392,6 @@ impl<const D: usize> Driver<D> {
         let rounding = 16.0 * f64::EPSILON * reach * stiffness;
         let tolerance =
             self.settings.tolerance * scale + CONTACT_SLACK * solution.residual + rounding;
-        let laws = laws(&self.points, &self.footings);
         (0..kinematics.len()).all(|i| {
             let elastic = solution.irreversible[i] - solution.displacement[i];
             let mut u = kinematics[i].u + elastic;
@@ -401,7 +402,7 @@ impl<const D: usize> Driver<D> {
                 }
             }
             // α of the size of the structure's stiffness, as in the contact problem.
-            laws[i].natural_map(&u, &t, stiffness).norm() <= tolerance
+            kinematics[i].law.natural_map(&u, &t, stiffness).norm() <= tolerance
         })
     }
 

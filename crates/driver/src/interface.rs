@@ -37,6 +37,8 @@ pub(crate) struct ContactPoint<const D: usize> {
     pub(crate) contact: usize,
     /// Between tractions.
     pub(crate) law: Friction,
+    /// The first tangent is along its projection on the surface, if it is given.
+    pub(crate) axis: Option<SVector<f64, D>>,
     /// Distance to what is opposite at which it touches \[mm\]: the gap is the distance less this.
     pub(crate) offset: f64,
     /// Share of the surface \[mm²\], to turn a force into a traction.
@@ -109,15 +111,6 @@ impl<const D: usize> ContactPoint<D> {
     pub(crate) fn place(&self, x: impl Fn(usize) -> SVector<f64, D>) -> SVector<f64, D> {
         self.own().into_iter().map(|(a, w)| x(a) * w).sum()
     }
-}
-
-/// The laws of contact points between forces: limits of the shear are those of what each touches.
-pub(crate) fn laws<const D: usize>(
-    points: &[ContactPoint<D>],
-    footings: &[Footing<D>],
-) -> Vec<Friction> {
-    let pairs = points.iter().zip(footings);
-    pairs.map(|(p, f)| p.law.scaled(f.area)).collect()
 }
 
 /// Whose displacements make the relative displacement of a contact point during an increment:
@@ -222,14 +215,18 @@ pub(crate) struct Kinematics<const D: usize> {
     pub(crate) u: Local<D>,
     /// Components that take part in the law.
     pub(crate) active: [bool; D],
+    /// The law between them.
+    pub(crate) law: Friction,
 }
 
 /// Below this length the projected normal is that of a wholly prescribed normal displacement.
 const PRESCRIBED: f64 = 1e-9;
 
 impl<const D: usize> Kinematics<D> {
-    /// From normal and gap at the end of the step, and the relative displacement of the step.
+    /// Of a point, from normal and gap at the end of the step, and the relative displacement of the
+    /// step.
     pub(crate) fn new(
+        point: &ContactPoint<D>,
         n: &SVector<f64, D>,
         gap: f64,
         slip: &SVector<f64, D>,
@@ -245,14 +242,24 @@ impl<const D: usize> Kinematics<D> {
         let dimension = free.iter().filter(|f| **f).count();
         if dimension == 0 || length < PRESCRIBED {
             // Nothing left to decide: an open gap whatever the prescribed motion does.
-            return Self::open(gap.abs() + f64::MIN_POSITIVE);
+            return Self::open(point.law, gap.abs() + f64::MIN_POSITIVE);
         }
-        let mut out = Self::open(gap);
+        let mut out = Self::open(point.law, gap);
+        let tangents = frame_along(n, point.axis.as_ref());
         let q = if dimension == D {
-            frame(n)
+            tangents
         } else {
             frame_in(&(projected / length), free)
         };
+        if let Friction::Anisotropic(law) = point.law
+            && D == 3
+            && dimension == 2
+        {
+            let left = q.column(1);
+            out.law = law
+                .along([1, 2].map(|k| left.dot(&tangents.column(k))))
+                .into();
+        }
         out.axes.set_column(0, n);
         for k in 0..dimension {
             let e = q.column(k);
@@ -265,14 +272,22 @@ impl<const D: usize> Kinematics<D> {
         out
     }
 
+    /// With the law between the forces on an area \[mm²\] instead of that between tractions: limits of
+    /// the shear are those of what the point touches.
+    pub(crate) fn between_forces(mut self, area: f64) -> Self {
+        self.law = self.law.scaled(area);
+        self
+    }
+
     /// A point that takes no part in the law, at an open gap.
-    pub(crate) fn open(gap: f64) -> Self {
+    pub(crate) fn open(law: Friction, gap: f64) -> Self {
         let mut u = Local::zeros();
         u[0] = gap;
         Self {
             axes: SMatrix::zeros(),
             u,
             active: [false; D],
+            law,
         }
     }
 
@@ -286,6 +301,29 @@ impl<const D: usize> Kinematics<D> {
         self.axes.tr_mul(f)
     }
 }
+
+/// Normal and tangents, the first of these along the projection of an axis: without an axis, or with
+/// one along the normal, they are those of [`frame`].
+fn frame_along<const D: usize>(
+    n: &SVector<f64, D>,
+    axis: Option<&SVector<f64, D>>,
+) -> SMatrix<f64, D, D> {
+    let mut q = frame(n);
+    let along = axis.map(|a| a - n * n.dot(a));
+    if let Some(along) = along.filter(|v| D == 3 && v.norm() > ALONG_NORMAL) {
+        let along = along.normalize();
+        let across = SVector::from_fn(|i, _| {
+            let (j, k) = ((i + 1) % D, (i + 2) % D);
+            n[j] * along[k] - n[k] * along[j]
+        });
+        q.set_column(1, &along);
+        q.set_column(2, &across);
+    }
+    q
+}
+
+/// Length of the projection of a unit axis on a surface below which it has no direction there.
+pub(crate) const ALONG_NORMAL: f64 = 1e-3;
 
 /// Orthonormal basis of the free coordinate subspace, first vector `e`.
 fn frame_in<const D: usize>(e: &SVector<f64, D>, free: [bool; D]) -> SMatrix<f64, D, D> {
@@ -312,11 +350,32 @@ fn frame_in<const D: usize>(e: &SVector<f64, D>, free: [bool; D]) -> SMatrix<f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use moreau_laws::{AnisotropicCoulomb, Coulomb};
+
+    fn point<const D: usize>() -> ContactPoint<D> {
+        ContactPoint {
+            node: 0,
+            tool: Some(0),
+            contact: 0,
+            law: Coulomb::new(0.1).expect("a coefficient").into(),
+            axis: None,
+            offset: 0.0,
+            area: 1.0,
+            kind: NodeKind::Corner,
+            edge: None,
+        }
+    }
 
     #[test]
     fn a_held_tangent_is_switched_off() {
         let n = SVector::<f64, 2>::new(0.0, 1.0);
-        let k = Kinematics::new(&n, 0.15, &SVector::<f64, 2>::new(0.0, -0.1), [false, true]);
+        let k = Kinematics::new(
+            &point(),
+            &n,
+            0.15,
+            &SVector::<f64, 2>::new(0.0, -0.1),
+            [false, true],
+        );
         assert_eq!(k.active, [true, false]);
         assert_eq!(k.u, Local::<2>::new(0.15, 0.0));
         assert_eq!(k.axes, nalgebra::Matrix2::new(0.0, 0.0, 1.0, 0.0));
@@ -327,7 +386,7 @@ mod tests {
         let (s, c) = 0.5f64.sin_cos();
         let n = SVector::<f64, 2>::new(-s, c);
         let d_u = SVector::<f64, 2>::new(0.0, 0.3);
-        let k = Kinematics::new(&n, 0.3 * c, &d_u, [false, true]);
+        let k = Kinematics::new(&point(), &n, 0.3 * c, &d_u, [false, true]);
         // Moving up by 0.3 opens the gap by 0.3 cos; the force n t_n does the same work.
         assert!((k.local_force(&d_u) - k.u).norm() < 1e-15);
         let t = Local::<2>::new(2.0, 0.0);
@@ -338,9 +397,44 @@ mod tests {
     fn one_held_axis_in_space_leaves_two_components() {
         let n = SVector::<f64, 3>::new(0.0, 1.0, 0.0);
         let slip = SVector::<f64, 3>::new(0.0, 0.0, 0.2);
-        let k = Kinematics::new(&n, 0.0, &slip, [false, true, true]);
+        let k = Kinematics::new(&point(), &n, 0.0, &slip, [false, true, true]);
         assert_eq!(k.active, [true, true, false]);
         assert!((k.u[1].abs() - 0.2).abs() < 1e-15 && k.u[2] == 0.0);
+    }
+
+    /// The first coefficient along the axis on an inclined surface; along the one tangent that a plane
+    /// of symmetry leaves, what the ellipse has there.
+    #[test]
+    fn coefficients_follow_their_axis() {
+        let law = AnisotropicCoulomb::new(0.1, 0.4).expect("coefficients");
+        let axis = SVector::<f64, 3>::new(1.0, 0.0, 1.0).normalize();
+        let point = ContactPoint {
+            law: law.into(),
+            axis: Some(axis),
+            ..point()
+        };
+        let n = SVector::<f64, 3>::new(0.0, 0.6, 0.8);
+        let k = Kinematics::new(&point, &n, 0.0, &SVector::zeros(), [true; 3]);
+        let q = k.axes;
+        assert!((q.transpose() * q - SMatrix::identity()).norm() < 1e-14);
+        assert!((q.determinant() - 1.0).abs() < 1e-14);
+        let projected = axis - n * n.dot(&axis);
+        assert!((q.column(1) - projected.normalize()).norm() < 1e-14);
+        assert_eq!(k.law, law.into());
+
+        // 1/√((cos 30°/0.1)² + (sin 30°/0.4)²) = 4/35.
+        let floor = SVector::<f64, 3>::new(0.0, 0.0, 1.0);
+        for (degrees, expected) in [(0.0f64, 0.1), (90.0, 0.4), (30.0, 4.0 / 35.0)] {
+            let (s, c) = degrees.to_radians().sin_cos();
+            let point = ContactPoint {
+                axis: Some(SVector::<f64, 3>::new(c, s, 0.0)),
+                ..point
+            };
+            let held_across = [true, false, true];
+            let k = Kinematics::new(&point, &floor, 0.0, &SVector::zeros(), held_across);
+            assert!((k.law.friction() - expected).abs() < 1e-14, "{:?}", k.law);
+            assert_eq!(k.active, [true, true, false]);
+        }
     }
 
     #[test]

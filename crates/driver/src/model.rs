@@ -3,7 +3,7 @@
 use crate::ModelError;
 use crate::block::{Block, SolidBlock};
 use crate::cells::{Cells, ElementCells};
-use crate::interface::{ContactPoint, Tool, positive_shares, tool_index};
+use crate::interface::{ALONG_NORMAL, ContactPoint, Tool, positive_shares, tool_index};
 use moreau_contact::Obstacle;
 use moreau_laws::{BulkLaw, Friction};
 use moreau_mesh::{
@@ -11,6 +11,7 @@ use moreau_mesh::{
     Mesh, Pairing, PlaneStrain, Quad4, Quad8, Quad9, Share, Solid, Tet4, Tet10, Tri3, Tri6,
     nearest,
 };
+use nalgebra::SVector;
 use std::collections::BTreeMap;
 
 /// A hypothesis together with the elements that it can be used with.
@@ -329,6 +330,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 tool,
                 contact: self.contacts.len(),
                 law,
+                axis: None,
                 offset: 0.0,
                 area: share.area,
                 kind: share.kind,
@@ -350,6 +352,47 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         let last = self.contacts.len();
         for point in self.points.iter_mut().filter(|p| p.contact + 1 == last) {
             point.offset += offset;
+        }
+        Ok(self)
+    }
+
+    /// Gives the friction of the contact added last a direction, in space: the first coefficient of an
+    /// [`AnisotropicCoulomb`](moreau_laws::AnisotropicCoulomb) law holds along the projection of the
+    /// axis on the surface, the second across. Without it they hold along the tangents of
+    /// [`frame`](moreau_contact::frame).
+    ///
+    /// # Errors
+    /// [`ModelError::OutOfRange`] for an axis of no length, [`ModelError::NormalAxis`] for one that is
+    /// normal to the surface somewhere.
+    pub fn along(mut self, axis: [f64; D]) -> Result<Self, ModelError> {
+        let axis = SVector::from(axis);
+        let length = axis.norm();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(out_of_range(
+                "length of the axis of friction",
+                length,
+                "a positive number",
+            ));
+        }
+        let axis = axis / length;
+        let Some(last) = self.contacts.last() else {
+            return Ok(self);
+        };
+        let facets = self.mesh.facet_group(&last.surface)?;
+        for share in self.mesh.facet_shares(facets, &self.hypothesis) {
+            let normal = SVector::from(share.normal);
+            let across = axis - normal * (normal.dot(&axis) / normal.norm_squared());
+            if across.norm() <= ALONG_NORMAL {
+                return Err(ModelError::NormalAxis {
+                    surface: last.surface.clone(),
+                    node: share.node,
+                    position: self.mesh.nodes()[share.node].to_vec(),
+                });
+            }
+        }
+        let last = self.contacts.len();
+        for point in self.points.iter_mut().filter(|p| p.contact + 1 == last) {
+            point.axis = Some(axis);
         }
         Ok(self)
     }

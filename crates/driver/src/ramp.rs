@@ -289,7 +289,8 @@ impl<const D: usize> Driver<D> {
                     ramp.cuts += 1;
                     ramp.path = self.path(ramp);
                     if ramp.path.is_none() && ramp.length < smallest {
-                        return Err(ramp.stopped(cause, 2.0 * ramp.length));
+                        let stopped = ramp.stopped(cause, 2.0 * ramp.length);
+                        return Err(self.loose_tool(&ramp.end).map_or(stopped, Into::into));
                     }
                 }
             }
@@ -373,7 +374,8 @@ impl<const D: usize> Driver<D> {
                     path.last = report.fraction - before;
                     path.peak = path.peak.max(report.fraction);
                     path.growth = path.last * (ramp.work / work).abs() / path.peak;
-                    let motion = largest(self.state.displacement.iter().copied());
+                    let moved = &self.state.displacement[..self.mesh_dofs()];
+                    let motion = largest(moved.iter().copied());
                     path.ended = path.growth <= Collapse::FLAT || motion > self.mesh.size();
                     if report.newton_iterations <= 2 * Increments::EASY && halved == 0 {
                         path.length *= 2.0;
@@ -389,7 +391,8 @@ impl<const D: usize> Driver<D> {
                     ramp.cuts += 1;
                     halved += 1;
                     if halved > self.settings.cuts {
-                        return Err(ramp.stopped(cause, path.last.abs()));
+                        let stopped = ramp.stopped(cause, path.last.abs());
+                        return Err(self.loose_tool(&ramp.end).map_or(stopped, Into::into));
                     }
                 }
             }

@@ -36,6 +36,13 @@ impl AnisotropicCoulomb {
         self.friction
     }
 
+    /// The law of forces along one tangent alone, which has the components c, s (not both zero) along
+    /// the two of the frame: 1/μ² = (c/μ_x)² + (s/μ_y)², c² + s² = 1.
+    pub fn along(&self, [c, s]: [f64; 2]) -> Coulomb {
+        let [x, y] = self.friction;
+        Coulomb::of(c.hypot(s) / (c / x).hypot(s / y))
+    }
+
     /// The isotropic law between the stretched force and displacement.
     #[inline]
     pub fn isotropic(&self) -> Coulomb {

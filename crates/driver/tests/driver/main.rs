@@ -1,5 +1,6 @@
 //! Contracts of the driver's public items.
 
+mod anisotropic;
 mod block;
 mod collapse;
 mod steps;

@@ -292,3 +292,90 @@ fn a_driven_tool_is_read_back_to_the_bit() {
         other.tool_displacement("ball")
     );
 }
+
+/// A tool crosses any gap to press as it does from nearby: what closed the gap is not repeated. Without
+/// friction: that knows the slip of the whole increment.
+#[test]
+fn a_driven_tool_comes_from_afar() {
+    let at = |height: f64| {
+        let ball = ([0.0, 120.0 + height], 100.0);
+        let mesh = (block(), Integration::Reduced);
+        indented(mesh, PlaneStrain::default(), ball, 0.0)
+    };
+    let press = held("press").fix("block.left", &[Axis::X]);
+    let press = press.push("ball", Axis::Y, -3000.0);
+    let [mut near, mut far] = [0.001, 150.0].map(at);
+    for driver in [&mut near, &mut far] {
+        let reports = driver.run(&press, 3, |_, _| {}).expect("converges");
+        assert!(reports.iter().all(|r| r.cuts == 0 && r.fraction <= 1.0));
+    }
+    let force = far.tool_force("ball").expect("exists")[1];
+    assert!((force / -3000.0 - 1.0).abs() < 1e-9, "{force}");
+    let [a, b] = [&near, &far].map(|d| d.tool_displacement("ball").expect("exists")[1]);
+    assert!((a - b - 149.999).abs() < 1e-8, "{a} {b}");
+}
+
+/// A tool that its force takes past the body: told with its distance, and what to do.
+#[test]
+fn a_tool_that_meets_nothing_is_told_with_its_distance() {
+    let beside = |x: f64| {
+        let mesh = (block(), Integration::Reduced);
+        indented(mesh, PlaneStrain::default(), ([x, 120.3], 100.0), 0.2)
+    };
+    let down = held("press").push("ball", Axis::Y, -10.0);
+    match beside(200.0).run(&down, 1, |_, _| {}) {
+        Err(StepError::Model(ModelError::LooseTool(loose))) => {
+            let told = loose.to_string();
+            // From (200, 120.3) to the corner (40, 20), less the radius.
+            let gap = 160f64.hypot(100.3) - 100.0;
+            assert!((loose.gap - gap).abs() < 1e-9, "{loose:?}");
+            assert_eq!(
+                (loose.tool.as_str(), loose.surface.as_str()),
+                ("ball", "block.top")
+            );
+            assert_eq!((loose.position, loose.meets), (vec![40.0, 20.0], None));
+            for word in ["\"ball\"", "nothing resists", "88.8", "meets nothing"] {
+                assert!(told.contains(word), "{word} in {told}");
+            }
+        }
+        other => panic!("{other:?}"),
+    }
+    // Pushed askew without friction it comes down on the top, and slides off.
+    let mesh = (block(), Integration::Reduced);
+    let mut smooth = indented(mesh, PlaneStrain::default(), ([20.0, 130.0], 100.0), 0.0);
+    let askew = held("press")
+        .push("ball", Axis::Y, -10.0)
+        .push("ball", Axis::X, 5.0);
+    match smooth.run(&askew, 1, |_, _| {}) {
+        Err(StepError::Model(ModelError::LooseTool(loose))) => {
+            let (gap, meets) = (loose.gap, loose.meets.expect("on its way"));
+            let x = 20.0 + meets[0];
+            // At the corner (40, 20), or on the flat top before it.
+            let height = 130.0 + meets[1];
+            let reach = match x < 40.0 {
+                true => height - 20.0,
+                false => (x - 40.0).hypot(height - 20.0),
+            };
+            assert!(
+                (reach - 100.0).abs() < 1e-2 && (gap - 10.0).abs() < 1e-9,
+                "{meets:?}"
+            );
+            assert!((meets[0] / meets[1] + 0.5).abs() < 1e-9, "{meets:?}");
+        }
+        other => panic!("{other:?}"),
+    }
+    let free = Plane::new([0.0, 21.0], [0.0, -1.0]).expect("valid");
+    let model = Model::new(block(), PlaneStrain::default())
+        .material("block", steel(), Integration::Reduced)
+        .and_then(|m| m.tool("plate", free))
+        .expect("valid");
+    let push = held("press").push("plate", Axis::Y, -10.0);
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    let untouched = driver.run(&push, 1, |_, _| {});
+    assert!(matches!(
+        untouched,
+        Err(StepError::Model(
+            ModelError::UntouchedTool { .. } | ModelError::FreeTool { .. }
+        ))
+    ));
+}

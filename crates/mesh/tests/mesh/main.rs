@@ -6,6 +6,7 @@ mod blocks;
 mod damaged;
 mod elements;
 mod gmsh;
+mod gmsh_by_hand;
 mod groups;
 mod hypotheses;
 mod integrals;

@@ -209,6 +209,18 @@ pub enum FrictionEntry {
     Tresca(At<f64>),
     /// Coefficient, and the limit of the shear.
     Limited(At<f64>, At<f64>),
+    /// In space: coefficients along an axis and across, and the axis.
+    Orthotropic(At<[f64; 2]>, At<Vec<f64>>),
+}
+
+impl FrictionEntry {
+    /// Where the number is that decides whether there is friction at all.
+    pub fn span(&self) -> &Range<usize> {
+        match self {
+            Self::Coulomb(given) | Self::Tresca(given) | Self::Limited(given, _) => &given.span,
+            Self::Orthotropic(given, _) => &given.span,
+        }
+    }
 }
 
 impl fmt::Display for FrictionEntry {
@@ -222,6 +234,9 @@ impl fmt::Display for FrictionEntry {
                     "{{ coulomb = {:?}, tau-max = {:?} }}",
                     mu.value, limit.value
                 )
+            }
+            Self::Orthotropic(mu, axis) => {
+                write!(f, "{{ coulomb = {:?}, axis = {:?} }}", mu.value, axis.value)
             }
         }
     }

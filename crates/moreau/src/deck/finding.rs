@@ -274,8 +274,11 @@ pub(super) fn did_you_mean<'a>(
     name: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> String {
-    crate::mesh::nearest(name, candidates)
-        .map_or_else(String::new, |n| format!("; did you mean \"{n}\"?"))
+    let near = crate::mesh::nearest(name, candidates);
+    // A name that has no letter of the other is not near.
+    let lower = name.to_lowercase();
+    let near = near.filter(|n| lower.chars().any(|c| n.to_lowercase().contains(c)));
+    near.map_or_else(String::new, |n| format!("; did you mean \"{n}\"?"))
 }
 
 /// `"a", "b" or "c"`.

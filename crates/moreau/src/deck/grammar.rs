@@ -10,6 +10,7 @@ use super::entries::{Analysis, Deck};
 use super::finding::{At, Class, Findings};
 use super::reader::{self, Log, Table};
 use super::units::Units;
+use std::ops::Range;
 use std::path::Path;
 use toml::de::DeTable;
 
@@ -20,7 +21,7 @@ pub(super) fn read(text: &str, folder: &Path) -> (Deck, Findings) {
     let log = Log::default();
     for error in errors {
         let span = error.span().unwrap_or(0..0);
-        let message = format!("not TOML: {}", error.message().replace('\n', ", "));
+        let message = not_toml(text, &span, error.message());
         log.borrow_mut()
             .error(&span, message, "here")
             .about(Class::Syntax);
@@ -29,6 +30,21 @@ pub(super) fn read(text: &str, folder: &Path) -> (Deck, Findings) {
     let deck = deck(&root, folder);
     root.finish();
     (deck, log.into_inner())
+}
+
+/// What is wrong at a place where the text is no TOML: in the words of a deck where the mistake is a
+/// usual one.
+fn not_toml(text: &str, span: &Range<usize>, said: &str) -> String {
+    let digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
+    let (before, from) = text.split_at_checked(span.start).unwrap_or((text, ""));
+    let here = text.get(span.clone()).unwrap_or_default();
+    if said == "duplicate key" {
+        format!("the key \"{here}\" stands twice in one table")
+    } else if from.starts_with(',') && digit(before.chars().last()) && digit(from.chars().nth(1)) {
+        "a comma within a number: decimals have a point, as in 0.3".into()
+    } else {
+        format!("not TOML: {}", said.replace('\n', ", "))
+    }
 }
 
 fn deck(root: &Table<'_>, folder: &Path) -> Deck {
@@ -68,7 +84,7 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
         missing(root, "[[material]]", "on, young and poisson");
     }
     let (tools, tool_names) = tool::read_tools(root, analysis);
-    let contacts = tool::read_contacts(root);
+    let contacts = tool::read_contacts(root, dimension);
     let steps = root
         .tables("step", "[[step]]")
         .into_iter()

@@ -88,7 +88,11 @@ impl<'a> Table<'a> {
         let known = self.known.borrow();
         for (key, _) in self.entries() {
             if !known.contains(&key.value.as_str()) {
-                let near = did_you_mean(&key.value, known.iter().copied());
+                let meant = SYMBOLS
+                    .iter()
+                    .find(|s| s.0 == key.value && known.contains(&s.1));
+                let given = meant.map_or(key.value.as_str(), |s| s.1);
+                let near = did_you_mean(given, known.iter().copied());
                 self.log
                     .borrow_mut()
                     .error_with(
@@ -199,6 +203,12 @@ pub(super) fn number(value: Value<'_>, what: &str, log: &Log) -> Option<At<f64>>
         DeValue::Integer(i) => i64::from_str_radix(&i.as_str().replace('_', ""), i.radix())
             .ok()
             .map(|n| n as f64),
+        DeValue::String(text)
+            if text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) =>
+        {
+            let expected = "a number: without quotes, and in the units of the deck";
+            return wrong(value, what, expected, log);
+        }
         _ => return wrong(value, what, "a number", log),
     };
     match parsed.filter(|n| n.is_finite()) {
@@ -280,12 +290,29 @@ pub(super) fn vector(
     dimension: usize,
     log: &Log,
 ) -> Option<At<Vec<f64>>> {
-    let list = numbers(value, what, log)?;
-    match list.value.len() == dimension {
-        true => Some(list),
-        false => wrong(value, what, &format!("{dimension} numbers"), log),
+    let expected = match dimension {
+        2 => "2 numbers, [ …, … ]",
+        _ => "3 numbers, [ …, …, … ]",
+    };
+    let fits = |value: Value<'_>| Some(value.get_ref().as_array()?.len() == dimension);
+    match fits(value) {
+        Some(true) => numbers(value, what, log),
+        _ => wrong(value, what, expected, log),
     }
 }
+
+/// Symbols of formulas, and the keys that stand for them.
+const SYMBOLS: [(&str, &str); 9] = [
+    ("E", "young"),
+    ("nu", "poisson"),
+    ("sigma_y", "yield-stress"),
+    ("sigma-y", "yield-stress"),
+    ("H", "hardening"),
+    ("c", "cohesion"),
+    ("phi", "friction-angle"),
+    ("psi", "dilatancy-angle"),
+    ("mu", "coulomb"),
+];
 
 /// A table, as an inline one or under a header.
 pub(super) fn table<'a>(
@@ -308,6 +335,17 @@ pub(super) fn tables<'a>(
     shown: &str,
     log: &'a Log,
 ) -> Vec<Table<'a>> {
+    if let Some(one) = value.get_ref().as_table() {
+        // Read all the same: what refers to it is not wrong as well.
+        let how = match shown.starts_with("[[") {
+            true => format!("{shown} with two brackets, once for each"),
+            false => "[ { … } ], one table for each".into(),
+        };
+        let message = format!("{what} is one table, expected a list: {how}");
+        log.borrow_mut()
+            .error(&value.span(), message, "expected a list");
+        return vec![Table::new(one, value.span(), shown, log)];
+    }
     items(value, what, "an array of tables", log)
         .unwrap_or_default()
         .into_iter()

@@ -42,6 +42,11 @@ impl Units {
         ["MPa", "Pa", "psi"][self as usize]
     }
 
+    /// The unit of stress in pascals.
+    pub fn pascal(self) -> f64 {
+        [1e6, 1.0, 6894.757][self as usize]
+    }
+
     /// Unit of energy.
     pub fn energy(self) -> &'static str {
         ["N·mm", "N·m", "lbf·in"][self as usize]

@@ -48,4 +48,11 @@ pub enum PlotError {
         /// Label of the field.
         label: String,
     },
+    /// A picture that cannot be made into pixels.
+    #[cfg(feature = "png")]
+    #[error("no PNG: {reason}")]
+    Raster {
+        /// Why not.
+        reason: String,
+    },
 }

@@ -73,7 +73,9 @@ fn looks(curves: &[Curve<'_>]) -> Vec<Look> {
     let mut colours = COLOURS.into_iter().cycle();
     let mut references = REFERENCES.into_iter().cycle();
     let mut dashes = DASHES.iter().cycle();
-    let mut markers = MARKERS.into_iter().cycle();
+    // As many as there are colours: one further each time round, so that no two series are alike.
+    let rounds = (0..MARKERS.len()).flat_map(|r| (r..r + COLOURS.len()).map(|k| k % MARKERS.len()));
+    let mut markers = rounds.map(|k| MARKERS[k]).cycle();
     let mut looks = Vec::with_capacity(curves.len());
     for curve in curves {
         let size = match curve.points.len() {

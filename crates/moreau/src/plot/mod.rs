@@ -1,4 +1,5 @@
-//! Charts and pictures of meshes as SVG text; no files, no windows, no pixels.
+//! Charts and pictures of meshes as SVG text; no files, no windows. Pixels only with the feature
+//! `png`, which makes `png` of any SVG.
 //!
 //! | to draw … | use |
 //! |---|---|
@@ -46,6 +47,8 @@ mod nodal;
 mod number;
 mod pen;
 mod picture;
+#[cfg(feature = "png")]
+mod raster;
 mod sheet;
 mod text;
 
@@ -54,3 +57,5 @@ pub use colour::colours;
 pub use error::PlotError;
 pub use nodal::nodal_average;
 pub use picture::{Field, MeshPicture};
+#[cfg(feature = "png")]
+pub use raster::png;

@@ -28,6 +28,8 @@ pub struct MeshPicture<'a> {
     pub mesh: &'a Mesh<2>,
     /// Title; may be empty.
     pub title: String,
+    /// Unit of lengths, as it is written at the scale.
+    pub unit: String,
     /// Displacement of every node \[mm\].
     pub displacement: Option<Vec<[f64; 2]>>,
     /// How many times the displacement is drawn.
@@ -46,12 +48,19 @@ impl<'a> MeshPicture<'a> {
         Self {
             mesh,
             title: title.into(),
+            unit: "mm".into(),
             displacement: None,
             magnification: 1.0,
             field: None,
             outline: false,
             polylines: Vec::new(),
         }
+    }
+
+    /// With lengths in another unit than mm.
+    pub fn unit(mut self, unit: impl Into<String>) -> Self {
+        self.unit = unit.into();
+        self
     }
 
     /// With the nodes displaced, `magnification` times as far as they are.

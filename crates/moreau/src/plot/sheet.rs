@@ -269,7 +269,11 @@ impl Sheet {
         pen.move_to([left, y - 4.0]);
         pen.line_to([right, y - 4.0]);
         pen.stroke(svg, INK, 1.0, "");
-        let text = format!("{} mm", Number::new(length, length).text(length));
+        let text = format!(
+            "{} {}",
+            Number::new(length, length).text(length),
+            picture.unit
+        );
         write_text(svg, [left - 7.0, y], TICK, "end", "", &text);
     }
 }

@@ -127,6 +127,8 @@ fn suggestion(
                 | Action::Push(..)
         )
     });
+    let mut conditions = step.conditions.iter();
+    let pushed = conditions.find(|c| matches!(c.action, Action::Push(..)));
     let yields = matches!(cause, StepError::Mechanism { .. }) || plastic_fraction > WIDESPREAD;
     let exact = deck.solver.method == Method::Exact && !deck.solver.outside;
     match (load, cause) {
@@ -134,6 +136,12 @@ fn suggestion(
             "the load on \"{}\" is probably beyond the limit load: in step \"{name}\" prescribe a \
              displacement there instead (move), which passes the limit and shows the load",
             load.on.value
+        ),
+        (_, StepError::Contact { .. }) if exact && pushed.is_some() => format!(
+            "nothing holds the tool \"{}\" against its force, it slides off or its contact opens: turn the \
+             force towards the surface, give the contact friction, or prescribe the motion of the tool \
+             (move) along what slides",
+            pushed.map_or("", |p| &p.on.value)
         ),
         (_, StepError::Contact { .. }) if !exact => {
             "set contact = \"exact\" in [solver]: it needs no parameter and no contraction".into()

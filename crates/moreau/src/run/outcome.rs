@@ -3,6 +3,7 @@
 
 use super::diagnosis::Diagnosis;
 use super::history::History;
+use super::shown;
 use crate::contact::Certificate;
 use crate::deck::{Deck, Units};
 use crate::driver::{
@@ -378,14 +379,14 @@ impl fmt::Display for Outcome {
             writeln!(f, "  contact       {open} open, {stick} stick, {slip} slip")?;
             writeln!(
                 f,
-                "  energy        external {:.6e} {energy} = stored {:.6e} + plastic {:.6e} + \
-                 friction {:.6e} + springs {:.3e} + imbalance {:.3e}",
-                e.external_work,
-                e.stored,
-                e.plastic_dissipation,
-                e.friction_dissipation,
-                e.penalty,
-                e.imbalance()
+                "  energy        external {} {energy} = stored {} + plastic {} + friction {} + \
+                 springs {} + imbalance {}",
+                shown(e.external_work, 7),
+                shown(e.stored, 7),
+                shown(e.plastic_dissipation, 7),
+                shown(e.friction_dissipation, 7),
+                shown(e.penalty, 4),
+                shown(e.imbalance(), 4)
             )?;
             writeln!(
                 f,
@@ -407,14 +408,17 @@ impl fmt::Display for Outcome {
                 true => units.force(),
                 false => units.length(),
             };
-            writeln!(f, "  {name:<24} {value:>16.8e} {unit}")?;
+            writeln!(f, "  {name:<24} {:>16} {unit}", shown(*value, 9))?;
         }
         for v in &self.verdicts {
             let mark = if v.passed() { "met" } else { "FAILED" };
             writeln!(
                 f,
-                "  expect {} = {:.8e} ± {:.2e}: found {:.8e}, {mark}",
-                v.column, v.expected, v.tolerance, v.found
+                "  expect {} = {} ± {}: found {}, {mark}",
+                v.column,
+                shown(v.expected, 9),
+                shown(v.tolerance, 3),
+                shown(v.found, 9)
             )?;
         }
         if let Some(diagnosis) = &self.diagnosis {

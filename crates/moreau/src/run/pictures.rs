@@ -221,6 +221,7 @@ pub(super) fn deformed(
     MeshPicture::new(mesh, &deck.title)
         .deformed(displacement, magnification)
         .field(label(name, deck.units), values)
+        .unit(deck.units.length())
         .outline()
         .to_svg()
         .ok()

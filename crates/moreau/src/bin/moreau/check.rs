@@ -3,9 +3,12 @@
 use super::{INPUT_ERROR, folder, read, report, say};
 use moreau::deck::{Action, Deck, Method, Problem, Setup, Shape, open_in};
 use moreau::driver::{Axis, RigidMotion, Stopper};
+use moreau::run::shown;
 use std::path::Path;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
+/// Digits of volumes and areas.
+const DIGITS: usize = 7;
 
 /// Checks a deck; the exit status.
 pub(crate) fn check(path: &Path) -> u8 {
@@ -59,18 +62,18 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
     for body in &setup.bodies {
         let cells: Vec<String> = body.cells.iter().map(|(k, n)| format!("{n} {k}")).collect();
         say!(
-            "body       {}: {}, volume {:.6e} {length}³",
+            "body       {}: {}, volume {} {length}³",
             body.name,
             cells.join(", "),
-            body.volume
+            shown(body.volume, DIGITS)
         );
         motions(deck, &body.motions);
     }
     for group in &setup.groups {
         let unit = if group.kind == "cells" { "³" } else { "²" };
-        let measure = group
-            .measure
-            .map_or(String::new(), |m| format!(", {m:.6e} {length}{unit}"));
+        let measure = group.measure.map_or(String::new(), |m| {
+            format!(", {} {length}{unit}", shown(m, DIGITS))
+        });
         say!(
             "group      {}: {} {}, {} nodes{measure}",
             group.name,
@@ -92,10 +95,14 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
                     Some(h) => h.value.to_string(),
                     None => "none".to_owned(),
                 };
+                let kinematic = match m.kinematic.len() {
+                    0 => "none".to_owned(),
+                    1 => "of 1 term".to_owned(),
+                    n => format!("of {n} terms"),
+                };
                 format!(
-                    "yield stress {} {stress}, isotropic hardening {hardening}, {} kinematic terms",
-                    y.value,
-                    m.kinematic.len()
+                    "yield stress {} {stress}, isotropic hardening {hardening}, kinematic {kinematic}",
+                    y.value
                 )
             }
         };
@@ -202,12 +209,14 @@ fn conditions(deck: &Deck) {
     let (length, force, stress) = (deck.units.length(), deck.units.force(), deck.units.stress());
     for step in &deck.steps {
         say!(
-            "step       {}: {} increments{}",
+            "step       {}: {}",
             step.name.value,
-            step.increments.count(),
             match step.increments.min {
-                Some(min) => format!(", of {min} to {} of the step", step.increments.max),
-                None => String::new(),
+                Some(min) => format!(
+                    "automatic increments, from {} on between {min} and {} of the step",
+                    step.increments.start, step.increments.max
+                ),
+                None => format!("{} increments", step.increments.count()),
             }
         );
         for condition in &step.conditions {

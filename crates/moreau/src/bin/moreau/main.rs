@@ -98,6 +98,9 @@ enum Command {
         /// How many times displacements are drawn.
         #[arg(long, value_name = "FACTOR")]
         scale: Option<f64>,
+        /// Also as PNG, twice as large; needs a command built with the feature `png`.
+        #[arg(long)]
+        png: bool,
     },
 }
 
@@ -140,13 +143,14 @@ fn main() -> ExitCode {
             field,
             increment,
             scale,
+            png,
         } => {
             let drawing = moreau::run::Drawing {
                 field,
                 increment,
                 magnification: scale,
             };
-            plot::plot(&directory, &drawing)
+            plot::plot(&directory, &drawing, png)
         }
         Command::Convert(convert) => convert.run(),
         Command::Schema => {

@@ -4,7 +4,7 @@
 use super::progress::Progress;
 use super::{INPUT_ERROR, Manner, NOT_CONVERGED, UNEXPECTED, folder, read, report, say, tell};
 use moreau::deck::{Deck, Problem, open_in};
-use moreau::run::{Outcome, RunError, RunStatus, Watch};
+use moreau::run::{Outcome, RunError, RunStatus, Watch, shown};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -85,9 +85,9 @@ fn stopping() -> Arc<AtomicBool> {
 }
 
 fn conclude(outcome: &Outcome, manner: &Manner, directory: &Path) -> u8 {
-    let shown = directory.display();
+    let place = directory.display();
     if !manner.quiet && !manner.json_log {
-        say!("{outcome}  results       {shown}");
+        say!("{outcome}  results       {place}");
     }
     if let Some(error) = outcome.error() {
         tell!("{error}");
@@ -105,17 +105,17 @@ fn conclude(outcome: &Outcome, manner: &Manner, directory: &Path) -> u8 {
             NOT_CONVERGED
         }
         RunStatus::Interrupted(increment) => {
-            tell!("interrupted after increment {increment}; to go on: moreau resume \"{shown}\"");
+            tell!("interrupted after increment {increment}; to go on: moreau resume \"{place}\"");
             NOT_CONVERGED
         }
         RunStatus::Done if manner.verify && !outcome.as_expected() => {
             for v in outcome.verdicts.iter().filter(|v| !v.passed()) {
                 tell!(
-                    "{} is {:.10e}, expected {:.10e} ± {:.2e}",
+                    "{} is {}, expected {} ± {}",
                     v.column,
-                    v.found,
-                    v.expected,
-                    v.tolerance
+                    shown(v.found, 10),
+                    shown(v.expected, 10),
+                    shown(v.tolerance, 3)
                 );
             }
             UNEXPECTED

@@ -263,4 +263,18 @@ fn twice<const D: usize>(deck: &Deck, groups: Option<&Groups<D>>, findings: &mut
                 .about(Class::Names);
         }
     }
+    for (k, contact) in deck.contacts.iter().enumerate() {
+        let name = &contact.surface.value;
+        let before = deck.contacts[..k].iter().find(|c| c.surface.value == *name);
+        if let Some(before) = before {
+            let message = format!(
+                "\"{name}\" has a contact with \"{}\" already: a node touches one thing only; give \
+                 each contact a part of the surface, as a [[mesh.group]]",
+                before.against.value
+            );
+            findings
+                .error(&contact.surface.span, message, "given twice")
+                .about(Class::Names);
+        }
+    }
 }

@@ -9,8 +9,8 @@ use crate::deck::entries::{
 use crate::deck::finding::{At, Findings};
 use crate::driver::{Analysis, Model, ModelError};
 use crate::laws::{
-    Coulomb, DruckerPrager, Elastic, ElasticDruckerPrager, Friction, Isotropic, LawError,
-    LimitedCoulomb, Tresca, VonMises,
+    AnisotropicCoulomb, Coulomb, DruckerPrager, Elastic, ElasticDruckerPrager, Friction, Isotropic,
+    LawError, LimitedCoulomb, Tresca, VonMises,
 };
 use crate::mesh::{CellKind, Integration, Mesh, MeshError};
 use std::ops::Range;
@@ -46,11 +46,8 @@ pub(super) fn parts(deck: &Deck, findings: &mut Findings) -> Option<Parts> {
         match friction(&contact.friction) {
             Ok(law) => {
                 if !law.resists_slip() {
-                    let (FrictionEntry::Coulomb(given)
-                    | FrictionEntry::Tresca(given)
-                    | FrictionEntry::Limited(given, _)) = &contact.friction;
                     findings.warning(
-                        &given.span,
+                        contact.friction.span(),
                         format!(
                             "the contact of \"{}\" is frictionless",
                             contact.surface.value
@@ -91,6 +88,9 @@ fn friction(entry: &FrictionEntry) -> Result<Friction, (Range<usize>, LawError)>
                 LawError::NegativeFriction { .. } => at(mu)(error),
                 _ => at(limit)(error),
             })?
+            .into(),
+        FrictionEntry::Orthotropic(mu, _) => AnisotropicCoulomb::new(mu.value[0], mu.value[1])
+            .map_err(|error| (mu.span.clone(), error))?
             .into(),
     })
 }
@@ -397,6 +397,10 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
     for (entry, law) in deck.contacts.iter().zip(&parts.frictions) {
         let added = model.contact(&entry.surface.value, &entry.against.value, *law);
         model = added.map_err(|e| note(&entry.surface.span, e)).ok()?;
+        if let FrictionEntry::Orthotropic(_, axis) = &entry.friction {
+            let along = model.along(std::array::from_fn(|i| axis.value[i]));
+            model = along.map_err(|e| note(&axis.span, e)).ok()?;
+        }
         if let Some(offset) = &entry.gap_offset {
             let offset_by = model.gap_offset(offset.value);
             model = offset_by.map_err(|e| note(&offset.span, e)).ok()?;

@@ -2,13 +2,20 @@
 
 use super::groups::Groups;
 use super::parts::Surface;
-use crate::deck::entries::{Action, Deck};
+use crate::deck::entries::{Action, Deck, FrictionEntry};
 use crate::deck::finding::Findings;
 use nalgebra::SVector;
 
 /// Part of Young's modulus that the yield stress of a solid stays below: metals a hundredth, polymers
 /// a twentieth.
 const STRONGEST: f64 = 0.1;
+
+/// Young's modulus of diamond, rounded up, and of soft rubber \[Pa\].
+const STIFFEST: f64 = 2e12;
+const SOFTEST: f64 = 1e6;
+
+/// Coefficient of friction from which on a number is rather one in percent.
+const ROUGHEST: f64 = 10.0;
 
 pub(super) fn warn<const D: usize>(
     deck: &Deck,
@@ -17,6 +24,8 @@ pub(super) fn warn<const D: usize>(
     findings: &mut Findings,
 ) {
     soft(deck, findings);
+    stiff(deck, findings);
+    rough(deck, findings);
     far(deck, groups, findings);
     inside(deck, groups, surface, findings);
 }
@@ -35,6 +44,50 @@ fn soft(deck: &Deck, findings: &mut Findings) {
                 material.on.value, strength.value, material.young.value
             );
             findings.warning(&material.young.span, message, "in another unit?");
+        }
+    }
+}
+
+/// A modulus that no solid has, or a solid that yields has not.
+fn stiff(deck: &Deck, findings: &mut Findings) {
+    let unit = deck.units.stress();
+    for material in &deck.materials {
+        let young = &material.young;
+        let pascal = young.value * deck.units.pascal();
+        let told = if pascal > STIFFEST {
+            format!(
+                "stiffer than diamond, {:.3e} {unit}",
+                STIFFEST / deck.units.pascal()
+            )
+        } else if pascal < SOFTEST && material.yields().is_some() {
+            format!(
+                "softer than rubber, {:.3e} {unit}, and yields",
+                SOFTEST / deck.units.pascal()
+            )
+        } else {
+            continue;
+        };
+        let message = format!(
+            "Young's modulus of \"{}\" is {:?} {unit}: that is {told}",
+            material.on.value, young.value
+        );
+        findings.warning(&young.span, message, "in another unit?");
+    }
+}
+
+/// Friction in percent.
+fn rough(deck: &Deck, findings: &mut Findings) {
+    for contact in &deck.contacts {
+        let (FrictionEntry::Coulomb(mu) | FrictionEntry::Limited(mu, _)) = &contact.friction else {
+            continue;
+        };
+        if mu.value >= ROUGHEST {
+            let message = format!(
+                "the coefficient of friction of \"{}\" is {:?}: a tenth is 0.1, and more than a few \
+                 is no more than sticking",
+                contact.surface.value, mu.value
+            );
+            findings.warning(&mu.span, message, "in percent?");
         }
     }
 }

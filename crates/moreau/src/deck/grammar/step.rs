@@ -100,6 +100,9 @@ fn shift(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
     let log = table.log();
     let on = table.text("on");
     let value = table.need("u", "{ x = …, y = … }")?;
+    if !value.get_ref().is_table() {
+        return reader::wrong(value, "u", "the components, as in { y = -0.2 }", log);
+    }
     let inner = reader::table(value, "u", "u", log)?;
     let components: Vec<(usize, f64)> = AXES[..dimension]
         .iter()

@@ -102,13 +102,13 @@ fn shape(table: &Table<'_>, analysis: Analysis) -> Option<At<Shape>> {
     Some(At::new(shape, value.span()))
 }
 
-pub(super) fn read_contacts(root: &Table<'_>) -> Vec<ContactEntry> {
+pub(super) fn read_contacts(root: &Table<'_>, dimension: usize) -> Vec<ContactEntry> {
     root.tables("contact", "[[contact]]")
         .into_iter()
         .filter_map(|table| {
             let surface = table.text("surface");
             let against = table.text("against");
-            let friction = friction(&table);
+            let friction = friction(&table, dimension);
             let gap_offset = table.number_if("gap-offset");
             let adjust = adjust(&table);
             table.finish();
@@ -142,22 +142,29 @@ fn adjust(table: &Table<'_>) -> Option<At<Adjust>> {
     Some(At::new(adjust, value.span()))
 }
 
-fn friction(table: &Table<'_>) -> Option<FrictionEntry> {
+fn friction(table: &Table<'_>, dimension: usize) -> Option<FrictionEntry> {
     let log = table.log();
     let value = table.need("friction", "a number (0 for none)")?;
+    if value.get_ref().is_array() {
+        let expected = "a number, or in a solid { coulomb = [along, across], axis = [x, y, z] }";
+        return reader::wrong(value, "friction", expected, log);
+    }
     if !value.get_ref().is_table() {
         return reader::number(value, "friction", log).map(FrictionEntry::Coulomb);
     }
     let inner = reader::table(value, "friction", "friction", log)?;
+    let axis = inner.get("axis");
+    let two = inner.get("coulomb").filter(|v| v.get_ref().is_array());
     let law = match inner.number_if("tresca") {
         Some(limit) => Some(FrictionEntry::Tresca(limit)),
+        None if two.is_some() || axis.is_some() => orthotropic(&inner, dimension),
         None => match (inner.number("coulomb"), inner.number_if("tau-max")) {
             (Some(mu), Some(limit)) => Some(FrictionEntry::Limited(mu, limit)),
             (mu, _) => mu.map(FrictionEntry::Coulomb),
         },
     };
     if matches!(law, Some(FrictionEntry::Tresca(_))) {
-        for key in ["coulomb", "tau-max"] {
+        for key in ["coulomb", "tau-max", "axis"] {
             if let Some(value) = inner.get(key) {
                 log.borrow_mut().error(
                     &value.span(),
@@ -169,4 +176,30 @@ fn friction(table: &Table<'_>) -> Option<FrictionEntry> {
     }
     inner.finish();
     law
+}
+
+/// `{ coulomb = [μ along, μ across], axis = [x, y, z] }`.
+fn orthotropic(table: &Table<'_>, dimension: usize) -> Option<FrictionEntry> {
+    let log = table.log();
+    if dimension == 2 {
+        log.borrow_mut().error(
+            &table.span,
+            "friction along two directions needs analysis = \"solid\": in the plane there is one",
+            "expected one coefficient",
+        );
+        return None;
+    }
+    if let Some(limit) = table.get("tau-max") {
+        log.borrow_mut().error(
+            &limit.span(),
+            "tau-max limits friction of one coefficient, not of two",
+            "no limit here",
+        );
+    }
+    let expected = "[along the axis, across]";
+    let mu = reader::vector(table.need("coulomb", expected)?, "coulomb", 2, log);
+    let axis = reader::vector(table.need("axis", "[x, y, z]")?, "axis", dimension, log)?;
+    let mu = mu?;
+    let pair = [mu.value[0], mu.value[1]];
+    Some(FrictionEntry::Orthotropic(At::new(pair, mu.span), axis))
 }

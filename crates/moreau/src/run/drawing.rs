@@ -1,0 +1,114 @@
+//! What is drawn of a run, from its files: at its end and again; not how.
+
+use super::files::write_file;
+use super::grid::Array;
+use super::table::Table;
+use super::{RunError, View, pictures, report, vtu};
+use crate::deck::{Deck, Setup};
+use crate::driver::Driver;
+use std::path::{Path, PathBuf};
+
+/// What to draw of a run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Drawing {
+    /// Field on the body, a name in the VTU files; with `.x` and so on, a component.
+    pub field: Option<String>,
+    /// Increment, instead of the last.
+    pub increment: Option<usize>,
+    /// How many times displacements are drawn.
+    pub magnification: Option<f64>,
+}
+
+/// Draws a run again from its files: history, contact line, deformed body, report; returns what
+/// was written.
+///
+/// # Errors
+/// [`RunError::Read`] for a directory without results, [`RunError::Unknown`] for a field or an
+/// increment that is not in them, [`RunError::Write`].
+pub fn draw<const D: usize>(
+    setup: &Setup<D>,
+    deck: &Deck,
+    directory: &Path,
+    drawing: &Drawing,
+) -> Result<Vec<PathBuf>, RunError>
+where
+    Driver<D>: View,
+{
+    pictures_of(&setup.driver, deck, directory, None, drawing)
+}
+
+/// The pictures and the report. `last` is the end of the run where no file has it.
+pub(super) fn pictures_of<const D: usize>(
+    driver: &Driver<D>,
+    deck: &Deck,
+    directory: &Path,
+    last: Option<&[Array]>,
+    drawing: &Drawing,
+) -> Result<Vec<PathBuf>, RunError>
+where
+    Driver<D>: View,
+{
+    let history = Table::read(&directory.join("history.csv"), |_, _| true)?;
+    let increments = history.texts("increment");
+    let number = match (drawing.increment, increments.last()) {
+        (Some(number), _) if !increments.contains(&number.to_string().as_str()) => {
+            return Err(RunError::Unknown {
+                what: format!("increment {number}"),
+                expected: format!("1 to {}", increments.last().unwrap_or(&"0")),
+            });
+        }
+        (Some(number), _) => number,
+        (None, last) => last.and_then(|t| t.parse().ok()).unwrap_or(0),
+    };
+    // What was asked for is kept apart from what every run has.
+    let asked = drawing.field.iter().map(|f| format!("-{f}"));
+    let asked: String = asked
+        .chain(drawing.increment.iter().map(|n| format!("-{n}")))
+        .collect();
+    let mut written = Vec::new();
+    let mut write = |name: String, text: Option<String>| {
+        if let Some(text) = text {
+            let path = directory.join(name);
+            write_file(&path, text.as_bytes())?;
+            written.push(path);
+        }
+        Ok(())
+    };
+    write("history.svg".into(), pictures::forces(&history, deck))?;
+    if let Some(mesh) = driver.plane() {
+        let contacts = pictures::contact_table(directory, &[number])?;
+        let at = drawing.increment.map_or(String::new(), |n| format!("-{n}"));
+        write(
+            format!("contact{at}.svg"),
+            pictures::tractions(&contacts, number, deck),
+        )?;
+        let files = vtu::bodies(directory);
+        let arrays = match files.iter().find(|f| f.0 == number) {
+            Some((_, _, path)) => Some(vtu::read_point_data(path)?),
+            None if drawing.increment.is_some() => {
+                let all: Vec<String> = files.iter().map(|f| f.0.to_string()).collect();
+                return Err(RunError::Unknown {
+                    what: format!("the body of increment {number}"),
+                    expected: all.join(", "),
+                });
+            }
+            None => last.map(<[_]>::to_vec),
+        };
+        let field = drawing.field.as_deref();
+        if let Some(arrays) = arrays {
+            let name = field.unwrap_or(pictures::usual_field(deck));
+            if pictures::field(&arrays, name).is_none() {
+                let all = pictures::fields(&arrays);
+                return Err(RunError::Unknown {
+                    what: format!("the field \"{name}\""),
+                    expected: all.join(", "),
+                });
+            }
+            let svg = pictures::deformed(mesh, deck, &arrays, name, drawing.magnification);
+            write(format!("deformed{asked}.svg"), svg)?;
+        }
+    }
+    let page = report::report(driver, deck, directory, last)?;
+    write("report.html".into(), Some(page))?;
+    Ok(written)
+}

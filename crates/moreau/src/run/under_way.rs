@@ -1,0 +1,299 @@
+//! A run under way: its steps, the files that grow with them, and its checkpoints.
+
+use super::drawing::{Drawing, pictures_of};
+use super::files::{Stream, write_file};
+use super::history::{self, History};
+use super::log::Trace;
+use super::outcome::{self, Outcome, RunStatus, Tally};
+use super::vtu::Collection;
+use super::{CHECKPOINTS, Diagnosis, Event, RunError, View, Watch, body, checkpoint, contact};
+use crate::deck::{Deck, Setup, Vtu};
+use crate::driver::{Driver, Ramp, Reader, StepError, StepReport};
+use std::path::Path;
+use std::time::Instant;
+
+/// A run under way.
+pub(super) struct Run<'a, const D: usize> {
+    setup: Setup<D>,
+    deck: &'a Deck,
+    directory: &'a Path,
+    pub(super) resolved: String,
+    started: Instant,
+    /// Seconds spent before the checkpoint that the run goes on from.
+    before: f64,
+    /// Step under way, from 0, and how far it is.
+    stage: usize,
+    ramp: Option<Ramp<D>>,
+    history: History,
+    tally: Tally,
+    trace: Trace,
+    out: Option<Out>,
+}
+
+/// The files that grow.
+struct Out {
+    history: Stream,
+    contact: Stream,
+    log: Stream,
+    collection: Collection,
+}
+
+impl<'a, const D: usize> Run<'a, D>
+where
+    Driver<D>: View,
+{
+    pub(super) fn unopened(
+        setup: Setup<D>,
+        deck: &'a Deck,
+        directory: &'a Path,
+        resolved: String,
+    ) -> Self {
+        Self {
+            history: History::new(deck.units, &setup),
+            tally: Tally::new(&setup.driver),
+            setup,
+            deck,
+            directory,
+            resolved,
+            started: Instant::now(),
+            before: 0.0,
+            stage: 0,
+            ramp: None,
+            trace: Trace::new(),
+            out: None,
+        }
+    }
+
+    /// At the beginning.
+    pub(super) fn new(
+        setup: Setup<D>,
+        deck: &'a Deck,
+        directory: &'a Path,
+        resolved: String,
+    ) -> Result<Self, RunError> {
+        let mut run = Self::unopened(setup, deck, directory, resolved);
+        let mut out = Out {
+            history: Stream::create(directory.join("history.csv"))?,
+            contact: Stream::create(directory.join("contact.csv"))?,
+            log: Stream::create(directory.join("log.jsonl"))?,
+            collection: Collection::reopen(directory.to_owned(), 0)?,
+        };
+        out.history.line(&run.history.header())?;
+        out.contact.line(&contact::header(deck.units))?;
+        run.out = Some(out);
+        Ok(run)
+    }
+
+    fn seconds(&self) -> f64 {
+        self.before + self.started.elapsed().as_secs_f64()
+    }
+
+    /// Writes a checkpoint: all that [`Run::reopen`] needs.
+    pub(super) fn save(&mut self) -> Result<(), RunError> {
+        let mut numbers = vec![self.seconds(), self.stage as f64];
+        if let Some(out) = &mut self.out {
+            for stream in [&mut out.history, &mut out.contact, &mut out.log] {
+                stream.sync()?;
+                numbers.push(stream.length() as f64);
+            }
+            out.collection.sync()?;
+            numbers.push(out.collection.length() as f64);
+        }
+        self.tally.write(&mut numbers);
+        numbers.push(self.history.last.len() as f64);
+        numbers.extend(&self.history.last);
+        self.setup.driver.write(&mut numbers);
+        numbers.push(f64::from(u8::from(self.ramp.is_some())));
+        if let Some(ramp) = &self.ramp {
+            ramp.write(&mut numbers);
+        }
+        let directory = self.directory.join(CHECKPOINTS);
+        let increment = self.setup.driver.increments();
+        checkpoint::write(&directory, increment, &self.resolved, &numbers)
+    }
+
+    /// Takes over a checkpoint, and cuts the files back to it.
+    pub(super) fn reopen(&mut self, numbers: &[f64]) -> Result<(), Box<dyn std::error::Error>> {
+        let from = &mut Reader::new(numbers);
+        self.before = from.number()?;
+        self.stage = from.count()?;
+        let lengths = [from.count()?, from.count()?, from.count()?, from.count()?];
+        let [history, contact, log, list] = lengths.map(|n| n as u64);
+        self.tally.read(from)?;
+        let columns = from.count()?;
+        self.history.last = from.take(columns)?.to_vec();
+        self.setup.driver.read(from)?;
+        self.ramp = match (from.count()?, self.setup.stages.get(self.stage)) {
+            (1, Some(stage)) => Some(Ramp::read(&stage.step, stage.increments, from)?),
+            _ => None,
+        };
+        let at = |name: &str| self.directory.join(name);
+        self.out = Some(Out {
+            history: Stream::reopen(at("history.csv"), history)?,
+            contact: Stream::reopen(at("contact.csv"), contact)?,
+            log: Stream::reopen(at("log.jsonl"), log)?,
+            collection: Collection::reopen(self.directory.to_owned(), list)?,
+        });
+        Ok(())
+    }
+
+    /// Runs to the end, or to where it stops, and writes what is written at the end.
+    pub(super) fn finish(mut self, watch: &mut dyn Watch) -> Result<Outcome, RunError> {
+        let (status, diagnosis) = match self.steps(watch)? {
+            Ending::Done => (RunStatus::Done, None),
+            Ending::Interrupted => {
+                self.save()?;
+                let increment = self.setup.driver.increments();
+                (RunStatus::Interrupted(increment), None)
+            }
+            Ending::Carried(step) => {
+                let error = format!(
+                    "step {step:?} was to end in collapse, but its loads are carried: increase them"
+                );
+                (RunStatus::NotConverged(error), None)
+            }
+            Ending::Failed(error) => {
+                let sought = matches!(error, StepError::Model(_) | StepError::Collapse { .. });
+                let diagnosis = (!sought).then(|| {
+                    let (driver, trace) = (&self.setup.driver, &self.trace);
+                    Diagnosis::new(driver, self.deck, self.stage, trace, &error)
+                });
+                (RunStatus::of(Some(&error)), diagnosis)
+            }
+        };
+        let driver = &self.setup.driver;
+        if let Some(out) = &mut self.out {
+            if diagnosis.is_some() && self.trace.is_of_next(driver) {
+                let displacement = self.trace.displacement(driver);
+                let residual = &self.trace.residual;
+                out.collection.failed(driver, &displacement, residual)?;
+            }
+            if self.deck.vtu == Vtu::Last && driver.increments() > 0 {
+                out.collection.add(driver, self.history.time())?;
+            }
+            out.history.flush()?;
+            out.contact.flush()?;
+            out.log.flush()?;
+        }
+        let outcome = outcome::conclude(
+            driver,
+            self.deck,
+            &self.history,
+            &self.tally,
+            (status, diagnosis),
+            self.seconds(),
+        );
+        let json = outcome.json();
+        write_file(&self.directory.join("run.json"), json.as_bytes())?;
+        if driver.increments() > 0 {
+            let last = body::body(driver).0.point_data;
+            let drawing = Drawing::default();
+            pictures_of(driver, self.deck, self.directory, Some(&last), &drawing)?;
+        }
+        Ok(outcome)
+    }
+
+    fn steps(&mut self, watch: &mut dyn Watch) -> Result<Ending, RunError> {
+        let first = self.stage as f64 + self.ramp.as_ref().map_or(0.0, Ramp::done);
+        while let Some(stage) = self.setup.stages.get(self.stage) {
+            let mut ramp = match self.ramp.take() {
+                Some(ramp) => ramp,
+                None => match self.setup.driver.begin(&stage.step, stage.increments) {
+                    Ok(ramp) => ramp,
+                    Err(error) => return Ok(Ending::Failed(error.into())),
+                },
+            };
+            let name = stage.step.name().to_owned();
+            let to_collapse = stage.until_collapse;
+            let mut collapsed = false;
+            while !ramp.is_done() {
+                if watch.stops() {
+                    self.ramp = Some(ramp);
+                    return Ok(Ending::Interrupted);
+                }
+                let Some(out) = &mut self.out else { break };
+                let (trace, log) = (&mut self.trace, &mut out.log);
+                let mut broken = None;
+                let result = self.setup.driver.proceed(&mut ramp, &mut |iteration| {
+                    let line = trace.note(&name, iteration);
+                    watch.iterated(&line);
+                    broken = broken.take().or(log.line(&line).err());
+                });
+                if let Some(error) = broken {
+                    return Err(error);
+                }
+                let report = match result {
+                    Ok(report) => report,
+                    Err(StepError::Collapse { collapse, step }) => {
+                        self.tally.collapse = Some((self.stage, collapse));
+                        if self.setup.stages[self.stage].until_collapse {
+                            collapsed = true;
+                            break;
+                        }
+                        let error = StepError::Collapse { collapse, step };
+                        return Ok(Ending::Failed(error));
+                    }
+                    Err(error) => return Ok(Ending::Failed(error)),
+                };
+                self.record(&report)?;
+                let stages = self.setup.stages.len();
+                let done = self.stage as f64 + ramp.done();
+                let rate = self.started.elapsed().as_secs_f64() / (done - first);
+                watch.converged(&Event {
+                    step: &name,
+                    stage: self.stage + 1,
+                    stages,
+                    increments: self.setup.stages[self.stage].increments.count(),
+                    done: done / stages as f64,
+                    seconds_left: rate * (stages as f64 - done),
+                    report: &report,
+                });
+                let every = self.deck.checkpoint;
+                if every > 0 && report.increment.is_multiple_of(every) {
+                    self.ramp = Some(ramp.clone());
+                    self.save()?;
+                    self.ramp = None;
+                }
+            }
+            if to_collapse && !collapsed {
+                return Ok(Ending::Carried(name));
+            }
+            self.stage += 1;
+        }
+        Ok(Ending::Done)
+    }
+
+    /// Writes a converged increment.
+    fn record(&mut self, report: &StepReport) -> Result<(), RunError> {
+        let Some(out) = &mut self.out else {
+            return Ok(());
+        };
+        let driver = &self.setup.driver;
+        let place = history::Place {
+            stage: self.stage + 1,
+            directions: &self.setup.stages[self.stage].directions,
+        };
+        let row = self.history.record(driver, report, &place);
+        out.history.line(&row)?;
+        for line in contact::rows(driver, report, place.stage) {
+            out.contact.line(&line)?;
+        }
+        for stream in [&mut out.history, &mut out.contact, &mut out.log] {
+            stream.flush()?;
+        }
+        self.tally.add(driver, report);
+        if self.deck.vtu == Vtu::All {
+            out.collection.add(driver, self.history.time())?;
+        }
+        Ok(())
+    }
+}
+
+/// How the steps ended.
+enum Ending {
+    Done,
+    Interrupted,
+    /// A step that was to end in collapse has not.
+    Carried(String),
+    Failed(StepError),
+}

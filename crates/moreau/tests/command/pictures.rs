@@ -1,0 +1,129 @@
+//! Pictures and the report, drawn from the files of a run.
+
+use super::{BALL, moreau, punched, run, text};
+use std::fs;
+
+/// From files alone: the same pictures, others on demand, and a report that needs no network.
+#[test]
+fn a_run_is_drawn_again_from_its_files() {
+    let (status, _, err, results) = run("draw", &punched(), &["--quiet"]);
+    assert_eq!(status, 0, "{err}");
+    let usual = || {
+        ["history.svg", "contact.svg", "deformed.svg", "report.html"]
+            .map(|f| fs::read(results.join(f)).expect("a picture"))
+    };
+    let before = usual();
+    let at = results.to_str().expect("a path");
+    assert_eq!(moreau(&["plot", at]).status.code(), Some(0));
+    assert!(before == usual());
+    let one = "--field displacement.y --increment 7 --scale 3";
+    let one: Vec<&str> = ["plot", at].into_iter().chain(one.split(' ')).collect();
+    let output = moreau(&one);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let svg = fs::read_to_string(results.join("deformed-displacement.y-7.svg"));
+    assert!(svg.expect("a picture").contains("displacement.y [mm]"));
+    assert!(results.join("contact-7.svg").exists());
+    let output = moreau(&["plot", at, "--png"]);
+    if cfg!(feature = "png") {
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        for name in ["history.png", "contact.png", "deformed.png"] {
+            let png = fs::read(results.join(name)).expect("a picture");
+            assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n", "{name}");
+        }
+    } else {
+        assert_eq!(output.status.code(), Some(1));
+        let told = text(&output.stderr);
+        assert!(told.contains("feature `png`") && told.contains("--features png"));
+    }
+    for (key, value, named) in [
+        ("--field", "pres", "von_mises"),
+        ("--increment", "21", "1 to 20"),
+    ] {
+        let output = moreau(&["plot", at, key, value]);
+        assert_eq!(output.status.code(), Some(1));
+        let told = text(&output.stderr);
+        assert!(told.contains(value) && told.contains(named), "{told}");
+    }
+
+    let page = text(&before[3]);
+    let outside = page.replace("http://www.w3.org/2000/svg", "");
+    assert!(!outside.contains("http") && !outside.contains("src="));
+    let data = page.split("id=\"data\">").nth(1);
+    let data = data.and_then(|d| d.split("</script>").next());
+    let data: serde_json::Value = serde_json::from_str(data.expect("data")).expect("json");
+    assert_eq!(data["frames"].as_array().map(Vec::len), Some(20));
+    assert_eq!(data["faces"].as_array().map(Vec::len), Some(20));
+    let punch = data["frames"][19]["values"]["displacement.y"]["low"].as_f64();
+    assert!((punch.expect("a number") + 0.2).abs() < 1e-12);
+    // The contact line of every frame: pressures and shears of the floor at 21 points.
+    let contact = &data["contact"];
+    assert_eq!(contact["frames"].as_array().map(Vec::len), Some(20));
+    assert_eq!(contact["surfaces"][0]["name"], "block.bottom");
+    let most = |frame: usize| contact["frames"][frame][0][0]["high"].as_f64();
+    let rows = fs::read_to_string(results.join("contact.csv")).expect("contacts");
+    for frame in [0, 19] {
+        let field = |line: &str, k: usize| line.split(',').nth(k).map(str::to_owned);
+        let own = (frame + 1).to_string();
+        let found = rows.lines().filter(|l| field(l, 1) == Some(own.clone()));
+        let pressures = found.filter_map(|l| field(l, 14)?.parse::<f64>().ok());
+        let found = pressures.reduce(f64::max).expect("a pressure");
+        let shown = most(frame).expect("a number");
+        assert!((shown / found - 1.0).abs() < 1e-12, "{shown} {found}");
+    }
+    assert!(page.contains("Certificate of every increment") && page.contains("force.punch.y"));
+    assert!(page.contains("[[mesh.block]]"));
+}
+
+/// The contact surface of a body in space: every facet and every point of it in each frame, with the
+/// values of `contact.csv`; the run is drawn again from its files.
+#[test]
+fn a_contact_surface_in_space_is_in_the_report() {
+    let (status, _, err, results) = run("face", BALL, &["--quiet"]);
+    assert_eq!(status, 0, "{err}");
+    let page = fs::read(results.join("report.html")).expect("a report");
+    let output = moreau(&["plot", results.to_str().expect("a path")]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(page == fs::read(results.join("report.html")).expect("a report"));
+    let page = text(&page);
+    let data = page.split("id=\"data\">").nth(1);
+    let data = data.and_then(|d| d.split("</script>").next());
+    let data: serde_json::Value = serde_json::from_str(data.expect("data")).expect("json");
+    let contact = &data["contact"];
+    let count = |key: &str| contact[key].as_array().map(Vec::len);
+    // 4 × 4 faces on the top of the block.
+    assert_eq!((count("faces"), count("points")), (Some(16), Some(25)));
+    assert_eq!((count("frames"), count("statuses")), (Some(2), Some(3)));
+    let rows = fs::read_to_string(results.join("contact.csv")).expect("contacts");
+    let of = |frame: usize, value: &dyn Fn(&[&str]) -> f64| -> [f64; 2] {
+        let rows = rows.lines().map(|l| l.split(',').collect::<Vec<_>>());
+        let own = rows.filter(|r| r[1] == (frame + 1).to_string());
+        let values = own.map(|r| value(&r));
+        values.fold([f64::INFINITY, -f64::INFINITY], |[l, h], v| {
+            [l.min(v), h.max(v)]
+        })
+    };
+    let number = |row: &[&str], k: usize| row[k].parse::<f64>().expect("a number");
+    for frame in 0..2 {
+        let shown = |name: &str| {
+            let field = &contact["frames"][frame][name];
+            ["low", "high"].map(|key| field[key].as_f64().expect("a number"))
+        };
+        let shear = |r: &[&str]| number(r, 15).hypot(number(r, 16));
+        for (name, found) in [
+            ("gap", of(frame, &|r| number(r, 8))),
+            ("pressure", of(frame, &|r| number(r, 14))),
+            ("shear", of(frame, &shear)),
+        ] {
+            for (shown, found) in shown(name).into_iter().zip(found) {
+                assert!(
+                    (shown - found).abs() <= 1e-12 * found.abs(),
+                    "{name}: {shown} {found}"
+                );
+            }
+        }
+        // Open beside the ball, closed below it.
+        let [low, high] = shown("status");
+        assert!(low == 0.0 && high >= 1.0, "{low} {high}");
+        assert!(shown("pressure")[1] > 0.0 && shown("shear")[1] > 0.0);
+    }
+}

@@ -1,0 +1,145 @@
+//! Keys and names that do not exist.
+
+use super::{DECK, says, shown};
+use moreau::deck::open;
+
+#[test]
+fn unknown_keys_and_values_name_the_nearest() {
+    says(
+        "poisson",
+        "poison",
+        "poison",
+        &["unknown key \"poison\"", "did you mean \"poisson\"?"],
+    );
+    says(
+        "poisson",
+        "poison",
+        "[[material]]",
+        &["has no key \"poisson\""],
+    );
+    says(
+        "units = \"mm-N-MPa\"",
+        "units = \"mm-N-Mpa\"",
+        "units =",
+        &[
+            "expected \"mm-N-MPa\", \"m-N-Pa\" or \"in-lbf-psi\"",
+            "did you mean \"mm-N-MPa\"?",
+        ],
+    );
+    says("quad8", "quad88", "quad88", &["did you mean \"quad8\"?"]);
+    says("title =", "titel =", "titel", &["did you mean \"title\"?"]);
+    says(
+        "increments = 20",
+        "increments = 20\nincrement = 3",
+        "increment = 3",
+        &["unknown key"],
+    );
+    says(
+        "[[tool]]",
+        "[[tols]]\na = 1\n[[tool]]",
+        "[[tols]]",
+        &["did you mean \"tool\"?"],
+    );
+}
+
+#[test]
+fn names_that_do_not_exist_name_the_nearest() {
+    says(
+        "on = \"punch\"",
+        "on = \"puncg\"",
+        "puncg",
+        &["no group \"puncg\"", "\"punch\"?"],
+    );
+    says(
+        "\"block.bottom\"",
+        "\"block.botom\"",
+        "botom",
+        &["did you mean \"block.bottom\"?"],
+    );
+    says(
+        "against = \"foundation\"",
+        "against = \"fundation\"",
+        "fundation",
+        &["no tool \"fundation\"; did you mean \"foundation\"?"],
+    );
+    says(
+        "on = \"block\"",
+        "on = \"blok\"",
+        "blok",
+        &["did you mean \"block\"?"],
+    );
+    says(
+        "on = \"block\"",
+        "on = \"punch\"",
+        "on = \"punch\"",
+        &["holds facets", "a body"],
+    );
+    says(
+        "\"force.punch.y\"",
+        "\"force.pnch.y\"",
+        "pnch",
+        &["did you mean \"force.punch.y\"?"],
+    );
+}
+
+/// Keys that are asked for in several places are listed once.
+#[test]
+fn the_keys_of_a_table_are_listed_once() {
+    let out = shown("poisson = 0.3", "poisson = 0.3\npossion = 0.3");
+    assert!(out.contains("did you mean \"poisson\"?"), "{out}");
+    assert_eq!(out.matches("kinematic").count(), 1, "{out}");
+}
+
+/// Symbols of formulas, and keys that are nothing like any.
+#[test]
+fn symbols_are_known_and_strangers_suggest_nothing() {
+    for (from, to, meant) in [
+        ("young =", "E =", "did you mean \"young\"?"),
+        ("poisson =", "nu =", "did you mean \"poisson\"?"),
+        (
+            "friction = 0.1",
+            "friction = { mu = 0.1 }",
+            "did you mean \"coulomb\"?",
+        ),
+    ] {
+        says(from, to, to, &[meant]);
+    }
+    let out = shown("young =", "wwww = 1\nyoung =");
+    assert!(
+        out.contains("unknown key") && !out.contains("did you mean"),
+        "{out}"
+    );
+}
+
+/// Two brackets are forgotten easily; the table is read all the same.
+#[test]
+fn one_table_for_a_list_is_one_mistake() {
+    for header in ["tool", "contact", "step", "material", "mesh.block"] {
+        let text = DECK.replace(&format!("[[{header}]]"), &format!("[{header}]"));
+        assert!(text.len() < DECK.len(), "{header}");
+        let (_, problem, findings) = open(&text);
+        let out = findings.render("deck.toml", &text, false);
+        assert!(problem.is_none() && findings.errors() == 1, "{out}");
+        assert!(
+            out.contains(&format!("[[{header}]] with two brackets")),
+            "{out}"
+        );
+    }
+}
+
+#[test]
+fn what_is_no_toml_is_told_in_words_of_the_deck() {
+    says(
+        "friction = 0.1",
+        "friction = 0.1\nfriction = 0.2",
+        "friction = 0.2",
+        &["the key \"friction\" stands twice in one table"],
+    );
+    says("0.3", "0,3", "0,3", &["decimals have a point"]);
+    says(
+        "young = 210000.0",
+        "young 210000.0",
+        "young 2",
+        &["not TOML: "],
+    );
+}

@@ -1,0 +1,277 @@
+//! Materials and friction of every kind: built and echoed, or refused.
+
+use super::{DECK, says};
+use moreau::deck::open;
+
+/// Kinds of hardening and of friction that a deck can ask for.
+const LAWS: [(&str, &str); 8] = [
+    ("300.0", "300.0\nhardening = { linear = 1000 }"),
+    ("300.0", "300.0\nhardening = { voce = [150.0, 20] }"),
+    (
+        "300.0",
+        "300.0\nhardening = { swift = [700.0, 0.0145, 0.2] }",
+    ),
+    (
+        "300.0",
+        "300.0\nhardening = { table = [[0, 300], [0.01, 350.0], [0.1, 380]] }",
+    ),
+    (
+        "300.0",
+        "300.0\nhardening = { table = [[0.01, 350.0], [0.1, 380]] }",
+    ),
+    (
+        "300.0",
+        "300.0\nkinematic = [ { modulus = 2e3 }, { modulus = 6e4, recall = 400.0 } ]",
+    ),
+    ("friction = 0.1", "friction = { tresca = 50.0 }"),
+    (
+        "friction = 0.1",
+        "friction = { coulomb = 0.1, tau-max = 170.0 }",
+    ),
+];
+
+#[test]
+fn laws_of_every_kind_are_built_and_echoed() {
+    for (from, to) in LAWS {
+        let text = DECK.replacen(from, to, 1);
+        let (deck, problem, findings) = open(&text);
+        let shown = findings.render("deck.toml", &text, false);
+        assert!(problem.is_some() && findings.warnings() == 0, "{shown}");
+        let once = deck.resolved();
+        let (again, problem, findings) = open(&once);
+        assert!(
+            problem.is_some(),
+            "{}",
+            findings.render("resolved", &once, false)
+        );
+        assert_eq!(again.resolved(), once);
+        // What was given is there, in the numbers it was given in.
+        let line = to.lines().last().expect("a line");
+        let digits = |text: &str| -> Vec<f64> {
+            text.split(|c: char| !(c.is_ascii_digit() || c == '.' || c == 'e'))
+                .filter_map(|n| n.parse().ok())
+                .collect()
+        };
+        let key = line.split(' ').next().expect("a key");
+        let echoed = once.lines().find(|l| l.starts_with(key)).expect("echoed");
+        let wanted = digits(line);
+        let found = digits(echoed);
+        assert!(wanted.iter().all(|n| found.contains(n)), "{line}: {echoed}");
+    }
+}
+
+#[test]
+fn laws_that_are_none_are_pointed_at() {
+    let hardening = [
+        (
+            "{ voce = [150.0] }",
+            "voce is an array of 1, expected [q_inf, b]",
+        ),
+        (
+            "{ voce = [-1.0, 2] }",
+            "saturation of hardening must be non-negative and finite, got -1",
+        ),
+        (
+            "{ swift = [700.0, 0.0, 0.2] }",
+            "offset of hardening must be positive",
+        ),
+        (
+            "{ swift = [700.0, 0.1, 0.2] }",
+            "hardening starts at a stress of 441.67",
+        ),
+        (
+            "{ table = [[0, 200], [1, 300]] }",
+            "hardening starts at a stress of 200",
+        ),
+        (
+            "{ table = [[0.1, 350], [0.2, 340]] }",
+            "row 2 of the hardening table softens",
+        ),
+        ("{ table = [[0.1, 350, 1]] }", "expected [p, stress]"),
+        (
+            "{ linear = 1.0, voce = [1, 2] }",
+            "hardening has 2 laws, expected one",
+        ),
+        ("{ line = 1.0 }", "did you mean \"linear\"?"),
+    ];
+    for (law, message) in hardening {
+        let to = format!("300.0\nhardening = {law}");
+        says("300.0", &to, "hardening =", &[message]);
+    }
+    let term = "{ modulus = 1.0, recall = 2.0 }";
+    let terms = [
+        (
+            "{ modulus = 1.0, recall = -2.0 }".to_owned(),
+            "recall of kinematic hardening must",
+        ),
+        (
+            "{ modulus = -1.0, recall = 2.0 }".to_owned(),
+            "kinematic hardening modulus must",
+        ),
+        ("{ recall = 2.0 }".to_owned(), "has no key \"modulus\""),
+        (
+            [term; 5].join(", "),
+            "5 terms of kinematic hardening with recall, at most 4",
+        ),
+    ];
+    for (terms, message) in terms {
+        let to = format!("300.0\nkinematic = [ {terms} ]");
+        says("300.0", &to, "kinematic =", &[message]);
+    }
+    for (law, message) in [
+        ("{ tresca = -5.0 }", "friction limit must be non-negative"),
+        (
+            "{ coulomb = 0.1, tau-max = -1.0 }",
+            "friction limit must be non-negative",
+        ),
+        (
+            "{ coulomb = -0.1, tau-max = 1.0 }",
+            "coefficient of friction must be",
+        ),
+        ("{ tau-max = 1.0 }", "has no key \"coulomb\""),
+        (
+            "{ tresca = 5.0, coulomb = 0.1 }",
+            "friction has tresca and coulomb",
+        ),
+        ("{ tresca = 0.0 }", "frictionless"),
+    ] {
+        let to = format!("friction = {law}");
+        says("friction = 0.1", &to, "friction =", &[message]);
+    }
+    says(
+        "yield-stress = 300.0",
+        "kinematic = [ { modulus = 1.0 } ]",
+        "kinematic =",
+        &["given without a yield-stress"],
+    );
+}
+
+/// A soil has a cohesion and angles, which belong together and have ranges.
+#[test]
+fn what_is_no_soil_is_told() {
+    let soil = |strength: &str, at: &str, word: &str| {
+        says("yield-stress = 300.0", strength, at, &[word]);
+    };
+    for (angles, at, word) in [
+        (
+            "friction-angle = 90",
+            "friction-angle",
+            "must lie in ]0, 90[",
+        ),
+        (
+            "friction-angle = 30\ndilatancy-angle = 31",
+            "dilatancy-angle",
+            "[0, friction angle]",
+        ),
+        (
+            "yield-stress = 1\nfriction-angle = 30",
+            "cohesion",
+            "expected one law",
+        ),
+        ("", "cohesion", "without a friction-angle"),
+        (
+            "friction-angel = 30",
+            "friction-angel",
+            "did you mean \"friction-angle\"?",
+        ),
+        (
+            "friction-angle = 30\nhardening = { linear = 1 }",
+            "hardening =",
+            "given without",
+        ),
+    ] {
+        soil(&format!("cohesion = 1\n{angles}"), at, word);
+    }
+    soil(
+        "cohesion = -1\nfriction-angle = 30",
+        "cohesion",
+        "cohesion must be positive",
+    );
+    soil(
+        "dilatancy-angle = 30",
+        "dilatancy-angle",
+        "without a cohesion",
+    );
+    let strength = "cohesion = 1\nfriction-angle = 30";
+    let text = DECK.replace("yield-stress = 300.0", strength);
+    let (deck, problem, findings) = open(&text);
+    assert!(
+        problem.is_some(),
+        "{}",
+        findings.render("deck.toml", &text, false)
+    );
+    let soil = deck.materials[0].soil.as_ref().expect("a soil");
+    assert_eq!(soil.dilatancy_angle.value, 30.0);
+}
+
+/// A solid on a rough floor whose friction has two coefficients.
+const SOLID: &str = r#"
+units = "mm-N-MPa"
+analysis = "solid"
+mesh.block = [{ name = "b", element = "hex8", x = [0, 9], y = [0, 9], z = [0, 3], cells = [2, 2, 1] }]
+material = [{ on = "b", young = 1000.0, poisson = 0.3 }]
+tool = [{ name = "floor", plane = { point = [0, 0, 0], normal = [0, 0, 1] } }]
+[[contact]]
+surface = "b.back"
+against = "floor"
+friction = { coulomb = [0.1, 0.4], axis = [1.0, 1.0, 0.0] }
+[[step]]
+name = "press"
+increments = 1
+move = [{ on = "b.front", u = { x = 1, y = 0, z = -0.01 } }]
+"#;
+
+#[test]
+fn two_coefficients_of_friction_have_an_axis() {
+    let (deck, problem, findings) = open(SOLID);
+    let shown = findings.render("deck.toml", SOLID, false);
+    assert!(problem.is_some() && findings.iter().count() == 0, "{shown}");
+    let once = deck.resolved();
+    assert!(
+        once.contains("friction = { coulomb = [0.1, 0.4], axis = [1.0, 1.0, 0.0] }"),
+        "{once}"
+    );
+    assert_eq!(open(&once).0.resolved(), once);
+    let friction = "{ coulomb = [0.1, 0.4], axis = [1.0, 1.0, 0.0] }";
+    for (to, words) in [
+        ("{ coulomb = [0.1, 0.4] }", &["has no key \"axis\""][..]),
+        (
+            "{ coulomb = 0.1, axis = [1, 0, 0] }",
+            &["coulomb is the number 0.1, expected 2 numbers"],
+        ),
+        (
+            "{ coulomb = [0.1, 0.4], axis = [1, 0] }",
+            &["axis is an array of 2, expected 3 numbers"],
+        ),
+        (
+            "{ coulomb = [0.1, 0], axis = [1, 0, 0] }",
+            &["friction along the second tangent", "positive"],
+        ),
+        (
+            "{ coulomb = [0.1, 0.4], axis = [0, 0, 2] }",
+            &["axis of friction is normal to \"b.back\""],
+        ),
+        (
+            "{ coulomb = [0.1, 0.4], axis = [0, 0, 0] }",
+            &["length of the axis of friction"],
+        ),
+        (
+            "{ coulomb = [0.1, 0.4], axis = [1, 0, 0], tau-max = 5 }",
+            &["tau-max limits friction of one"],
+        ),
+        ("[0.1, 0.4]", &["axis"]),
+    ] {
+        let text = SOLID.replace(friction, to);
+        let (_, problem, findings) = open(&text);
+        let out = findings.render("deck.toml", &text, false);
+        assert!(problem.is_none(), "{to}");
+        let out = crate::flat(&out);
+        assert!(words.iter().all(|w| out.contains(w)), "{to}: {out}");
+    }
+    says(
+        "friction = 0.1",
+        "friction = { coulomb = [0.1, 0.4], axis = [1, 0, 0] }",
+        "friction =",
+        &["needs analysis = \"solid\""],
+    );
+}

@@ -1,0 +1,313 @@
+//! Values that are impossible, and such as are possible and hardly ever meant.
+
+use super::{DECK, flat, says, shown};
+use moreau::deck::open;
+
+#[test]
+fn values_out_of_their_range_are_pointed_at() {
+    says(
+        "0.3",
+        "0.5",
+        "0.5",
+        &["Poisson's ratio must lie in ]-1, 0.5[", "got 0.5"],
+    );
+    says("210000.0", "-1.0", "-1.0", &["Young", "must be positive"]);
+    says(
+        "300.0",
+        "0",
+        "yield-stress = 0",
+        &["yield stress must be positive"],
+    );
+    says(
+        "friction = 0.1",
+        "friction = -0.1",
+        "-0.1",
+        &["non-negative"],
+    );
+    says(
+        "normal = [0, 1]",
+        "normal = [0, 0]",
+        "normal",
+        &["length of the plane's normal"],
+    );
+    says(
+        "x = [0, 50]",
+        "x = [50, 0]",
+        "[50, 0]",
+        &["expected [from, to] with from < to"],
+    );
+    says(
+        "cells = [10, 2]",
+        "cells = [10, 0]",
+        "[10, 0]",
+        &["0 cells along y"],
+    );
+    says(
+        "cells = [10, 2]",
+        "cells = [99999, 9999]",
+        "[[mesh",
+        &["cells, expected at most"],
+    );
+    says(
+        "increments = 20",
+        "increments = 0",
+        "increments = 0",
+        &["an integer from 1"],
+    );
+    says(
+        "analysis",
+        "thickness = -2.0\nanalysis",
+        "thickness",
+        &["must be positive"],
+    );
+    says("y = -0.2", "y = nan", "nan", &["a finite number"]);
+    says(
+        "friction = 0.1",
+        "friction = \"0.1\"",
+        "friction = \"",
+        &["the text", "expected a number"],
+    );
+    says(
+        "normal = [0, 1]",
+        "normal = [0, 1, 0]",
+        "normal",
+        &["expected 2 numbers"],
+    );
+}
+
+#[test]
+fn tools_and_contacts_out_of_their_range_are_pointed_at() {
+    let plane = "plane = { point = [0, 0], normal = [0, 1] }";
+    says(
+        plane,
+        "polyline = [[0, 0], [1, 0], [0.5, 0]]",
+        "polyline",
+        &["no turn back on itself"],
+    );
+    says(
+        plane,
+        "polyline = [[0, 0]]",
+        "polyline",
+        &["number of points of the polyline is 1, expected at least 2"],
+    );
+    says(
+        plane,
+        "polyline = [[0, 0], [1, 0]]\ninside = true",
+        "inside",
+        &["a polyline has no inside", "reverse the order"],
+    );
+    says(
+        plane,
+        "cylinder = { center = [0, -9], radius = 0 }",
+        "cylinder",
+        &["radius is 0"],
+    );
+    says(
+        "friction = 0.1",
+        "friction = 0.1\nadjust = -1",
+        "adjust",
+        &["expected true, or a distance"],
+    );
+    for part in ["0", "1.5"] {
+        let solver = format!("[solver]\ncontact = {{ penetration = {part} }}\n[expect]");
+        says(
+            "[expect]",
+            &solver,
+            "penetration",
+            &["a part of the size of a cell"],
+        );
+    }
+    says(
+        "increments = 20",
+        "increments = { start = 0.1, min = 0.2, max = 0.5 }",
+        "increments",
+        &["0 < min ≤ start ≤ max ≤ 1"],
+    );
+}
+
+#[test]
+fn groups_that_are_empty_twice_or_unused_are_found() {
+    says(
+        "x = [0, 25]",
+        "x = [60, 70]",
+        "[[mesh.group]]",
+        &["the group \"punch\" is empty"],
+    );
+    says(
+        "name = \"punch\"",
+        "name = \"block.top\"",
+        "name = \"block.top\"",
+        &["exists already"],
+    );
+    says(
+        "[[material]]",
+        "[[mesh.group]]\nname = \"idle\"\non = \"block\"\nx = [0, 25]\n[[material]]",
+        "\"idle\"",
+        &["no condition uses the group \"idle\""],
+    );
+    let half = "[[mesh.group]]\nname = \"half\"\non = \"block\"\nx = [0, 25]\n\n[[material]]\non = \"half\"";
+    says(
+        "[[material]]\non = \"block\"",
+        half,
+        "name = \"block\"",
+        &["cells have no material"],
+    );
+    // 27.5 is the middle of an edge.
+    says(
+        "x = [0, 25]",
+        "x = [0, 28]",
+        "[[mesh.group]]",
+        &["cut through the mesh", "(11 nodes)", "(12)"],
+    );
+}
+
+#[test]
+fn one_displacement_is_prescribed_once() {
+    says(
+        "u = [\"x\"]",
+        "u = [\"y\"]",
+        "[[step]]",
+        &["prescribes u_y", "as 0 and as -0.2"],
+    );
+}
+
+#[test]
+fn what_is_doubtful_is_a_warning() {
+    says(
+        "friction = 0.1",
+        "friction = 0",
+        "friction = 0",
+        &["frictionless"],
+    );
+    says(
+        "y = -0.2",
+        "y = 0",
+        "name = \"press\"",
+        &["nothing loads the model"],
+    );
+    let locks = "locks in plastic flow";
+    says(
+        "quad8",
+        "tri3",
+        "yield-stress",
+        &["tri3", locks, "a quadratic element"],
+    );
+    let full = DECK
+        .replace("quad8", "quad4")
+        .replace("0.3", "0.3\nquadrature = \"full\"");
+    let (_, _, findings) = open(&full);
+    let out = flat(&findings.render("deck.toml", &full, false));
+    assert!(out.contains(locks) && out.contains("\"b-bar\""), "{out}");
+    let (deck, _, findings) = open(&DECK.replace("quad8", "quad4"));
+    assert_eq!(findings.iter().count(), 0);
+    assert_eq!(deck.quadrature(&deck.materials[0]), "b-bar");
+    let twice = "[[tool]]\nname = \"idle\"\nplane = { point = [0, 9], normal = [0, 1] }\n[[tool]]";
+    says(
+        "[[tool]]",
+        twice,
+        "\"idle\"",
+        &["no [[contact]] uses the tool \"idle\""],
+    );
+}
+
+/// What is possible and hardly ever meant: said, and the deck can be run.
+#[test]
+fn units_and_normals_that_look_wrong_are_doubted() {
+    says(
+        "young = 210000.0",
+        "young = 210.0",
+        "young = 210.0",
+        &[
+            "yields at 300 MPa",
+            "Young's modulus of 210 MPa",
+            "another unit?",
+        ],
+    );
+    says(
+        "y = -0.2",
+        "y = -200",
+        "y = -200",
+        &["moved by 200 mm", "the whole mesh is", "another unit?"],
+    );
+    says(
+        "normal = [0, 1]",
+        "normal = [0, -1]",
+        "normal = [0, -1]",
+        &["all cells at \"block.bottom\" lie inside", "turned round?"],
+    );
+    says(
+        "surface = \"block.bottom\"",
+        "surface = \"foundation\"",
+        "surface = \"foundation\"",
+        &["\"foundation\" is a tool, expected a group of the mesh"],
+    );
+}
+
+#[test]
+fn values_of_another_shape_say_what_is_expected() {
+    says(
+        "young = 210000.0",
+        "young = \"210 GPa\"",
+        "210 GPa",
+        &[
+            "the text \"210 GPa\"",
+            "without quotes, and in the units of the deck",
+        ],
+    );
+    says(
+        "u = { y = -0.2 }",
+        "u = -0.2",
+        "u = -0.2",
+        &["as in { y = -0.2 }"],
+    );
+    says(
+        "point = [0, 0]",
+        "point = 0",
+        "point = 0",
+        &["the integer 0, expected 2 numbers, [ …, … ]"],
+    );
+    says(
+        "point = [0, 0]",
+        "point = [0, 0, 0]",
+        "point =",
+        &["an array of 3, expected 2 numbers, [ …, … ]"],
+    );
+}
+
+#[test]
+fn moduli_and_friction_in_another_unit_are_doubted() {
+    let unit = "units = \"mm-N-MPa\"";
+    for (from, to, told) in [
+        (
+            unit,
+            "units = \"m-N-Pa\"",
+            ["softer than rubber", "another unit?"],
+        ),
+        (
+            "young = 210000.0",
+            "young = 210e9",
+            ["stiffer than diamond", "another unit?"],
+        ),
+        (
+            "friction = 0.1",
+            "friction = 10",
+            ["a tenth is 0.1", "in percent?"],
+        ),
+    ] {
+        let at = to.split(" =").next().expect("a key");
+        let at = if from == unit { "young" } else { at };
+        says(from, to, &format!("{at} ="), &told);
+    }
+}
+
+#[test]
+fn a_surface_has_one_contact() {
+    let again = "[[contact]]\nsurface = \"block.bottom\"\nagainst = \"foundation\"\nfriction = 0.2 # again\n\n[[step]]";
+    let out = shown("[[step]]", again);
+    for word in [
+        "\"block.bottom\" has a contact with \"foundation\" already",
+        "[[mesh.group]]",
+    ] {
+        assert!(flat(&out).contains(word), "{out}");
+    }
+}

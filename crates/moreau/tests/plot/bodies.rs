@@ -1,0 +1,165 @@
+//! Pictures of bodies: well-formed for every cell, curved where edges are, small, and errors for data
+//! that do not fit.
+
+use super::{block, texts};
+use moreau::mesh::{CellKind, block2, uniform};
+use moreau::plot::{MeshPicture, PlotError};
+
+const PLANE: [CellKind; 5] = [
+    CellKind::Tri3,
+    CellKind::Tri6,
+    CellKind::Quad4,
+    CellKind::Quad8,
+    CellKind::Quad9,
+];
+
+#[test]
+fn pictures_are_well_formed_for_every_plane_cell() {
+    for kind in PLANE {
+        let mesh = block(kind);
+        let value = mesh.nodes().iter().map(|x| x[0] * x[1]).collect();
+        let bend: Vec<[f64; 2]> = mesh
+            .nodes()
+            .iter()
+            .map(|x| [0.0, 0.01 * x[0] * x[0]])
+            .collect();
+        let picture = MeshPicture::new(&mesh, "bent")
+            .deformed(bend, 5.0)
+            .field("xy [mm²]", value)
+            .outline()
+            .polyline(vec![[-1e9, 0.0], [1e9, 0.0], [f64::NAN, 1.0], [2.0, 2.5]]);
+        let svg = picture.to_svg().expect("a picture");
+        let texts = texts(&svg);
+        for text in [
+            "bent",
+            "xy [mm²]",
+            "0",
+            "10.0",
+            "displacement × 5",
+            "0.5 mm",
+        ] {
+            assert!(texts.iter().any(|t| t == text), "{text} in {texts:?}");
+        }
+        assert_eq!(Ok(svg), picture.to_svg());
+        let inches = self::texts(&picture.unit("in").to_svg().expect("a picture"));
+        assert!(inches.iter().any(|t| t == "0.5 in"), "{inches:?}");
+        self::texts(&MeshPicture::new(&mesh, "").to_svg().expect("a picture"));
+    }
+}
+
+#[test]
+fn curved_edges_are_curves() {
+    let ring = block(CellKind::Quad8)
+        .map(|x| {
+            [
+                (3.0 + x[1]) * (0.3 * x[0]).sin(),
+                (3.0 + x[1]) * (0.3 * x[0]).cos(),
+            ]
+        })
+        .expect("a mesh");
+    let svg = MeshPicture::new(&ring, "").to_svg().expect("a picture");
+    assert!(svg.contains('q'));
+    let straight = MeshPicture::new(&block(CellKind::Quad8), "")
+        .to_svg()
+        .expect("a picture");
+    let paths: Vec<&str> = straight.split(" d=\"").skip(1).collect();
+    assert!(
+        paths
+            .iter()
+            .all(|d| !d.split('"').next().unwrap_or("").contains('q'))
+    );
+}
+
+#[test]
+fn large_meshes_make_small_pictures() {
+    let mesh = block2(
+        "b",
+        CellKind::Quad8,
+        &uniform(0.0, 50.0, 112),
+        &uniform(0.0, 20.0, 32),
+    )
+    .expect("a mesh");
+    let wave = mesh
+        .nodes()
+        .iter()
+        .map(|x| (3.0 * x[0]).sin() * (2.0 * x[1]).cos())
+        .collect();
+    let svg = MeshPicture::new(&mesh, "wave")
+        .field("w", wave)
+        .to_svg()
+        .expect("a picture");
+    assert!(svg.len() < 3_000_000, "{} bytes", svg.len());
+    texts(&svg);
+}
+
+#[test]
+fn flattened_bodies_and_constant_fields_are_drawn() {
+    let mesh = block(CellKind::Quad8);
+    let flat: Vec<[f64; 2]> = mesh.nodes().iter().map(|x| [0.0, -x[1]]).collect();
+    texts(
+        &MeshPicture::new(&mesh, "")
+            .deformed(flat, 1.0)
+            .to_svg()
+            .expect("a picture"),
+    );
+    let point: Vec<[f64; 2]> = mesh.nodes().iter().map(|x| [-x[0], -x[1]]).collect();
+    texts(
+        &MeshPicture::new(&mesh, "")
+            .deformed(point, 1.0)
+            .to_svg()
+            .expect("a picture"),
+    );
+    for value in [0.0, 300.0, -1e-12] {
+        let mut values = vec![value; mesh.nodes().len()];
+        values[0] = f64::NAN;
+        let picture = MeshPicture::new(&mesh, "").field("c", values);
+        texts(&picture.to_svg().expect("a picture"));
+    }
+}
+
+#[test]
+fn data_that_do_not_fit_the_mesh_are_errors() {
+    let mesh = block(CellKind::Quad4);
+    let nodes = mesh.nodes().len();
+    let picture = || MeshPicture::new(&mesh, "");
+    let error = picture().field("f", vec![0.0; 3]).to_svg().unwrap_err();
+    assert_eq!(
+        error,
+        PlotError::Length {
+            what: "the field \"f\"".into(),
+            found: 3,
+            nodes
+        }
+    );
+    let error = picture()
+        .deformed(vec![[0.0; 2]; 2], 1.0)
+        .to_svg()
+        .unwrap_err();
+    assert!(
+        matches!(error, PlotError::Length { found: 2, .. }),
+        "{error}"
+    );
+    let error = picture()
+        .deformed(vec![[0.0, f64::NAN]; nodes], 1.0)
+        .to_svg()
+        .unwrap_err();
+    assert!(
+        matches!(error, PlotError::Displacement { node: 0, .. }),
+        "{error}"
+    );
+    let error = picture()
+        .deformed(vec![[1.0; 2]; nodes], f64::INFINITY)
+        .to_svg()
+        .unwrap_err();
+    assert!(
+        matches!(error, PlotError::Displacement { node: 0, .. }),
+        "{error}"
+    );
+    for values in [
+        vec![f64::NAN; nodes],
+        (0..nodes).map(|k| [-1e308, 1e308][k % 2]).collect(),
+    ] {
+        let error = picture().field("f", values).to_svg().unwrap_err();
+        assert_eq!(error, PlotError::NoValues { label: "f".into() });
+    }
+}
