@@ -21,9 +21,40 @@ pub enum Problem {
     /// Local form, spatial.
     Local3(LocalProblem<3>),
     /// Global form, plane.
-    Global2(GlobalProblem<2>),
+    Global2(Global<2>),
     /// Global form, spatial.
-    Global3(GlobalProblem<3>),
+    Global3(Global<3>),
+}
+
+/// The parts of a problem in global form, not reduced yet: a program that is timed has to reduce it.
+#[derive(Debug, Clone)]
+pub struct Global<const D: usize> {
+    /// Entries of M.
+    pub stiffness: Entries,
+    /// Entries of H.
+    pub directions: Entries,
+    /// Loads f of the bodies.
+    pub load: Vec<f64>,
+    /// Free displacements w of the contacts.
+    pub free: Vec<Local<D>>,
+    /// The law of every contact.
+    pub friction: Vec<Coulomb>,
+}
+
+impl<const D: usize> Global<D> {
+    /// The problem, reduced to its local form.
+    ///
+    /// # Errors
+    /// Those of [`GlobalProblem::new`].
+    pub fn problem(self) -> Result<GlobalProblem<D>, ContactError> {
+        GlobalProblem::new(
+            self.stiffness,
+            self.directions,
+            self.load,
+            self.free,
+            self.friction,
+        )
+    }
 }
 
 /// The form of a file; the file itself does not say.
@@ -138,7 +169,7 @@ fn local<const D: usize>(mut reader: Reader) -> Result<LocalProblem<D>, SiconosE
     Ok(LocalProblem::new(operator, q, friction)?)
 }
 
-fn global<const D: usize>(mut reader: Reader) -> Result<GlobalProblem<D>, SiconosError> {
+fn global<const D: usize>(mut reader: Reader) -> Result<Global<D>, SiconosError> {
     let contacts = reader.count("the number of contacts")?;
     let line = reader.line;
     let (size, stiffness) = reader.any_matrix()?;
@@ -156,13 +187,17 @@ fn global<const D: usize>(mut reader: Reader) -> Result<GlobalProblem<D>, Sicono
         .collect::<Result<_, _>>()?;
     let free = reader.locals(contacts)?;
     let friction = reader.friction(contacts)?;
-    Ok(GlobalProblem::new(
-        stiffness, directions, load, free, friction,
-    )?)
+    Ok(Global {
+        stiffness,
+        directions,
+        load,
+        free,
+        friction,
+    })
 }
 
 /// Entries of a matrix: row, column, value.
-type Entries = Vec<(usize, usize, f64)>;
+pub type Entries = Vec<(usize, usize, f64)>;
 
 /// A place in a text.
 struct Reader<'a> {

@@ -1,22 +1,27 @@
 //! `cargo xtask contact-bench`: every method of the contact suite over a folder of discrete frictional
 //! contact problems; the methods themselves are in `moreau::contact`.
 
+mod clock;
+mod outcome;
+mod peer;
 mod profile;
 
 use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use moreau::contact::{
-    Admm, Auto, GaussSeidel, GlobalProblem, LocalProblem, LocalSolution, LocalSolver, Newton,
-    NewtonMap, ProximalNewton, Reason, Residual, Tolerance, TrescaFixedPoint, Uzawa,
+    Admm, Auto, GaussSeidel, LocalProblem, LocalSolution, LocalSolver, Newton, NewtonMap,
+    ProximalNewton, Residual, Tolerance, TrescaFixedPoint, Unsolved, Uzawa,
 };
-use verification::Table;
-use verification::siconos::{self, Form, Problem};
+use moreau::laws::Local;
+use verification::siconos::{self, Form, Global, Problem};
 
 use crate::verify::{csv, files};
 use crate::workspace;
+use clock::Clock;
+use outcome::{Best, Run};
+use peer::{Answer, Siconos};
 
 /// Arguments of `contact-bench`.
 #[derive(clap::Args)]
@@ -30,44 +35,21 @@ pub struct Args {
     /// Methods to run, by name [default: all]
     #[arg(long, value_name = "NAME")]
     method: Vec<String>,
+    /// Run the solvers of Siconos beside ours; needs libsiconos-numerics-dev and a C compiler
+    #[arg(long)]
+    siconos: bool,
+    /// Processor seconds after which a solver of Siconos is stopped
+    #[arg(long, value_name = "SECONDS", default_value_t = 5.0)]
+    limit: f64,
     /// Folder of the table and the profile [default: target/contact-bench of the workspace]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
-/// Bounds that a solution has to meet: on Siconos' measure, and on the one without units.
-const UNSCALED: f64 = 1e-8;
-const SCALED: f64 = 1e-6;
-
 /// Largest number of components whose rank is computed.
 const RANKED: usize = 2_000;
 
-/// Seconds over which a short solution is repeated; the fastest counts.
-const REPEAT: f64 = 0.02;
-
-/// One method on one problem.
-struct Run {
-    file: String,
-    method: &'static str,
-    contacts: usize,
-    rank: Option<usize>,
-    residual: Residual,
-    iterations: usize,
-    seconds: f64,
-    /// The method that arrived, or why none did.
-    end: Result<&'static str, Reason>,
-}
-
-impl Run {
-    fn solved(&self) -> bool {
-        self.residual.unscaled <= UNSCALED && self.residual.scaled <= SCALED
-    }
-}
-
-/// Best seconds known elsewhere, by file.
-type Known = Vec<(String, f64)>;
-
-/// Runs the task; `Ok(true)` when `Auto`, if it was run, solves every problem.
+/// Runs the task; `Ok(true)` when `Auto`, if it was run, solves every problem that anything solves.
 pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     let out = args
         .out
@@ -75,65 +57,49 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
         .unwrap_or_else(|| workspace::root().join("target/contact-bench"));
     files::prepare(&out)?;
     let names = names(&args.folder, args.only.as_deref())?;
-    let known = known(&args.folder);
-    println!("{HEADER}");
+    let bench = Bench {
+        args,
+        clock: Clock::new(),
+        siconos: args.siconos.then(|| Siconos::new(&out)).transpose()?,
+    };
+    println!("{}", outcome::HEADER);
     let mut runs = Vec::new();
     for name in &names {
-        let text = fs::read_to_string(args.folder.join(name))?;
-        let problem = siconos::read(&text, Form::of_name(name))
+        let found = bench
+            .file(name)
             .map_err(|error| format!("{name}: {error}"))?;
-        let wanted =
-            |method: &str| args.method.is_empty() || args.method.iter().any(|m| m == method);
-        match problem {
-            Problem::Local2(problem) => local(name, &problem, &wanted, &mut runs),
-            Problem::Local3(problem) => local(name, &problem, &wanted, &mut runs),
-            Problem::Global2(problem) => global(name, problem, &wanted, &mut runs),
-            Problem::Global3(problem) => global(name, problem, &wanted, &mut runs),
+        runs.extend(found);
+    }
+    let known = if args.siconos {
+        best_of_siconos(&runs)
+    } else {
+        manifest(&args.folder)
+    };
+    let table = outcome::table(&runs, &known);
+    fs::write(out.join("contact-bench.csv"), csv::text(&table))?;
+    println!("\nprocessor seconds of one thread");
+    let mut methods: Vec<&str> = Vec::new();
+    for run in &runs {
+        if !methods.contains(&run.method.as_str()) {
+            methods.push(&run.method);
         }
     }
-    let table = table(&runs, &known);
-    fs::write(out.join("contact-bench.csv"), csv::text(&table))?;
+    for method in methods {
+        if let Some(line) = outcome::summary(method, &runs, &known) {
+            println!("{line}");
+        }
+    }
     let times: Vec<profile::Time<'_>> = runs
         .iter()
-        .map(|run| {
-            (
-                run.method,
-                run.file.as_str(),
-                run.solved().then_some(run.seconds),
-            )
-        })
+        .map(|run| (run.method.as_str(), run.file.as_str(), run.success()))
         .collect();
-    println!();
-    for (method, _) in methods::<2>() {
-        let of_method: Vec<&Run> = runs.iter().filter(|run| run.method == method).collect();
-        if of_method.is_empty() {
-            continue;
-        }
-        let solved = of_method.iter().filter(|run| run.solved()).count();
-        let ratios: Vec<f64> = of_method
-            .iter()
-            .filter_map(|run| ratio(run, &known))
-            .collect();
-        let near = ratios.iter().filter(|ratio| **ratio <= 2.0).count();
-        let compared = if ratios.is_empty() {
-            String::new()
-        } else {
-            format!(
-                ", {near} of {} within 2 × the best time known",
-                ratios.len()
-            )
-        };
-        println!(
-            "{method:<24} solves {solved} of {}{compared}",
-            of_method.len()
-        );
-    }
     if let Some(svg) = profile::svg(&times)? {
-        let path = out.join("profile.svg");
-        fs::write(&path, svg)?;
+        fs::write(out.join("profile.svg"), svg)?;
         println!("table and profile in {}", workspace::shown(&out));
     }
-    Ok(runs.iter().all(|run| run.method != "Auto" || run.solved()))
+    let solvable = |file: &str| runs.iter().any(|run| run.file == file && run.solved());
+    let mut auto = runs.iter().filter(|run| run.method == "Auto");
+    Ok(auto.all(|run| run.solved() || !solvable(&run.file)))
 }
 
 /// All methods, with iterations bounded so that none takes minutes where it fails.
@@ -178,152 +144,151 @@ fn methods<const D: usize>() -> Vec<(&'static str, Box<dyn LocalSolver<D>>)> {
     ]
 }
 
-fn local<const D: usize>(
-    name: &str,
-    problem: &LocalProblem<D>,
-    wanted: &dyn Fn(&str) -> bool,
-    runs: &mut Vec<Run>,
-) {
-    each(name, problem, wanted, runs, |solution| solution.residual);
+/// What is the same for all problems.
+struct Bench<'a> {
+    args: &'a Args,
+    clock: Clock,
+    siconos: Option<Siconos>,
 }
 
-fn global<const D: usize>(
-    name: &str,
-    mut problem: GlobalProblem<D>,
-    wanted: &dyn Fn(&str) -> bool,
-    runs: &mut Vec<Run>,
-) {
-    let form = problem.local().clone();
-    each(name, &form, wanted, runs, |solution| {
-        let expanded = problem.expand(solution.clone());
-        Residual {
-            unscaled: expanded.residual.unscaled + expanded.balance,
-            ..expanded.residual
-        }
-    });
-}
+/// A solution with its own measure, or the best point and why it is none.
+type Attempt<const D: usize> = Result<(LocalSolution<D>, Residual, String), Box<dyn Error>>;
 
-/// Runs the methods on a problem; `measure` judges their solutions.
-fn each<const D: usize>(
-    name: &str,
-    problem: &LocalProblem<D>,
-    wanted: &dyn Fn(&str) -> bool,
-    runs: &mut Vec<Run>,
-    mut measure: impl FnMut(&LocalSolution<D>) -> Residual,
-) {
-    let contacts = problem.contacts();
-    let rank = (D * contacts <= RANKED).then(|| problem.rank());
-    for (method, solver) in methods::<D>() {
-        if !wanted(method) {
-            continue;
+impl Bench<'_> {
+    /// Runs the methods on the problem of a file.
+    fn file(&self, name: &str) -> Result<Vec<Run>, Box<dyn Error>> {
+        let path = self.args.folder.join(name);
+        let form = Form::of_name(name);
+        let answers = match &self.siconos {
+            Some(siconos) => siconos.solve(&path, form, self.args.limit)?,
+            None => Vec::new(),
+        };
+        match siconos::read(&fs::read_to_string(&path)?, form)? {
+            Problem::Local2(problem) => self.local(name, &problem, &answers),
+            Problem::Local3(problem) => self.local(name, &problem, &answers),
+            Problem::Global2(parts) => self.global(name, &parts, &answers),
+            Problem::Global3(parts) => self.global(name, &parts, &answers),
         }
-        let begin = Instant::now();
-        let mut seconds = f64::INFINITY;
-        let (solution, end) = loop {
-            let start = Instant::now();
-            let result = solver.solve(problem, None);
-            seconds = seconds.min(start.elapsed().as_secs_f64());
-            if begin.elapsed().as_secs_f64() > REPEAT {
-                break match result {
-                    Ok(solution) => {
-                        let arrived = solution.solver;
-                        (solution, Ok(arrived))
-                    }
-                    Err(failure) => (*failure.best, Err(failure.reason)),
+    }
+
+    fn local<const D: usize>(
+        &self,
+        name: &str,
+        problem: &LocalProblem<D>,
+        answers: &[Answer],
+    ) -> Result<Vec<Run>, Box<dyn Error>> {
+        let attempt = |solver: &dyn LocalSolver<D>| {
+            let (seconds, result) = self.clock.time(|| solver.solve(problem, None));
+            let (solution, end) = ended(result);
+            let residual = solution.residual;
+            (seconds, Ok((solution, residual, end)))
+        };
+        let judge = |force: Vec<Local<D>>| {
+            let displacement = problem.displacement(&force);
+            problem.residual(&force, &displacement)
+        };
+        self.each(name, problem, attempt, judge, answers)
+    }
+
+    /// The reduction to the local form and the displacements of the bodies count, too.
+    fn global<const D: usize>(
+        &self,
+        name: &str,
+        parts: &Global<D>,
+        answers: &[Answer],
+    ) -> Result<Vec<Run>, Box<dyn Error>> {
+        let attempt = |solver: &dyn LocalSolver<D>| {
+            let parts = parts.clone();
+            self.clock.time(|| {
+                let mut problem = parts.problem()?;
+                let (solution, end) = ended(solver.solve(problem.local(), None));
+                let expanded = problem.expand(solution);
+                let residual = Residual {
+                    unscaled: expanded.residual.unscaled + expanded.balance,
+                    ..expanded.residual
                 };
+                Ok((expanded.local, residual, end))
+            })
+        };
+        let mut problem = parts.clone().problem()?;
+        let form = problem.local().clone();
+        let judge = |force: Vec<Local<D>>| {
+            let displacement = form.displacement(&force);
+            let expanded = problem.expand(LocalSolution {
+                residual: form.residual(&force, &displacement),
+                force,
+                displacement,
+                iterations: 0,
+                solver: "",
+            });
+            Residual {
+                unscaled: expanded.residual.unscaled + expanded.balance,
+                ..expanded.residual
             }
         };
-        let run = Run {
-            file: name.to_owned(),
-            method,
-            contacts,
-            rank,
-            residual: measure(&solution),
-            iterations: solution.iterations,
-            seconds,
-            end,
+        self.each(name, &form, attempt, judge, answers)
+    }
+
+    /// Runs our methods by `attempt`, which tells its seconds, and judges the forces of others.
+    fn each<const D: usize>(
+        &self,
+        name: &str,
+        problem: &LocalProblem<D>,
+        attempt: impl Fn(&dyn LocalSolver<D>) -> (f64, Attempt<D>),
+        mut judge: impl FnMut(Vec<Local<D>>) -> Residual,
+        answers: &[Answer],
+    ) -> Result<Vec<Run>, Box<dyn Error>> {
+        let contacts = problem.contacts();
+        let rank = (D * contacts <= RANKED).then(|| problem.rank());
+        let mut runs = Vec::new();
+        let mut add = |method: &str, residual, iterations, seconds, end| {
+            let run = Run {
+                file: name.to_owned(),
+                method: method.to_owned(),
+                contacts,
+                rank,
+                residual,
+                iterations,
+                seconds,
+                end,
+            };
+            println!("{}", outcome::line(&run));
+            runs.push(run);
         };
-        println!("{}", line(&run));
-        runs.push(run);
+        let wanted = &self.args.method;
+        for (method, solver) in methods::<D>() {
+            if wanted.is_empty() || wanted.iter().any(|name| name == method) {
+                let (seconds, result) = self.clock.fastest(|| attempt(&*solver));
+                let (solution, residual, end) = result?;
+                add(method, residual, solution.iterations, seconds, end);
+            }
+        }
+        for answer in answers {
+            let force = answer.force.chunks_exact(D).map(Local::from_column_slice);
+            let method = format!("Siconos {}", answer.solver);
+            let residual = judge(force.collect());
+            add(
+                &method,
+                residual,
+                answer.iterations,
+                answer.seconds,
+                String::new(),
+            );
+        }
+        Ok(runs)
     }
 }
 
-const HEADER: &str = "  file                                     contacts  rank method              \
-                      iterations   seconds   error     scaled    by";
-
-/// A run as a line of the terminal.
-fn line(run: &Run) -> String {
-    let short: String = run.file.chars().take(40).collect();
-    let end = match &run.end {
-        Ok(arrived) => (*arrived).to_owned(),
-        Err(reason) => reason.to_string(),
-    };
-    format!(
-        "{} {short:<40} {:>8} {:>5} {:<20} {:>9} {:>9.2e} {:>9.1e} {:>9.1e}  {end}",
-        if run.solved() { '✓' } else { '✗' },
-        run.contacts,
-        run.rank
-            .map_or_else(|| "–".to_owned(), |rank| rank.to_string()),
-        run.method,
-        run.iterations,
-        run.seconds,
-        run.residual.unscaled,
-        run.residual.scaled,
-    )
-}
-
-/// Seconds of a run over the best known; nothing for global problems, of which only the solution of
-/// the local form is timed here.
-fn ratio(run: &Run, known: &Known) -> Option<f64> {
-    if Form::of_name(&run.file) == Form::Global {
-        return None;
-    }
-    let (_, best) = known.iter().find(|(file, _)| *file == run.file)?;
-    let seconds = if run.solved() {
-        run.seconds
-    } else {
-        f64::INFINITY
-    };
-    Some(seconds / best)
-}
-
-fn table(runs: &[Run], known: &Known) -> Table {
-    let header = [
-        "file",
-        "contacts",
-        "rank",
-        "method",
-        "solved",
-        "error",
-        "error_scaled",
-        "iterations",
-        "seconds",
-        "seconds over best known",
-        "by",
-    ];
-    let row = |run: &Run| {
-        vec![
-            run.file.clone(),
-            run.contacts.to_string(),
-            run.rank.map_or_else(String::new, |rank| rank.to_string()),
-            run.method.to_owned(),
-            if run.solved() { "yes" } else { "no" }.to_owned(),
-            format!("{:.2e}", run.residual.unscaled),
-            format!("{:.2e}", run.residual.scaled),
-            run.iterations.to_string(),
-            format!("{:.3e}", run.seconds),
-            ratio(run, known).map_or_else(String::new, |ratio| format!("{ratio:.2}")),
-            match &run.end {
-                Ok(arrived) => (*arrived).to_owned(),
-                Err(reason) => reason.to_string(),
-            },
-        ]
-    };
-    Table {
-        name: "contact-bench".to_owned(),
-        title: "Methods for the discrete frictional contact problem".to_owned(),
-        header: header.map(str::to_owned).to_vec(),
-        rows: runs.iter().map(row).collect(),
+/// The solution or the best point, and which method arrived or why none did.
+fn ended<const D: usize>(
+    result: Result<LocalSolution<D>, Unsolved<D>>,
+) -> (LocalSolution<D>, String) {
+    match result {
+        Ok(solution) => {
+            let by = solution.solver.to_owned();
+            (solution, by)
+        }
+        Err(failure) => (*failure.best, failure.reason.to_string()),
     }
 }
 
@@ -345,18 +310,45 @@ fn names(folder: &Path, only: Option<&str>) -> Result<Vec<String>, Box<dyn Error
     Ok(names)
 }
 
-/// Columns `file` and `best_seconds` of `MANIFEST.csv`, where the folder has one.
-fn known(folder: &Path) -> Known {
+/// The fastest solver of Siconos on every problem that one of them solves.
+fn best_of_siconos(runs: &[Run]) -> Vec<Best> {
+    let mut all: Vec<Best> = Vec::new();
+    for run in runs.iter().filter(|run| run.method.starts_with("Siconos")) {
+        let Some(seconds) = run.success() else {
+            continue;
+        };
+        let best = Best {
+            file: run.file.clone(),
+            seconds,
+            by: run.method.clone(),
+        };
+        match all.iter_mut().find(|known| known.file == run.file) {
+            Some(known) if known.seconds <= seconds => {}
+            Some(known) => *known = best,
+            None => all.push(best),
+        }
+    }
+    all
+}
+
+/// Columns `file`, `best_seconds` and `best_solver` of `MANIFEST.csv`, where the folder has one.
+fn manifest(folder: &Path) -> Vec<Best> {
     let text = fs::read_to_string(folder.join("MANIFEST.csv")).unwrap_or_default();
     let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let header = lines.next().unwrap_or_default();
     let column = |name: &str| header.iter().position(|cell| *cell == name);
     let (Some(file), Some(seconds)) = (column("file"), column("best_seconds")) else {
-        return Known::new();
+        return Vec::new();
     };
+    let solver = column("best_solver");
     let entry = |cells: Vec<&str>| {
-        let seconds = cells.get(seconds)?.parse().ok()?;
-        Some((cells.get(file)?.to_string(), seconds))
+        Some(Best {
+            file: cells.get(file)?.to_string(),
+            seconds: cells.get(seconds)?.parse().ok()?,
+            by: solver
+                .and_then(|at| cells.get(at))
+                .map_or_else(String::new, |by| by.to_string()),
+        })
     };
     lines.filter_map(entry).collect()
 }
@@ -386,6 +378,8 @@ mod tests {
             folder: folder.clone(),
             only: None,
             method: Vec::new(),
+            siconos: false,
+            limit: 1.0,
             out: Some(scratch.path().to_path_buf()),
         };
         assert!(run(&args).unwrap());

@@ -1,10 +1,10 @@
 //! Discrete frictional contact problems from other programs: the default setting of the contact suite
 //! solves them all, by the measures that their collection defines.
 
-use moreau::contact::{Auto, Certificate, GlobalProblem, LocalProblem, LocalSolution, Residual};
+use moreau::contact::{Auto, Certificate, LocalProblem, LocalSolution, Residual};
 use std::path::Path;
 use verification::problems::Fallible;
-use verification::siconos::{Form, Problem, read};
+use verification::siconos::{Form, Global, Problem, read};
 
 /// The files committed here, and the whole open collection where it lies beside the workspace.
 const COMMITTED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/reference/siconos");
@@ -35,7 +35,8 @@ fn local<const D: usize>(problem: &LocalProblem<D>) -> Fallible<LocalSolution<D>
     Ok(solution)
 }
 
-fn global<const D: usize>(mut problem: GlobalProblem<D>) -> Fallible<Residual> {
+fn global<const D: usize>(parts: Global<D>) -> Fallible<Residual> {
+    let mut problem = parts.problem()?;
     let solution = local(problem.local())?;
     let expanded = problem.expand(solution);
     Ok(Residual {
