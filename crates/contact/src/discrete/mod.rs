@@ -6,6 +6,7 @@
 mod admm;
 mod auto;
 mod blocks;
+mod elimination;
 mod gauss_seidel;
 mod global;
 mod newton;
