@@ -41,10 +41,11 @@ impl<const D: usize> Elimination<D> {
     pub(super) fn new(pattern: &BlockMatrix<D>) -> Option<Self> {
         let n = pattern.contacts();
         let dense = (n * n) as f64 * n as f64 / 3.0;
-        let most = if n <= FEW {
-            f64::INFINITY
-        } else {
-            dense / DENSE_IS_FASTER
+        let most = match n {
+            0..=FEW => f64::INFINITY,
+            // What is full already need not be looked at.
+            _ if 2 * pattern.stored() > n * n => return None,
+            _ => dense / DENSE_IS_FASTER,
         };
         let mut near: Vec<Vec<usize>> = vec![Vec::new(); n];
         for i in 0..n {
@@ -201,7 +202,7 @@ mod tests {
     use super::*;
     use crate::dense::Lu;
     use crate::problem::stack;
-    use nalgebra::DMatrix;
+    use nalgebra::{DMatrix, Matrix2};
     use proptest::prelude::*;
 
     proptest! {
@@ -255,7 +256,8 @@ mod tests {
 
     #[test]
     fn what_is_full_is_left_to_a_dense_factorisation() {
-        let full = |n| BlockMatrix::<2>::from_dense(&DMatrix::from_element(2 * n, 2 * n, 1.0));
+        let full =
+            |n: usize| BlockMatrix::<2>::from_dense(&DMatrix::from_element(2 * n, 2 * n, 1.0));
         assert!(Elimination::new(&full(5)).is_some());
         assert!(Elimination::new(&full(50)).is_none());
         // A chain has no fill in the order of its ends.
@@ -270,7 +272,7 @@ mod tests {
         let zero = BlockMatrix::<2>::from_entries(1, [(0, 0, 1.0)]);
         let mut elimination = Elimination::new(&zero).expect("small");
         let row = |_: usize, add: &mut dyn FnMut(usize, SMatrix<f64, 2, 2>)| {
-            add(0, SMatrix::new(1.0, 2.0, 2.0, 4.0));
+            add(0, Matrix2::new(1.0, 2.0, 2.0, 4.0));
             true
         };
         assert!(elimination.factorise(row).is_none());

@@ -328,13 +328,14 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
             true
         })?;
         let size: f64 = now.at.iter().map(|at| at.map.norm_squared()).sum();
-        let (mut step, mut left, mut error) = self.check(now, opens, force);
+        let (mut step, mut left, _) = self.check(now, opens, force);
         let mut correction = left.clone();
         for bound in [REFINE, REFUSE] {
             elimination.solve(&left, &mut correction);
             for (i, d) in correction.iter().enumerate() {
                 step.force[i] += d;
             }
+            let error;
             (step, left, error) = self.check(now, opens, step.force);
             if error <= bound * bound * size {
                 return Some(step);
