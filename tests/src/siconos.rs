@@ -1,5 +1,5 @@
-//! Reader of discrete frictional contact problems in the text format of the program Siconos; not of
-//! its HDF5 form, which holds the same numbers.
+//! Reader of discrete frictional contact problems in the text format of the program Siconos; that of
+//! the same problems in HDF5 is `fclib`, behind the feature `hdf5`.
 //!
 //! ```text
 //! local :  d  contacts  MATRIX W            q  μ
@@ -10,8 +10,14 @@
 //! columns), of blocks (compressed by rows, each block by columns) or sparse (a dump of triplets or of
 //! compressed columns).
 
+#[cfg(feature = "hdf5")]
+mod fclib;
+#[cfg(test)]
+mod tests;
+
 use moreau::contact::{BlockMatrix, ContactError, GlobalProblem, LocalProblem};
 use moreau::laws::{Coulomb, LawError, Local};
+use std::path::Path;
 
 /// A problem of either form in two or three dimensions.
 #[derive(Debug)]
@@ -104,6 +110,17 @@ pub enum SiconosError {
         /// The size that fits.
         expected: usize,
     },
+    /// A file that cannot be read.
+    File(String),
+    /// A file in HDF5, and a build without the feature that reads it.
+    Feature,
+    /// An object of a file in HDF5 that is not as it should be.
+    Hdf5 {
+        /// Where it is in the file.
+        object: String,
+        /// What is wrong with it.
+        what: String,
+    },
     /// A coefficient of friction that is none.
     Law(LawError),
     /// A problem that cannot be posed.
@@ -124,6 +141,12 @@ impl std::fmt::Display for SiconosError {
                 found,
                 expected,
             } => write!(f, "line {line}: {what} is {found}, expected {expected}"),
+            Self::File(what) => f.write_str(what),
+            Self::Feature => f.write_str(
+                "HDF5 is read by builds with the feature `hdf5`, which need the library: \
+                 `cargo run --release -p xtask --features hdf5 -- contact-bench …`",
+            ),
+            Self::Hdf5 { object, what } => write!(f, "{object}: {what}"),
             Self::Law(error) => error.fmt(f),
             Self::Contact(error) => error.fmt(f),
         }
@@ -142,6 +165,27 @@ impl From<ContactError> for SiconosError {
     fn from(error: ContactError) -> Self {
         Self::Contact(error)
     }
+}
+
+/// Reads the problem of a file: `*.hdf5` in the layout of FCLIB, all else as text whose form the name
+/// tells.
+///
+/// # Errors
+/// [`SiconosError::File`], [`SiconosError::Feature`], and those of the formats.
+pub fn open(path: &Path) -> Result<Problem, SiconosError> {
+    if path
+        .extension()
+        .is_some_and(|extension| extension == "hdf5")
+    {
+        #[cfg(feature = "hdf5")]
+        return fclib::read(path);
+        #[cfg(not(feature = "hdf5"))]
+        return Err(SiconosError::Feature);
+    }
+    let text = std::fs::read_to_string(path);
+    let text = text.map_err(|error| SiconosError::File(error.to_string()))?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    read(&text, Form::of_name(&name))
 }
 
 /// Reads a problem of the given form.
@@ -416,73 +460,5 @@ impl<'a> Reader<'a> {
             }
         }
         Ok(entries)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_three_storages_say_the_same() {
-        // W = [[2, 1], [0, 3]] by columns, q = (-1, 0.5), μ = 0.25, and something to ignore.
-        let end = "-1 0.5\n0.25\n1\n";
-        let dense = format!("2\n1\n0\n2\n2\n2\t2\n 2 0\n 1 3\n{end}");
-        let blocks = format!("2 1 1 2 2  1 1 1  2  2  2 1  0 1  0  0 2 0 1 3 {end}");
-        let triplets = format!(
-            "2\n1\n2\n2\n2\n1\nCSparse\ntriplet: 2-by-2, nzmax: 3 nnz: 3\n0 0 : 2\n0 1 : 1\n1 1 : 3\n{end}"
-        );
-        let columns = format!(
-            "2 1 2 2 2 2\nCSparse\n2-by-2, nzmax: 3 nnz: 3, 1-norm: 4\n col 0 : locations 0 to 0\n \
-             0 : 2\n col 1 : locations 1 to 2\n 0 : 1\n 1 : 3\n{end}"
-        );
-        for text in [dense, blocks, triplets, columns] {
-            let Ok(Problem::Local2(problem)) = read(&text, Form::Local) else {
-                panic!("not read: {text}");
-            };
-            let own = problem.operator().diagonal(0);
-            assert_eq!(own.as_slice(), [2.0, 0.0, 1.0, 3.0]);
-            assert_eq!(problem.free()[0].as_slice(), [-1.0, 0.5]);
-            assert_eq!(problem.friction()[0].friction(), 0.25);
-        }
-    }
-
-    #[test]
-    fn errors_say_where() {
-        let error = read("2\n1\n0 2 2\n2 2\n1 0 0\nx", Form::Local).expect_err("no number");
-        assert_eq!(error.to_string(), "line 6: `x`, expected an entry");
-        assert!(matches!(
-            read("3\n1\n0 2 2 2 2 1 0 0 1", Form::Local),
-            Err(SiconosError::Size {
-                found: 2,
-                expected: 3,
-                ..
-            })
-        ));
-        assert!(matches!(
-            read("4 1", Form::Local),
-            Err(SiconosError::Syntax { line: 1, .. })
-        ));
-        assert!(matches!(
-            read("", Form::Global),
-            Err(SiconosError::Syntax { .. })
-        ));
-    }
-
-    #[test]
-    fn names_tell_the_form() {
-        for (name, form) in [
-            ("Rover1039.dat", Form::Local),
-            ("GFC3D_TwoRods1.dat", Form::Global),
-            ("GFC3D_TwoRods1-condensed.dat", Form::Local),
-            (
-                "gfc2d_granularflowonwall_00069_00350.condensed.dat",
-                Form::Local,
-            ),
-            ("CubeH8.fclib-global.dat", Form::Global),
-            ("Capsules-i125-1213.fclib-local.dat", Form::Local),
-        ] {
-            assert_eq!(Form::of_name(name), form, "{name}");
-        }
     }
 }

@@ -15,7 +15,7 @@ use moreau::contact::{
     ProximalNewton, Residual, Tolerance, TrescaFixedPoint, Unsolved, Uzawa,
 };
 use moreau::laws::Local;
-use verification::siconos::{self, Form, Global, Problem};
+use verification::siconos::{self, Form, Global, Problem, SiconosError};
 
 use crate::verify::{csv, files};
 use crate::workspace;
@@ -26,7 +26,7 @@ use peer::{Answer, Siconos};
 /// Arguments of `contact-bench`.
 #[derive(clap::Args)]
 pub struct Args {
-    /// Folder with problems in the text format of Siconos (`*.dat`)
+    /// Folder with problems in the text format of Siconos (`*.dat`) or in HDF5 (`*.hdf5`, feature hdf5)
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// Files whose name contains this only
@@ -158,12 +158,14 @@ impl Bench<'_> {
     /// Runs the methods on the problem of a file.
     fn file(&self, name: &str) -> Result<Vec<Run>, Box<dyn Error>> {
         let path = self.args.folder.join(name);
-        let form = Form::of_name(name);
+        let problem = siconos::open(&path)?;
+        // The Siconos of the distributions reads texts only.
+        let text = name.ends_with(".dat");
         let answers = match &self.siconos {
-            Some(siconos) => siconos.solve(&path, form, self.args.limit)?,
-            None => Vec::new(),
+            Some(siconos) if text => siconos.solve(&path, Form::of_name(name), self.args.limit)?,
+            _ => Vec::new(),
         };
-        match siconos::read(&fs::read_to_string(&path)?, form)? {
+        match problem {
             Problem::Local2(problem) => self.local(name, &problem, &answers),
             Problem::Local3(problem) => self.local(name, &problem, &answers),
             Problem::Global2(parts) => self.global(name, &parts, &answers),
@@ -299,13 +301,14 @@ fn names(folder: &Path, only: Option<&str>) -> Result<Vec<String>, Box<dyn Error
     let mut names = Vec::new();
     for entry in entries {
         let name = entry?.file_name().to_string_lossy().into_owned();
-        if name.ends_with(".dat") && only.is_none_or(|only| name.contains(only)) {
+        let problem = name.ends_with(".dat") || name.ends_with(".hdf5");
+        if problem && only.is_none_or(|only| name.contains(only)) {
             names.push(name);
         }
     }
     names.sort();
     if names.is_empty() {
-        return Err(format!("no *.dat in {}", folder.display()).into());
+        return Err(format!("no *.dat or *.hdf5 in {}", folder.display()).into());
     }
     Ok(names)
 }
@@ -400,7 +403,7 @@ mod tests {
             run(&args)
                 .unwrap_err()
                 .to_string()
-                .starts_with("no *.dat in ")
+                .starts_with("no *.dat or *.hdf5 in ")
         );
     }
 }
