@@ -20,7 +20,7 @@ use verification::siconos::{self, Form, Global, Problem, SiconosError};
 use crate::verify::{csv, files};
 use crate::workspace;
 use clock::Clock;
-use outcome::{Best, Run};
+use outcome::Run;
 use peer::{Answer, Siconos};
 
 /// Arguments of `contact-bench`.
@@ -65,15 +65,22 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     println!("{}", outcome::HEADER);
     let mut runs = Vec::new();
     for name in &names {
-        let found = bench
-            .file(name)
-            .map_err(|error| format!("{name}: {error}"))?;
-        runs.extend(found);
+        match bench.file(name) {
+            Ok(found) => runs.extend(found),
+            // The other files can be read all the same.
+            Err(error) if matches!(error.downcast_ref(), Some(SiconosError::Feature)) => {
+                println!("- {name}: {error}");
+            }
+            Err(error) => return Err(format!("{name}: {error}").into()),
+        }
+    }
+    if runs.is_empty() {
+        return Err("no problem could be read".into());
     }
     let known = if args.siconos {
-        best_of_siconos(&runs)
+        outcome::best_of_siconos(&runs)
     } else {
-        manifest(&args.folder)
+        outcome::manifest(&args.folder)
     };
     let table = outcome::table(&runs, &known);
     fs::write(out.join("contact-bench.csv"), csv::text(&table))?;
@@ -313,49 +320,6 @@ fn names(folder: &Path, only: Option<&str>) -> Result<Vec<String>, Box<dyn Error
     Ok(names)
 }
 
-/// The fastest solver of Siconos on every problem that one of them solves.
-fn best_of_siconos(runs: &[Run]) -> Vec<Best> {
-    let mut all: Vec<Best> = Vec::new();
-    for run in runs.iter().filter(|run| run.method.starts_with("Siconos")) {
-        let Some(seconds) = run.success() else {
-            continue;
-        };
-        let best = Best {
-            file: run.file.clone(),
-            seconds,
-            by: run.method.clone(),
-        };
-        match all.iter_mut().find(|known| known.file == run.file) {
-            Some(known) if known.seconds <= seconds => {}
-            Some(known) => *known = best,
-            None => all.push(best),
-        }
-    }
-    all
-}
-
-/// Columns `file`, `best_seconds` and `best_solver` of `MANIFEST.csv`, where the folder has one.
-fn manifest(folder: &Path) -> Vec<Best> {
-    let text = fs::read_to_string(folder.join("MANIFEST.csv")).unwrap_or_default();
-    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
-    let header = lines.next().unwrap_or_default();
-    let column = |name: &str| header.iter().position(|cell| *cell == name);
-    let (Some(file), Some(seconds)) = (column("file"), column("best_seconds")) else {
-        return Vec::new();
-    };
-    let solver = column("best_solver");
-    let entry = |cells: Vec<&str>| {
-        Some(Best {
-            file: cells.get(file)?.to_string(),
-            seconds: cells.get(seconds)?.parse().ok()?,
-            by: solver
-                .and_then(|at| cells.get(at))
-                .map_or_else(String::new, |by| by.to_string()),
-        })
-    };
-    lines.filter_map(entry).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -377,6 +341,9 @@ mod tests {
             "file,best_seconds\none.dat,100\n",
         )
         .unwrap();
+        // A file that this build cannot read stops none of the others.
+        #[cfg(not(feature = "hdf5"))]
+        fs::write(folder.join("two.hdf5"), "").unwrap();
         let args = Args {
             folder: folder.clone(),
             only: None,

@@ -1,6 +1,9 @@
 //! What came of a method on a problem, as a line of the terminal and a row of the table; not how it
 //! was run.
 
+use std::fs;
+use std::path::Path;
+
 use moreau::contact::Residual;
 use verification::Table;
 
@@ -69,6 +72,49 @@ pub struct Best {
     pub seconds: f64,
     /// The method that took them.
     pub by: String,
+}
+
+/// The fastest solver of Siconos on every problem that one of them solves.
+pub fn best_of_siconos(runs: &[Run]) -> Vec<Best> {
+    let mut all: Vec<Best> = Vec::new();
+    for run in runs.iter().filter(|run| run.method.starts_with("Siconos")) {
+        let Some(seconds) = run.success() else {
+            continue;
+        };
+        let best = Best {
+            file: run.file.clone(),
+            seconds,
+            by: run.method.clone(),
+        };
+        match all.iter_mut().find(|known| known.file == run.file) {
+            Some(known) if known.seconds <= seconds => {}
+            Some(known) => *known = best,
+            None => all.push(best),
+        }
+    }
+    all
+}
+
+/// Columns `file`, `best_seconds` and `best_solver` of `MANIFEST.csv`, where the folder has one.
+pub fn manifest(folder: &Path) -> Vec<Best> {
+    let text = fs::read_to_string(folder.join("MANIFEST.csv")).unwrap_or_default();
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = lines.next().unwrap_or_default();
+    let column = |name: &str| header.iter().position(|cell| *cell == name);
+    let (Some(file), Some(seconds)) = (column("file"), column("best_seconds")) else {
+        return Vec::new();
+    };
+    let solver = column("best_solver");
+    let entry = |cells: Vec<&str>| {
+        Some(Best {
+            file: cells.get(file)?.to_string(),
+            seconds: cells.get(seconds)?.parse().ok()?,
+            by: solver
+                .and_then(|at| cells.get(at))
+                .map_or_else(String::new, |by| by.to_string()),
+        })
+    };
+    lines.filter_map(entry).collect()
 }
 
 /// Seconds of a run over the best known: infinite where it failed.
