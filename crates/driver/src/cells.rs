@@ -2,8 +2,8 @@
 //! and stiffness; no law.
 
 use moreau_mandel::{Sym2, Sym4};
-use moreau_mesh::{Element, Hypothesis, Integration, Mesh};
-use std::marker::PhantomData;
+use moreau_mesh::{Element, Entry, Hypothesis, Integration, Mesh};
+use pulp::{Arch, Simd, WithSimd};
 
 /// Largest number of quadrature points of a cell.
 pub(crate) const MAX_POINTS: usize = 27;
@@ -37,180 +37,139 @@ pub trait Cells<const D: usize>: Send + Sync {
     fn stiffness(&self, k: usize, tangent: &[Sym4], stiffness: &mut [f64]);
 }
 
-/// A quadrature point of a cell.
-#[derive(Debug, Clone)]
-struct Point<const D: usize, const N: usize> {
-    gradient: [[f64; D]; N],
-    position: [f64; D],
-    weight: f64,
-}
-
-/// Cells of element E under hypothesis H.
-pub(crate) struct ElementCells<E, H, const D: usize, const N: usize> {
+/// Cells of an element of N nodes. What strains them is kept field by field with the nodes next to
+/// each other, which all do the same.
+pub(crate) struct ElementCells<const D: usize, const N: usize> {
     nodes: Vec<[usize; N]>,
-    /// Shape functions at the points of the reference cell.
-    shapes: Vec<[f64; N]>,
-    points: Vec<Point<D, N>>,
+    points_per_cell: usize,
+    positions: Vec<[f64; D]>,
+    weights: Vec<f64>,
+    /// Fields of a point.
+    per_point: usize,
+    /// Fields of the nodes, point by point.
+    fields: Vec<[f64; N]>,
+    /// What the operators B_a are made of.
+    operator: [&'static [Entry]; D],
     /// Trace b̄_a of the operators B_a, averaged over each cell; none where it is not.
-    dilatation: Vec<[[f64; D]; N]>,
-    kind: PhantomData<fn() -> (E, H)>,
+    dilatation: Vec<[[f64; N]; D]>,
+    /// Instructions that the processor has.
+    arch: Arch,
 }
 
-impl<E, H, const D: usize, const N: usize> ElementCells<E, H, D, N>
-where
-    E: Element<D, N>,
-    H: Hypothesis<D>,
-{
+impl<const D: usize, const N: usize> ElementCells<D, N> {
     /// The given cells, all of element E, of a mesh.
-    pub(crate) fn new(
+    pub(crate) fn new<E: Element<D, N>, H: Hypothesis<D>>(
         mesh: &Mesh<D>,
         cells: &[usize],
         hypothesis: &H,
         integration: Integration,
     ) -> Self {
         let rule = E::rule(integration);
-        let shapes: Vec<[f64; N]> = rule.points.iter().map(|p| E::shape(p.xi)).collect();
-        let nodes: Vec<[usize; N]> = cells
-            .iter()
-            .map(|&c| {
-                let nodes = mesh.cell_nodes(c);
-                std::array::from_fn(|a| nodes[a])
-            })
-            .collect();
-        let mut points = Vec::with_capacity(cells.len() * shapes.len());
-        for cell in &nodes {
-            let positions = cell.map(|a| mesh.nodes()[a]);
+        let mut new = Self {
+            nodes: Vec::with_capacity(cells.len()),
+            points_per_cell: rule.points.len(),
+            positions: Vec::new(),
+            weights: Vec::new(),
+            per_point: H::FIELDS,
+            fields: Vec::new(),
+            operator: H::OPERATOR,
+            dilatation: Vec::new(),
+            arch: Arch::new(),
+        };
+        for &c in cells {
+            let nodes = mesh.cell_nodes(c);
+            let nodes: [usize; N] = std::array::from_fn(|a| nodes[a]);
+            let positions = nodes.map(|a| mesh.nodes()[a]);
             for p in &rule.points {
                 let at = E::map(&positions, p.xi);
-                let weight = p.weight * at.det * hypothesis.measure(&at.x);
-                points.push(Point {
-                    gradient: at.gradient,
-                    position: at.x,
-                    weight,
-                });
+                let shape = E::shape(p.xi);
+                let of_node: [[f64; 3]; N] =
+                    std::array::from_fn(|a| H::fields(shape[a], &at.gradient[a], &at.x));
+                let field = |f: usize| of_node.map(|fields| fields[f]);
+                new.fields.extend((0..H::FIELDS).map(field));
+                new.weights
+                    .push(p.weight * at.det * hypothesis.measure(&at.x));
+                new.positions.push(at.x);
             }
+            new.nodes.push(nodes);
         }
-        let mut new = Self {
-            nodes,
-            shapes,
-            points,
-            dilatation: Vec::new(),
-            kind: PhantomData,
-        };
         if integration == Integration::BBar {
-            new.dilatation = (0..new.count()).map(|k| new.mean_dilatation(k)).collect();
+            new.dilatation = (0..new.nodes.len())
+                .map(|k| new.mean_dilatation(k))
+                .collect();
         }
         new
     }
 
     /// ∫ b_a dΩ / ∫ dΩ over a cell, with b_a the trace of B_a.
-    fn mean_dilatation(&self, k: usize) -> [[f64; D]; N] {
-        let mut sum = [[0.0; D]; N];
+    fn mean_dilatation(&self, k: usize) -> [[f64; N]; D] {
+        let mut sum = [[0.0; N]; D];
         let mut volume = 0.0;
-        for (point, operator) in self.operators(k) {
-            volume += point.weight;
-            for a in 0..N {
-                for i in 0..D {
-                    sum[a][i] += point.weight * dilatation(&operator[i], a);
+        for (weight, fields) in self.points(k) {
+            volume += weight;
+            for (sum, entries) in sum.iter_mut().zip(self.operator) {
+                for entry in entries.iter().filter(|e| e.row < 3) {
+                    add(sum, weight * entry.factor, &fields[entry.field]);
                 }
             }
         }
         sum.map(|row| row.map(|b| b / volume))
     }
 
-    /// Rows of every column of the operators that may be other than zero: the mean dilatation fills
-    /// the first three.
-    fn rows(&self) -> [&'static [usize]; D] {
-        if self.dilatation.is_empty() {
-            H::ROWS
-        } else {
-            [&[0, 1, 2, 3, 4, 5]; D]
-        }
+    /// Weights and fields of the points of a cell.
+    #[inline(always)]
+    fn points(&self, k: usize) -> impl Iterator<Item = (f64, &[[f64; N]])> {
+        let points = k * self.points_per_cell..(k + 1) * self.points_per_cell;
+        let fields = &self.fields[points.start * self.per_point..points.end * self.per_point];
+        let weights = self.weights[points].iter().copied();
+        weights.zip(fields.chunks_exact(self.per_point))
     }
 
-    /// Points of a cell, and their operators B of \[77\], or B̄ with the mean dilatation: by column
-    /// of B_a, by row, by node. Next to each other are the nodes, which all do the same; rows not
-    /// among [`Self::rows`] are zero.
-    fn operators(&self, k: usize) -> impl Iterator<Item = (&Point<D, N>, [[[f64; N]; 6]; D])> {
-        let count = self.shapes.len();
-        let points = &self.points[k * count..(k + 1) * count];
-        let mean = self.dilatation.get(k);
-        points.iter().zip(&self.shapes).map(move |(point, shape)| {
-            let mut operator = [[[0.0; N]; 6]; D];
-            for a in 0..N {
-                let b = H::strain_operator(shape[a], &point.gradient[a], &point.position);
-                for j in 0..D {
-                    for &r in H::ROWS[j] {
-                        operator[j][r][a] = b[(r, j)];
-                    }
-                    if let Some(mean) = mean {
-                        let third = (mean[a][j] - dilatation(&operator[j], a)) / 3.0;
-                        (0..3).for_each(|r| operator[j][r][a] += third);
-                    }
-                }
-            }
-            (point, operator)
-        })
-    }
-}
-
-/// Trace of the strain by a unit displacement of node a, from a column of the operators.
-fn dilatation<const N: usize>(column: &[[f64; N]; 6], a: usize) -> f64 {
-    column[0][a] + column[1][a] + column[2][a]
-}
-
-impl<E, H, const D: usize, const N: usize> Cells<D> for ElementCells<E, H, D, N>
-where
-    E: Element<D, N>,
-    H: Hypothesis<D>,
-{
-    fn count(&self) -> usize {
-        self.nodes.len()
-    }
-
-    fn nodes(&self, k: usize) -> &[usize] {
-        &self.nodes[k]
-    }
-
-    fn points_per_cell(&self) -> usize {
-        self.shapes.len()
-    }
-
-    fn position(&self, point: usize) -> [f64; D] {
-        self.points[point].position
-    }
-
-    fn weight(&self, point: usize) -> f64 {
-        self.points[point].weight
-    }
-
-    fn strain(&self, k: usize, d_u: &[f64], d_eps: &mut [Sym2]) {
-        let (nodes, rows) = (&self.nodes[k], self.rows());
+    #[inline(always)]
+    fn strain_of(&self, k: usize, d_u: &[f64], d_eps: &mut [Sym2]) {
+        let nodes = &self.nodes[k];
         let d_u: [[f64; N]; D] =
             std::array::from_fn(|j| std::array::from_fn(|a| d_u[D * nodes[a] + j]));
-        for ((_, operator), d_eps) in self.operators(k).zip(d_eps) {
+        let mean: Option<f64> = self.dilatation.get(k).map(|mean| {
+            let by_axis = mean.iter().zip(&d_u).map(|(b, u)| dot(b, u));
+            by_axis.sum()
+        });
+        for ((_, fields), d_eps) in self.points(k).zip(d_eps) {
             *d_eps = Sym2::zeros();
-            for j in 0..D {
-                for &r in rows[j] {
-                    for a in 0..N {
-                        d_eps[r] += operator[j][r][a] * d_u[j][a];
-                    }
+            for (entries, u) in self.operator.iter().zip(&d_u) {
+                for entry in *entries {
+                    d_eps[entry.row] += entry.factor * dot(&fields[entry.field], u);
                 }
+            }
+            if let Some(mean) = mean {
+                let missing = (mean - trace(d_eps)) / 3.0;
+                (0..3).for_each(|r| d_eps[r] += missing);
             }
         }
     }
 
-    fn force(&self, k: usize, stress: &[Sym2], force: &mut [f64]) {
-        let rows = self.rows();
+    #[inline(always)]
+    fn force_of(&self, k: usize, stress: &[Sym2], force: &mut [f64]) {
+        let mean = self.dilatation.get(k);
         let mut sum = [[0.0; N]; D];
-        for ((point, operator), stress) in self.operators(k).zip(stress) {
-            for i in 0..D {
-                for &r in rows[i] {
-                    let stress = point.weight * stress[r];
-                    for a in 0..N {
-                        sum[i][a] += operator[i][r][a] * stress;
-                    }
+        let mut pressure = 0.0;
+        for ((weight, fields), stress) in self.points(k).zip(stress) {
+            let mut stress = *stress;
+            if mean.is_some() {
+                let hydrostatic = trace(&stress) / 3.0;
+                (0..3).for_each(|r| stress[r] -= hydrostatic);
+                pressure += weight * hydrostatic;
+            }
+            for (sum, entries) in sum.iter_mut().zip(self.operator) {
+                for entry in entries {
+                    let part = weight * entry.factor * stress[entry.row];
+                    add(sum, part, &fields[entry.field]);
                 }
+            }
+        }
+        if let Some(mean) = mean {
+            for (sum, mean) in sum.iter_mut().zip(mean) {
+                add(sum, pressure, mean);
             }
         }
         for a in 0..N {
@@ -220,46 +179,204 @@ where
         }
     }
 
+    #[inline(always)]
+    fn stiffness_of(&self, k: usize, tangents: &[Sym4], stiffness: &mut [f64]) {
+        let mean = self
+            .dilatation
+            .get(k)
+            .map(|mean| self.mean_stiffness(k, mean, tangents));
+        let deviatoric: [Sym4; MAX_POINTS];
+        let tangents = if mean.is_some() {
+            deviatoric =
+                std::array::from_fn(|g| tangents.get(g).map_or_else(Sym4::zeros, without_trace));
+            &deviatoric[..tangents.len()]
+        } else {
+            tangents
+        };
+        let row = |unknown: usize| unknown * (2 * D * N + 1 - unknown) / 2 - unknown;
+        let mut tractions = [[0.0; N]; MAX_POINTS * MAX_ENTRIES];
+        let mut strains = [&[0.0; N]; MAX_POINTS * MAX_ENTRIES];
+        // Components (i, j), i ≤ j, of the blocks of all pairs of nodes. K is symmetric, and the
+        // other components are those of (b, a).
+        for j in 0..D {
+            for i in 0..=j {
+                let mut count = 0;
+                for ((weight, fields), tangent) in self.points(k).zip(tangents) {
+                    for left in self.operator[i] {
+                        tractions[count].fill(0.0);
+                        for right in self.operator[j] {
+                            let c = weight
+                                * left.factor
+                                * right.factor
+                                * tangent[(left.row, right.row)];
+                            add(&mut tractions[count], c, &fields[right.field]);
+                        }
+                        strains[count] = &fields[left.field];
+                        count += 1;
+                    }
+                }
+                let terms = || tractions[..count].iter().zip(&strains[..count]);
+                for a in 0..N {
+                    let mut sum = [0.0; N];
+                    for (traction, strain) in terms() {
+                        add(&mut sum, strain[a], traction);
+                    }
+                    if let Some((coupling, mean, bulk)) = &mean {
+                        add(&mut sum, coupling[i][a] + bulk * mean[i][a], &mean[j]);
+                        add(&mut sum, mean[i][a], &coupling[j]);
+                    }
+                    let first = D * a + i;
+                    for b in 0..N {
+                        let second = D * b + j;
+                        if i < j && b < a {
+                            stiffness[row(second) + first] = sum[b];
+                        } else if b >= a {
+                            stiffness[row(first) + second] = sum[b];
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// What the mean dilatation adds to the stiffness: B̄ᵀ C B̄ is that of the tangents without
+    /// traces, and v b̄ᵀ + b̄ vᵀ + κ b̄ b̄ᵀ with v = ∫ Bᵀ P C 1/3 dΩ and κ = ∫ 1·C 1/9 dΩ.
+    #[inline(always)]
+    fn mean_stiffness<'a>(
+        &self,
+        k: usize,
+        mean: &'a [[f64; N]; D],
+        tangents: &[Sym4],
+    ) -> ([[f64; N]; D], &'a [[f64; N]; D], f64) {
+        let mut coupling = [[0.0; N]; D];
+        let mut bulk = 0.0;
+        for ((weight, fields), tangent) in self.points(k).zip(tangents) {
+            let mut stress = Sym2::zeros();
+            (0..3).for_each(|s| stress += tangent.column(s));
+            stress /= 3.0;
+            let hydrostatic = trace(&stress) / 3.0;
+            bulk += weight * hydrostatic;
+            (0..3).for_each(|r| stress[r] -= hydrostatic);
+            for (sum, entries) in coupling.iter_mut().zip(self.operator) {
+                for entry in entries {
+                    let part = weight * entry.factor * stress[entry.row];
+                    add(sum, part, &fields[entry.field]);
+                }
+            }
+        }
+        (coupling, mean, bulk)
+    }
+}
+
+/// Most entries of a column of an operator.
+const MAX_ENTRIES: usize = 3;
+
+fn trace(tensor: &Sym2) -> f64 {
+    tensor[0] + tensor[1] + tensor[2]
+}
+
+/// P C P with P the projection on tensors without a trace.
+#[inline(always)]
+fn without_trace(tangent: &Sym4) -> Sym4 {
+    let mut c = *tangent;
+    for s in 0..6 {
+        let mean = (c[(0, s)] + c[(1, s)] + c[(2, s)]) / 3.0;
+        (0..3).for_each(|r| c[(r, s)] -= mean);
+    }
+    for r in 0..6 {
+        let mean = (c[(r, 0)] + c[(r, 1)] + c[(r, 2)]) / 3.0;
+        (0..3).for_each(|s| c[(r, s)] -= mean);
+    }
+    c
+}
+
+/// a ← a + s b.
+#[inline(always)]
+fn add<const N: usize>(a: &mut [f64; N], s: f64, b: &[f64; N]) {
+    for (a, b) in a.iter_mut().zip(b) {
+        *a += s * b;
+    }
+}
+
+/// Σ a b, four terms at once.
+#[inline(always)]
+fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    let mut sums = [0.0; 4];
+    for (k, (a, b)) in a.iter().zip(b).enumerate() {
+        sums[k % 4] += a * b;
+    }
+    sums[0] + sums[1] + (sums[2] + sums[3])
+}
+
+/// A kernel of a cell, compiled for every set of instructions that a processor may have. None of
+/// them adds in another order, and none rounds once where another rounds twice.
+enum Kernel<'a> {
+    Strain(&'a [f64], &'a mut [Sym2]),
+    Force(&'a [Sym2], &'a mut [f64]),
+    Stiffness(&'a [Sym4], &'a mut [f64]),
+}
+
+struct OfCell<'a, const D: usize, const N: usize> {
+    cells: &'a ElementCells<D, N>,
+    cell: usize,
+    kernel: Kernel<'a>,
+}
+
+impl<const D: usize, const N: usize> WithSimd for OfCell<'_, D, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let (cells, k) = (self.cells, self.cell);
+        match self.kernel {
+            Kernel::Strain(d_u, d_eps) => cells.strain_of(k, d_u, d_eps),
+            Kernel::Force(stress, force) => cells.force_of(k, stress, force),
+            Kernel::Stiffness(tangent, stiffness) => cells.stiffness_of(k, tangent, stiffness),
+        }
+    }
+}
+
+impl<const D: usize, const N: usize> ElementCells<D, N> {
+    fn dispatch(&self, cell: usize, kernel: Kernel<'_>) {
+        let cells = self;
+        self.arch.dispatch(OfCell {
+            cells,
+            cell,
+            kernel,
+        });
+    }
+}
+
+impl<const D: usize, const N: usize> Cells<D> for ElementCells<D, N> {
+    fn count(&self) -> usize {
+        self.nodes.len()
+    }
+
+    fn nodes(&self, k: usize) -> &[usize] {
+        &self.nodes[k]
+    }
+
+    fn points_per_cell(&self) -> usize {
+        self.points_per_cell
+    }
+
+    fn position(&self, point: usize) -> [f64; D] {
+        self.positions[point]
+    }
+
+    fn weight(&self, point: usize) -> f64 {
+        self.weights[point]
+    }
+
+    fn strain(&self, k: usize, d_u: &[f64], d_eps: &mut [Sym2]) {
+        self.dispatch(k, Kernel::Strain(d_u, d_eps));
+    }
+
+    fn force(&self, k: usize, stress: &[Sym2], force: &mut [f64]) {
+        self.dispatch(k, Kernel::Force(stress, force));
+    }
+
     fn stiffness(&self, k: usize, tangent: &[Sym4], stiffness: &mut [f64]) {
-        // Components (i, j), i ≤ j, of the blocks of all pairs of nodes: whole rows of nodes, which
-        // a processor does at once. K is symmetric, and the other components are those of (b, a).
-        let rows = self.rows();
-        let mut sum = [[[[0.0; N]; N]; D]; D];
-        for ((point, operator), tangent) in self.operators(k).zip(tangent) {
-            for j in 0..D {
-                for i in 0..=j {
-                    for &r in rows[i] {
-                        let mut traction = [0.0; N];
-                        for &s in rows[j] {
-                            let c = point.weight * tangent[(r, s)];
-                            for b in 0..N {
-                                traction[b] += c * operator[j][s][b];
-                            }
-                        }
-                        for a in 0..N {
-                            let strain = operator[i][r][a];
-                            for b in 0..N {
-                                sum[i][j][a][b] += strain * traction[b];
-                            }
-                        }
-                    }
-                }
-            }
-        }
-        let mut next = stiffness.iter_mut();
-        for a in 0..N {
-            for i in 0..D {
-                for b in a..N {
-                    let first = if a == b { i } else { 0 };
-                    for (j, entry) in (first..D).zip(next.by_ref()) {
-                        *entry = if i <= j {
-                            sum[i][j][a][b]
-                        } else {
-                            sum[j][i][b][a]
-                        };
-                    }
-                }
-            }
-        }
+        self.dispatch(k, Kernel::Stiffness(tangent, stiffness));
     }
 }

@@ -35,7 +35,7 @@ where
     E: Element<D, N>,
     H: Hypothesis<D>,
 {
-    Box::new(ElementCells::<E, H, D, N>::new(
+    Box::new(ElementCells::new::<E, H>(
         mesh,
         cells,
         hypothesis,

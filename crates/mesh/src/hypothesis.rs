@@ -5,16 +5,54 @@ use crate::MeshError;
 use nalgebra::SMatrix;
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
+/// An entry of the block B_a of \[77\]: a field times a factor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Entry {
+    /// Component of the strain, in Mandel's order.
+    pub row: usize,
+    /// Which of [`Hypothesis::fields`].
+    pub field: usize,
+    /// Its factor: 1, or 1/√2 in a shear.
+    pub factor: f64,
+}
+
+const fn stretch(row: usize, field: usize) -> Entry {
+    let factor = 1.0;
+    Entry { row, field, factor }
+}
+
+const fn shear(row: usize, field: usize) -> Entry {
+    let factor = FRAC_1_SQRT_2;
+    Entry { row, field, factor }
+}
+
 /// Modelling hypothesis: how a displacement of R^D strains a body of R³.
 pub trait Hypothesis<const D: usize>: 'static + Copy + Send + Sync {
+    /// Number of fields of a node that strains are made of.
+    const FIELDS: usize;
+
+    /// The fields of a node \[1/mm\], of which the first [`Hypothesis::FIELDS`] count, from its
+    /// shape value `n` \[–\] and gradient `grad` \[1/mm\] at the point `x` \[mm\]: the gradient, and
+    /// what else strains.
+    fn fields(n: f64, grad: &[f64; D], x: &[f64; D]) -> [f64; 3];
+
+    /// The entries of B_a that are not zero, column by column; no field twice in a column.
+    const OPERATOR: [&'static [Entry]; D];
+
     /// Block B_a of \[77\], 6×D: the Mandel strain \[–\] by a unit displacement \[mm\] of one node,
     /// with shape value `n` \[–\] and gradient `grad` \[1/mm\], at the point `x` \[mm\].
     ///
-    /// Summed over the nodes, ε = Σ_a B_a U_a. Linear in `(n, grad)`.
-    fn strain_operator(n: f64, grad: &[f64; D], x: &[f64; D]) -> SMatrix<f64, 6, D>;
-
-    /// Rows of every column of B_a that may be other than zero, for kernels to skip the rest.
-    const ROWS: [&'static [usize]; D];
+    /// Summed over the nodes, ε = Σ_a B_a U_a.
+    fn strain_operator(n: f64, grad: &[f64; D], x: &[f64; D]) -> SMatrix<f64, 6, D> {
+        let fields = Self::fields(n, grad, x);
+        let mut b = SMatrix::zeros();
+        for j in 0..D {
+            for entry in Self::OPERATOR[j] {
+                b[(entry.row, j)] = entry.factor * fields[entry.field];
+            }
+        }
+        b
+    }
 
     /// Factor from dx to the volume, and of a facet to its area, at the point `x` \[mm\]:
     /// thickness \[mm\], 2πr \[mm\] or 1.
@@ -59,12 +97,14 @@ impl Default for PlaneStrain {
 }
 
 impl Hypothesis<2> for PlaneStrain {
-    const ROWS: [&'static [usize]; 2] = [&[0, 5], &[1, 5]];
+    const FIELDS: usize = 2;
 
-    #[inline]
-    fn strain_operator(_: f64, grad: &[f64; 2], _: &[f64; 2]) -> SMatrix<f64, 6, 2> {
-        in_plane(grad)
+    fn fields(_: f64, &[x, y]: &[f64; 2], _: &[f64; 2]) -> [f64; 3] {
+        [x, y, 0.0]
     }
+
+    const OPERATOR: [&'static [Entry]; 2] =
+        [&[stretch(0, 0), shear(5, 1)], &[stretch(1, 1), shear(5, 0)]];
 
     fn measure(&self, _: &[f64; 2]) -> f64 {
         self.thickness
@@ -84,14 +124,16 @@ impl Hypothesis<2> for PlaneStrain {
 pub struct Axisymmetric;
 
 impl Hypothesis<2> for Axisymmetric {
-    const ROWS: [&'static [usize]; 2] = [&[0, 2, 5], &[1, 5]];
+    const FIELDS: usize = 3;
 
-    #[inline]
-    fn strain_operator(n: f64, grad: &[f64; 2], &[r, _]: &[f64; 2]) -> SMatrix<f64, 6, 2> {
-        let mut b = in_plane(grad);
-        b[(2, 0)] = n / r;
-        b
+    fn fields(n: f64, &[x, y]: &[f64; 2], &[r, _]: &[f64; 2]) -> [f64; 3] {
+        [x, y, n / r]
     }
+
+    const OPERATOR: [&'static [Entry]; 2] = [
+        &[stretch(0, 0), shear(5, 1), stretch(2, 2)],
+        &[stretch(1, 1), shear(5, 0)],
+    ];
 
     fn measure(&self, &[r, _]: &[f64; 2]) -> f64 {
         TAU * r
@@ -108,20 +150,17 @@ impl Hypothesis<2> for Axisymmetric {
 pub struct Solid;
 
 impl Hypothesis<3> for Solid {
-    const ROWS: [&'static [usize]; 3] = [&[0, 4, 5], &[1, 3, 5], &[2, 3, 4]];
+    const FIELDS: usize = 3;
 
-    #[inline]
-    fn strain_operator(_: f64, &[x, y, z]: &[f64; 3], _: &[f64; 3]) -> SMatrix<f64, 6, 3> {
-        let [p, q, r] = [x, y, z].map(|g| FRAC_1_SQRT_2 * g);
-        SMatrix::from_row_slice(&[
-            x, 0.0, 0.0, //
-            0.0, y, 0.0, //
-            0.0, 0.0, z, //
-            0.0, r, q, //
-            r, 0.0, p, //
-            q, p, 0.0,
-        ])
+    fn fields(_: f64, grad: &[f64; 3], _: &[f64; 3]) -> [f64; 3] {
+        *grad
     }
+
+    const OPERATOR: [&'static [Entry]; 3] = [
+        &[stretch(0, 0), shear(5, 1), shear(4, 2)],
+        &[stretch(1, 1), shear(5, 0), shear(3, 2)],
+        &[stretch(2, 2), shear(4, 0), shear(3, 1)],
+    ];
 
     fn measure(&self, _: &[f64; 3]) -> f64 {
         1.0
@@ -138,15 +177,4 @@ impl Hypothesis<3> for Solid {
             [-y, x, 0.0],
         ]
     }
-}
-
-/// The rows 11, 22 and √2·12 that plane strain and axial symmetry share.
-#[inline]
-fn in_plane(&[x, y]: &[f64; 2]) -> SMatrix<f64, 6, 2> {
-    let mut b = SMatrix::zeros();
-    b[(0, 0)] = x;
-    b[(1, 1)] = y;
-    b[(5, 0)] = FRAC_1_SQRT_2 * y;
-    b[(5, 1)] = FRAC_1_SQRT_2 * x;
-    b
 }

@@ -66,7 +66,7 @@ pub use element::{
 pub use error::{GroupKind, MeshError};
 pub use generate::{block2, block3, geometric, refine, uniform};
 pub use gmsh::{read_gmsh, read_gmsh_noting, write_gmsh};
-pub use hypothesis::{Axisymmetric, Hypothesis, PlaneStrain, Solid};
+pub use hypothesis::{Axisymmetric, Entry, Hypothesis, PlaneStrain, Solid};
 pub use mesh::{Facet, Mesh, NodeKind, Share};
 pub use nearest::nearest;
 pub use pairing::{Coupling, Pairing};

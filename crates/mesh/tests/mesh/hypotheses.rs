@@ -149,19 +149,3 @@ fn a_thickness_must_be_positive_and_finite() {
         "the thickness is NaN mm: it must be positive and finite"
     );
 }
-
-/// Every row that is listed is used, and no other.
-fn rows_are_those_that_are_not_zero<const D: usize, H: Hypothesis<D>>() {
-    let b = H::strain_operator(0.3, &[0.7; D], &[2.0; D]);
-    for j in 0..D {
-        let used: Vec<usize> = (0..6).filter(|&r| b[(r, j)] != 0.0).collect();
-        assert_eq!(used, H::ROWS[j], "column {j}");
-    }
-}
-
-#[test]
-fn rows_of_the_strain_operators() {
-    rows_are_those_that_are_not_zero::<2, PlaneStrain>();
-    rows_are_those_that_are_not_zero::<2, Axisymmetric>();
-    rows_are_those_that_are_not_zero::<3, Solid>();
-}
