@@ -96,10 +96,7 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
             println!("{line}");
         }
     }
-    let times: Vec<profile::Time<'_>> = runs
-        .iter()
-        .map(|run| (run.method.as_str(), run.file.as_str(), run.success()))
-        .collect();
+    let times = profile::times(&runs, &known);
     if let Some(svg) = profile::svg(&times)? {
         fs::write(out.join("profile.svg"), svg)?;
         println!("table and profile in {}", workspace::shown(&out));

@@ -13,12 +13,6 @@ const COLLECTION: &str = concat!(
     "/../../shared/data/frictional-contact/open"
 );
 
-/// Files of the collection that take seconds; `cargo xtask contact-bench` runs them.
-const LONG: [&str; 2] = [
-    "RockPile_tob1.dat",
-    "fc2d_granularflowonwall_07002_00801.dat",
-];
-
 fn local<const D: usize>(problem: &LocalProblem<D>) -> Fallible<LocalSolution<D>> {
     use moreau::contact::LocalSolver;
     let solution = Auto::default().solve(problem, None)?;
@@ -55,7 +49,7 @@ fn solve_all(folder: &Path) -> Fallible<usize> {
             .unwrap_or_default()
             .to_string_lossy()
             .into_owned();
-        if !name.ends_with(".dat") || LONG.contains(&name.as_str()) {
+        if !name.ends_with(".dat") {
             continue;
         }
         let problem = read(&std::fs::read_to_string(&path)?, Form::of_name(&name))?;
@@ -88,6 +82,6 @@ fn the_open_collection_is_solved() -> Fallible {
         eprintln!("skipped: no collection of problems beside the workspace");
         return Ok(());
     }
-    assert_eq!(solve_all(folder)?, 44);
+    assert_eq!(solve_all(folder)?, 46);
     Ok(())
 }
