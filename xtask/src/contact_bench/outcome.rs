@@ -43,7 +43,7 @@ impl Run {
     }
 }
 
-/// Header of [`line`].
+/// Header of [`line()`].
 pub const HEADER: &str = "  file                                     contacts  rank method              \
                           iterations   seconds   error     scaled    by";
 
