@@ -59,8 +59,8 @@ pub enum ContactError {
     /// Displacement conditions leave the relative displacement of a contact nothing to decide with,
     /// beside those of other contacts.
     #[error(
-        "displacement conditions leave contact point {contact} no freedom of its own: \
-         make the other surface of its pair the first one"
+        "displacement conditions leave contact point {contact} no freedom of its own beside the \
+         others: release its node, or prescribe the motion of the tool opposite"
     )]
     Overconstrained {
         /// The contact.

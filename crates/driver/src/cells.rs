@@ -193,45 +193,52 @@ impl<const D: usize, const N: usize> ElementCells<D, N> {
         } else {
             tangents
         };
+        // First entry of a row of the triangle, were it a square.
         let row = |unknown: usize| unknown * (2 * D * N + 1 - unknown) / 2 - unknown;
-        let mut tractions = [[0.0; N]; MAX_POINTS * MAX_ENTRIES];
-        let mut strains = [&[0.0; N]; MAX_POINTS * MAX_ENTRIES];
+        let fields = &self.fields[k * self.points_per_cell * self.per_point..];
+        let weights = &self.weights[k * self.points_per_cell..];
         // Components (i, j), i ≤ j, of the blocks of all pairs of nodes. K is symmetric, and the
         // other components are those of (b, a).
         for j in 0..D {
             for i in 0..=j {
-                let mut count = 0;
-                for ((weight, fields), tangent) in self.points(k).zip(tangents) {
-                    for left in self.operator[i] {
-                        tractions[count].fill(0.0);
-                        for right in self.operator[j] {
-                            let c = weight
-                                * left.factor
-                                * right.factor
-                                * tangent[(left.row, right.row)];
-                            add(&mut tractions[count], c, &fields[right.field]);
-                        }
-                        strains[count] = &fields[left.field];
-                        count += 1;
+                let mut sum = [[0.0; N]; N];
+                if let Some((coupling, mean, bulk)) = &mean {
+                    for a in 0..N {
+                        add(&mut sum[a], coupling[i][a] + bulk * mean[i][a], &mean[j]);
+                        add(&mut sum[a], mean[i][a], &coupling[j]);
                     }
                 }
-                let terms = || tractions[..count].iter().zip(&strains[..count]);
+                // A row of the sum stays in registers for all terms of some points.
+                for first in (0..tangents.len()).step_by(POINTS) {
+                    let mut strains = [&fields[0]; POINTS * ENTRIES];
+                    let mut tractions = [[0.0; N]; POINTS * ENTRIES];
+                    let mut count = 0;
+                    for g in first..tangents.len().min(first + POINTS) {
+                        let fields = &fields[g * self.per_point..(g + 1) * self.per_point];
+                        for left in self.operator[i] {
+                            for right in self.operator[j] {
+                                let c = weights[g] * tangents[g][(left.row, right.row)];
+                                let c = c * (left.factor * right.factor);
+                                add(&mut tractions[count], c, &fields[right.field]);
+                            }
+                            strains[count] = &fields[left.field];
+                            count += 1;
+                        }
+                    }
+                    for a in 0..N {
+                        for (strain, traction) in strains[..count].iter().zip(&tractions) {
+                            add(&mut sum[a], strain[a], traction);
+                        }
+                    }
+                }
                 for a in 0..N {
-                    let mut sum = [0.0; N];
-                    for (traction, strain) in terms() {
-                        add(&mut sum, strain[a], traction);
-                    }
-                    if let Some((coupling, mean, bulk)) = &mean {
-                        add(&mut sum, coupling[i][a] + bulk * mean[i][a], &mean[j]);
-                        add(&mut sum, mean[i][a], &coupling[j]);
-                    }
                     let first = D * a + i;
                     for b in 0..N {
                         let second = D * b + j;
-                        if i < j && b < a {
-                            stiffness[row(second) + first] = sum[b];
-                        } else if b >= a {
-                            stiffness[row(first) + second] = sum[b];
+                        if b >= a {
+                            stiffness[row(first) + second] = sum[a][b];
+                        } else if i < j {
+                            stiffness[row(second) + first] = sum[a][b];
                         }
                     }
                 }
@@ -268,8 +275,11 @@ impl<const D: usize, const N: usize> ElementCells<D, N> {
     }
 }
 
+/// Points whose terms of the stiffness are summed together.
+const POINTS: usize = 4;
+
 /// Most entries of a column of an operator.
-const MAX_ENTRIES: usize = 3;
+const ENTRIES: usize = 3;
 
 fn trace(tensor: &Sym2) -> f64 {
     tensor[0] + tensor[1] + tensor[2]

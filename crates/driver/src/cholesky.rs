@@ -80,7 +80,14 @@ pub(crate) struct Cholesky {
     memory: MemBuffer,
     /// Room for the rows below a supernode.
     below: Vec<f64>,
+    /// Multiplications of a factorisation.
+    operations: f64,
+    par: Par,
 }
+
+/// Operations from which on a factorisation runs on all threads: some seconds, for threads have to
+/// wait for each other, and on a busy machine long.
+const PARALLEL: f64 = 1e11;
 
 impl fmt::Debug for Cholesky {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -95,6 +102,17 @@ impl Cholesky {
     /// Symbolic factorisation, once for a pattern. `None` if memory or the 32-bit index of the
     /// factor does not suffice.
     pub(crate) fn analyse(pattern: Pattern) -> Option<Self> {
+        Self::analyse_for(pattern, |operations| {
+            if operations > PARALLEL {
+                Par::rayon(0)
+            } else {
+                Par::Seq
+            }
+        })
+    }
+
+    /// The threads may depend on the number of operations.
+    fn analyse_for(pattern: Pattern, threads: impl Fn(f64) -> Par) -> Option<Self> {
         let n = pattern.size();
         let upper = pattern.transposed();
         let request = StackReq::or(
@@ -117,18 +135,34 @@ impl Cholesky {
             Default::default(),
         )
         .ok()?;
+        let rows = symbolic.col_ptr_for_row_idx().windows(2);
+        let below = rows.map(|r| (r[1] - r[0]) as usize);
+        let starts = symbolic
+            .supernode_begin()
+            .iter()
+            .zip(symbolic.supernode_end());
+        let operations = starts.zip(below.clone()).map(|((start, end), below)| {
+            let width = (end - start) as usize;
+            // Σ (h − j)² over the columns j of a supernode of height h.
+            (0..width)
+                .map(|j| ((width + below - j) as f64).powi(2))
+                .sum::<f64>()
+        });
+        let operations = operations.sum();
+        let par = threads(operations);
+        let below = below.max().unwrap_or(0);
         let request = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
             &symbolic,
-            Par::Seq,
+            par,
             Default::default(),
         );
-        let rows = symbolic.col_ptr_for_row_idx().windows(2);
-        let below = rows.map(|r| (r[1] - r[0]) as usize).max().unwrap_or(0);
         let Pattern { column_start, row } = pattern;
         Some(Self {
             factor: vec![0.0; symbolic.len_val()],
             memory: MemBuffer::try_new(request).ok()?,
             below: vec![0.0; below],
+            operations,
+            par,
             lower: SymbolicSparseColMat::new_checked(n, n, column_start, None, row),
             symbolic,
         })
@@ -139,6 +173,11 @@ impl Cholesky {
         self.factor.len()
     }
 
+    /// Multiplications of a factorisation.
+    pub(crate) fn operations(&self) -> f64 {
+        self.operations
+    }
+
     /// Position of a diagonal entry among the values.
     pub(crate) fn diagonal(&self, row: usize) -> usize {
         self.lower.col_ptr()[row] as usize
@@ -146,13 +185,14 @@ impl Cholesky {
 
     /// Factorises the matrix with these values on the pattern.
     pub(crate) fn factorise(&mut self, values: &[f64]) -> Result<(), NotPositiveDefinite> {
-        // One thread: the factor is then the same to the bit wherever it runs.
+        // Threads share out the entries of the dense updates, not their sums: the factor is the same
+        // to the bit wherever it runs.
         supernodal::factorize_supernodal_numeric_llt(
             &mut self.factor,
             SparseColMatRef::new(self.lower.as_ref(), values),
             Default::default(),
             &self.symbolic,
-            Par::Seq,
+            self.par,
             MemStack::new(&mut self.memory),
             Default::default(),
         )
@@ -307,6 +347,7 @@ pub(crate) fn square(l: &DMatrix<f64>) -> DMatrix<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ordering::nested_dissection;
     use nalgebra::DVector;
     use proptest::prelude::*;
 
@@ -368,6 +409,58 @@ mod tests {
                 - &coupling * inner.try_inverse().expect("definite") * coupling.transpose();
             prop_assert!((&l * l.transpose() - &schur).norm() < 1e-10);
             prop_assert!((square(&l) - schur).norm() < 1e-10);
+        }
+    }
+
+    /// Seven-point Laplacian of a cube of nodes, made definite, in nested-dissection order.
+    fn laplacian(n: usize) -> (Pattern, Vec<f64>) {
+        let at = |k: usize| [k % n, k / n % n, k / (n * n)];
+        let points: Vec<[f64; 3]> = (0..n * n * n).map(|k| at(k).map(|i| i as f64)).collect();
+        let step = [1, n, n * n];
+        let beside = |k: usize| -> Vec<usize> {
+            let axis = |a: usize| {
+                let below = (at(k)[a] > 0).then(|| k - step[a]);
+                let above = (at(k)[a] + 1 < n).then(|| k + step[a]);
+                below.into_iter().chain(above)
+            };
+            (0..3).flat_map(axis).collect()
+        };
+        let adjacency: Vec<Vec<usize>> = (0..n * n * n).map(beside).collect();
+        let all: Vec<usize> = (0..n * n * n).collect();
+        let order = nested_dissection(&all, &points, |a| &adjacency[a]);
+        let mut position = vec![0; order.len()];
+        for (k, &a) in order.iter().enumerate() {
+            position[a] = k as u32;
+        }
+        let (mut column_start, mut row, mut values) = (vec![0], Vec::new(), Vec::new());
+        for (k, &a) in order.iter().enumerate() {
+            let mut below: Vec<u32> = adjacency[a].iter().map(|&b| position[b]).collect();
+            below.retain(|&i| i as usize > k);
+            below.sort_unstable();
+            values.push(6.0 + 1.0 / (2.0 + a as f64));
+            values.extend(below.iter().map(|_| -1.0));
+            row.push(k as u32);
+            row.extend(below);
+            column_start.push(row.len() as u32);
+        }
+        (Pattern { column_start, row }, values)
+    }
+
+    #[test]
+    fn the_factor_is_the_same_to_the_bit_on_any_number_of_threads() {
+        let (pattern, values) = laplacian(22);
+        let factor = |par: Par, threads: usize| {
+            let mut cholesky = Cholesky::analyse_for(pattern.clone(), |_| par).expect("small");
+            assert!(cholesky.operations() > 1e8);
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            let pool = pool.build().expect("threads");
+            pool.install(|| cholesky.factorise(&values))
+                .expect("definite");
+            cholesky.factor
+        };
+        let one = factor(Par::Seq, 1);
+        for threads in [1, 2, 3] {
+            assert!(one == factor(Par::rayon(0), threads), "{threads} threads");
         }
     }
 

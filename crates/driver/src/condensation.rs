@@ -1,7 +1,7 @@
 //! The contact problem condensed from the interface unknowns, and the way back to them; not how
 //! it is solved.
 
-use crate::interface::{ContactPoint, Footing, Kinematics};
+use crate::interface::{ContactPoint, Footing, Kinematics, laws};
 use crate::system::{Condensed, System};
 use moreau_contact::{ContactError, ContactProblem};
 use moreau_laws::Local;
@@ -37,17 +37,7 @@ impl<const D: usize> Condensation<D> {
         let mut rows = Elimination::new(condensed.load.len());
         for (c, k) in kinematics.iter().enumerate() {
             for j in (0..D).filter(|&j| k.active[j]) {
-                let mut row = BTreeMap::new();
-                for (a, w) in footings[c].weights() {
-                    for i in 0..D {
-                        let coefficient = w * k.axes[(i, j)];
-                        if let Some(dof) = system.interface_index(D * a + i)
-                            && coefficient != 0.0
-                        {
-                            *row.entry(dof).or_insert(0.0) += coefficient;
-                        }
-                    }
-                }
+                let row = row(&footings[c], k, j, |dof| system.interface_index(dof));
                 let own = (0..D).filter_map(|i| system.interface_index(D * points[c].node + i));
                 let own: Vec<usize> = own.collect();
                 if !rows.solve(D * c + j, row, &own) {
@@ -67,7 +57,7 @@ impl<const D: usize> Condensation<D> {
             }
         }
         let now: Vec<Local<D>> = kinematics.iter().map(|k| k.u).collect();
-        let laws = points.iter().map(|p| p.law).collect();
+        let laws = laws(points, footings);
         let problem = ContactProblem::new(stiffness, load, now.clone(), laws, previous)?;
         Ok(Self {
             problem,
@@ -89,6 +79,28 @@ impl<const D: usize> Condensation<D> {
     }
 }
 
+/// A component of the relative displacement as a combination of unknowns, those that a degree of
+/// freedom is given by.
+pub(crate) fn row<const D: usize>(
+    footing: &Footing<D>,
+    kinematics: &Kinematics<D>,
+    component: usize,
+    unknown: impl Fn(usize) -> Option<usize>,
+) -> BTreeMap<usize, f64> {
+    let mut row = BTreeMap::new();
+    for (a, w) in footing.weights() {
+        for i in 0..D {
+            let coefficient = w * kinematics.axes[(i, component)];
+            if let Some(dof) = unknown(D * a + i)
+                && coefficient != 0.0
+            {
+                *row.entry(dof).or_insert(0.0) += coefficient;
+            }
+        }
+    }
+    row
+}
+
 /// A coefficient below this part of the relative displacement's is none.
 const NONE: f64 = 1e-8;
 
@@ -96,7 +108,7 @@ const NONE: f64 = 1e-8;
 const OWN: f64 = 0.05;
 
 /// Gauss–Jordan elimination of the rows B x = u, each for one interface unknown.
-struct Elimination {
+pub(crate) struct Elimination {
     /// Which of the solved unknowns each one is.
     place: Vec<Option<usize>>,
     solved: Vec<Solved>,
@@ -110,16 +122,29 @@ struct Solved {
 }
 
 impl Elimination {
-    fn new(unknowns: usize) -> Self {
+    pub(crate) fn new(unknowns: usize) -> Self {
         Self {
             place: vec![None; unknowns],
             solved: Vec::new(),
         }
     }
 
+    /// Whether a row says something that those solved do not: whether after them a coefficient is left
+    /// that is above a part of its largest.
+    pub(crate) fn says(&self, row: &BTreeMap<usize, f64>, part: f64) -> bool {
+        let largest =
+            |row: &BTreeMap<usize, f64>| row.values().fold(0.0, |m: f64, c| m.max(c.abs()));
+        largest(&self.reduced(row.clone()).1) > part * largest(row)
+    }
+
     /// Solves Σ row x = u_component, for one of the `own` unknowns if it can; false if no unknown
     /// is left to solve for.
-    fn solve(&mut self, component: usize, row: BTreeMap<usize, f64>, own: &[usize]) -> bool {
+    pub(crate) fn solve(
+        &mut self,
+        component: usize,
+        row: BTreeMap<usize, f64>,
+        own: &[usize],
+    ) -> bool {
         let (u, x) = self.reduced(row);
         let largest = |among: &mut dyn Iterator<Item = (&usize, &f64)>| {
             among

@@ -84,7 +84,7 @@ impl<const D: usize> Driver<D> {
             control.factor = control.start + ratio * control.last;
             last.iter().map(|u| ratio * u).collect()
         });
-        self.pair()?;
+        self.pair(&start)?;
         let pivot = self.pivot();
         let mut system = self.prepare(&start, pivot)?;
         let watch = &mut |_: &Self, now: &Iteration<'_>| watch(now);

@@ -3,7 +3,7 @@
 use crate::block::{Block, PointState, Stiffness};
 use crate::error::{ModelError, StepError};
 use crate::interface::{ContactPoint, Footing, Tool, tool_index};
-use crate::load::{Condition, Loading, Step, axis_letter};
+use crate::load::Loading;
 use crate::model::{Analysis, Contact, Measure, Model};
 use crate::report::{ContactRecord, Energies, Iteration, StepReport};
 use crate::system::System;
@@ -141,12 +141,13 @@ impl<const D: usize> Driver<D> {
             state,
             system: None,
         };
-        driver.pair()?;
+        driver.pair(&Loading::none(dofs))?;
         Ok(driver)
     }
 
-    /// Finds what the contact points stand on, at the committed positions.
-    pub(crate) fn pair(&mut self) -> Result<(), ModelError> {
+    /// Finds what the contact points stand on, at the committed positions, under the displacement
+    /// conditions of a loading.
+    pub(crate) fn pair(&mut self, loading: &Loading<D>) -> Result<(), ModelError> {
         let on_tool = |p: &ContactPoint<D>| match p.tool {
             Some(tool) => Footing::on_tool(p, self.tool_node(tool)),
             None => Footing::default(),
@@ -175,6 +176,7 @@ impl<const D: usize> Driver<D> {
                         footings[point] = Footing::on_surface(coupling, &positions);
                     }
                 }
+                self.hand_over(&mut footings, (k, surfaces.0), loading);
             }
         }
         self.footings = footings;
@@ -320,119 +322,6 @@ impl<const D: usize> Driver<D> {
         Ok(sum)
     }
 
-    /// The loading at the end of a step.
-    ///
-    /// # Errors
-    /// Unknown groups and tools, displacements prescribed twice, numbers that are not finite.
-    pub fn loading(&self, step: &Step<D>) -> Result<Loading<D>, ModelError> {
-        let mesh = &self.mesh;
-        let mut loading = Loading::none(self.state.displacement.len());
-        let mut add = |node: usize, share: f64, vector: &[f64; D]| {
-            for i in 0..D {
-                loading.force[D * node + i] += share * vector[i];
-            }
-        };
-        let mut moved: BTreeMap<usize, f64> = BTreeMap::new();
-        for condition in &step.conditions {
-            match condition {
-                Condition::Displace { on, axis, value } => {
-                    if axis.index() >= D {
-                        return Err(ModelError::OutOfRange {
-                            what: format!("direction of the displacement of {on:?}"),
-                            value: axis.index() as f64,
-                            expected: "a direction below the dimension of the model",
-                        });
-                    }
-                    for node in mesh.node_group(on)? {
-                        let dof = D * node + axis.index();
-                        if let Some(&first) = moved.get(&dof)
-                            && first != *value
-                        {
-                            return Err(ModelError::TwoDisplacements {
-                                step: step.name.clone(),
-                                node,
-                                axis: axis_letter(axis.index()),
-                                first,
-                                second: *value,
-                            });
-                        }
-                        moved.insert(dof, *value);
-                    }
-                }
-                Condition::Force { on, force } => {
-                    let nodes = mesh.node_group(on)?;
-                    for &node in &nodes {
-                        add(node, 1.0 / nodes.len() as f64, force);
-                    }
-                }
-                Condition::Pressure { on, pressure } => {
-                    for s in self.measure.facet_shares(mesh, mesh.facet_group(on)?) {
-                        add(s.node, -pressure, &s.normal);
-                    }
-                }
-                Condition::Traction { on, traction } => {
-                    for s in self.measure.facet_shares(mesh, mesh.facet_group(on)?) {
-                        add(s.node, s.area, traction);
-                    }
-                }
-                Condition::BodyForce { on, density } => {
-                    for (node, share) in self.measure.volume_shares(mesh, mesh.cell_group(on)?) {
-                        add(node, share, density);
-                    }
-                }
-                Condition::Tool { .. } | Condition::Push { .. } => {}
-            }
-        }
-        // A tool that is not mentioned stays where it is.
-        let tools = self.mesh_dofs()..self.state.displacement.len();
-        moved.extend(tools.map(|dof| (dof, self.state.displacement[dof])));
-        for condition in &step.conditions {
-            if let Condition::Tool { name, displacement } = condition {
-                let node = self.tool_node(tool_index(&self.tools, name)?);
-                moved.extend((0..D).map(|i| (D * node + i, displacement[i])));
-            }
-        }
-        for condition in &step.conditions {
-            if let Condition::Push { name, axis, force } = condition {
-                let node = self.tool_node(tool_index(&self.tools, name)?);
-                let translations = self.measure.rigid_modes(&[0.0; D]);
-                if !translations
-                    .iter()
-                    .any(|m| m.get(axis.index()) == Some(&1.0))
-                {
-                    return Err(ModelError::OutOfRange {
-                        what: format!("direction of the force on tool {name:?}"),
-                        value: axis.index() as f64,
-                        expected: "a direction in which the analysis lets a tool move",
-                    });
-                }
-                moved.remove(&(D * node + axis.index()));
-                loading.force[D * node + axis.index()] += force;
-            }
-        }
-        loading.displacement = moved;
-        loading.check(self.mesh.nodes().len())?;
-        Ok(loading)
-    }
-
-    /// The loading that holds now, with the prescribed displacements of `end`: those that are new
-    /// start where the body is, and the reactions of those released become forces.
-    pub(crate) fn start_of(&self, end: &Loading<D>) -> Loading<D> {
-        let state = &self.state;
-        let mut start = state.loading.clone();
-        for dof in state.loading.displacement.keys() {
-            if !end.displacement.contains_key(dof) {
-                start.force[*dof] += self.nodal_reaction(dof / D)[dof % D];
-            }
-        }
-        start.displacement = end
-            .displacement
-            .keys()
-            .map(|&dof| (dof, state.displacement[dof]))
-            .collect();
-        start
-    }
-
     /// Applies one increment, up to the loading `end`: commits it, or fails and changes nothing.
     ///
     /// # Errors
@@ -448,7 +337,7 @@ impl<const D: usize> Driver<D> {
         watch: &mut dyn FnMut(&Iteration<'_>),
     ) -> Result<StepReport, StepError> {
         end.check(self.mesh.nodes().len())?;
-        self.pair()?;
+        self.pair(end)?;
         self.check_pushes(end)?;
         let mut system = self.prepare(end, None)?;
         let start = self.start_of(end);

@@ -2,19 +2,20 @@
 //! the sequence of increments.
 
 use crate::block::Stiffness;
+use crate::chord::Chord;
 use crate::condensation::Condensation;
 use crate::control::Control;
-use crate::driver::{Driver, State};
+use crate::driver::Driver;
 use crate::error::{Imbalance, ModelError, StepError};
-use crate::interface::{ContactPoint, Footing, Kinematics};
+use crate::interface::{ContactPoint, Footing, Kinematics, laws};
 use crate::iterate::Iterate;
 use crate::line_search::Line;
 use crate::load::{Loading, axis_letter};
 use crate::norm::largest;
-use crate::report::{ContactRecord, Iteration, StepReport};
+use crate::report::{Iteration, StepReport};
 use crate::system::System;
-use moreau_contact::{Certificate, ContactError, ContactSolution};
-use moreau_laws::{Local, Status};
+use moreau_contact::{ContactError, ContactSolution};
+use moreau_laws::Local;
 use nalgebra::SVector;
 use std::borrow::Cow;
 use std::time::Instant;
@@ -98,6 +99,7 @@ impl<const D: usize> Driver<D> {
             ..Counts::default()
         };
         let mut solution = self.state.solution.clone();
+        let mut chord = Chord::default();
         loop {
             // The step to come makes up for what is missing.
             let reached: Vec<f64> = now.d_u.iter().zip(&missing).map(|(u, m)| u + m).collect();
@@ -151,7 +153,13 @@ impl<const D: usize> Driver<D> {
             }
             counts.newton += 1;
 
-            self.factorise(system, &mut now, &missing)?;
+            let arrived = missing.iter().all(|&m| m == 0.0);
+            let worth = system.steps_per_factorisation();
+            let fresh = !(arrived && chord.serves(out_of_balance, target, worth));
+            if fresh {
+                self.factorise(system, &mut now, &missing)?;
+            }
+            chord.begin(out_of_balance, fresh);
             let load =
                 |d: usize| end.force[d] - now.assembly.internal[d] - now.assembly.coupling[d];
             let load: Vec<f64> = (0..now.d_u.len()).map(load).collect();
@@ -160,7 +168,7 @@ impl<const D: usize> Driver<D> {
             let tools = self.mesh_dofs()..;
             let moved = counts.newton == 1
                 && !(start.displacement.range(tools.clone())).eq(end.displacement.range(tools));
-            let complete = !moved && missing.iter().all(|&m| m == 0.0);
+            let complete = !moved && arrived;
             let border = control.as_ref().map(|c| {
                 let equation = (c.compliance, c.missing(&now.d_u));
                 system.border(&mut condensed, c.load, equation)
@@ -197,6 +205,7 @@ impl<const D: usize> Driver<D> {
                 slack,
             };
             now = self.search(system, &line, now);
+            chord.taken(now.part);
             counts.shortened += usize::from(now.part < 1.0);
             if let Some(control) = &mut control {
                 control.factor += now.part * growth;
@@ -381,6 +390,7 @@ impl<const D: usize> Driver<D> {
         let rounding = 16.0 * f64::EPSILON * reach * stiffness;
         let tolerance =
             self.settings.tolerance * scale + CONTACT_SLACK * solution.residual + rounding;
+        let laws = laws(&self.points, &self.footings);
         (0..kinematics.len()).all(|i| {
             let elastic = solution.irreversible[i] - solution.displacement[i];
             let mut u = kinematics[i].u + elastic;
@@ -391,7 +401,7 @@ impl<const D: usize> Driver<D> {
                 }
             }
             // α of the size of the structure's stiffness, as in the contact problem.
-            self.points[i].law.natural_map(&u, &t, stiffness).norm() <= tolerance
+            laws[i].natural_map(&u, &t, stiffness).norm() <= tolerance
         })
     }
 
@@ -424,166 +434,4 @@ impl<const D: usize> Driver<D> {
         };
         order.iter().take(5).map(imbalance).collect()
     }
-
-    pub(crate) fn plastic_fraction(&self) -> f64 {
-        let energies = self.blocks.iter().map(|b| b.energy());
-        let (flow, all) =
-            energies.fold((0.0, 0.0), |(f, a), e| (f + e.plastic_volume, a + e.volume));
-        fraction(flow, all)
-    }
-
-    /// Makes a converged increment the state of the driver.
-    pub(crate) fn commit(
-        &mut self,
-        start: &Loading<D>,
-        end: &Loading<D>,
-        candidate: Candidate<D>,
-    ) -> StepReport {
-        let Candidate {
-            d_u,
-            internal,
-            kinematics,
-            solution,
-            out_of_balance,
-            counts,
-        } = candidate;
-        let laws: Vec<_> = self.points.iter().map(|p| p.law).collect();
-        let mut irreversible = Vec::with_capacity(kinematics.len());
-        let mut contacts = Vec::with_capacity(kinematics.len());
-        let mut friction = 0.0;
-        let mut penalty = 0.0;
-        let (mut open, mut stick, mut slip) = (0, 0, 0);
-        for (i, (p, k)) in self.points.iter().zip(&kinematics).enumerate() {
-            let mut u = k.u;
-            let mut t = solution.force[i];
-            for j in 0..D {
-                if !k.active[j] {
-                    t[j] = 0.0;
-                    if j > 0 {
-                        u[j] = 0.0;
-                    }
-                }
-            }
-            let elastic = solution.irreversible[i] - solution.displacement[i];
-            let obeying = u + elastic;
-            friction -= (1..D).map(|j| t[j] * obeying[j]).sum::<f64>();
-            // Springs in series: ½ t·C t, with C t₀* the part they held before.
-            let before = k.local_force(&self.state.contacts[i].force);
-            penalty += 0.5 * elastic[0] * t[0];
-            penalty += (1..D)
-                .map(|j| 0.5 * elastic[j] * (t[j] + before[j]))
-                .sum::<f64>();
-            penalty -= 0.5 * self.state.contacts[i].t[0] * self.state.contacts[i].spring[0];
-            irreversible.push(obeying);
-            // A point that is held along one tangent of a surface in space slips along the other.
-            let held = !(1..D).any(|j| k.active[j]);
-            let status = match solution.status[i] {
-                Status::Slip if held => Status::Stick,
-                other => other,
-            };
-            match status {
-                Status::Open => open += 1,
-                Status::Stick if !held => stick += 1,
-                Status::Slip if !held => slip += 1,
-                _ => {}
-            }
-            contacts.push(ContactRecord {
-                contact: p.contact,
-                node: p.node,
-                position: self.mesh.nodes()[p.node],
-                kind: p.kind,
-                u,
-                t,
-                force: k.force(&t),
-                area: self.footings[i].area,
-                status,
-                held,
-                spring: elastic,
-            });
-        }
-        let forces: Vec<Local<D>> = contacts.iter().map(|c| c.t).collect();
-        let certificate = Certificate::new(&laws, &irreversible, &forces);
-        let contact = self.contact_forces(&kinematics, &forces);
-        let mut energies = self.state.energies;
-        energies.external_work += self.external_work(start, end, &d_u, &internal, &contact);
-        energies.friction_dissipation += friction;
-        energies.penalty += penalty;
-        energies.stored = 0.0;
-        let (mut plastic_volume, mut volume) = (0.0, 0.0);
-        for block in &mut self.blocks {
-            let energy = block.energy();
-            energies.stored += energy.stored;
-            energies.plastic_dissipation += energy.dissipated;
-            plastic_volume += energy.plastic_volume;
-            volume += energy.volume;
-        }
-        let plastic_fraction = fraction(plastic_volume, volume);
-        for block in &mut self.blocks {
-            block.commit();
-        }
-        let mut displacement = self.state.displacement.clone();
-        for (u, d) in displacement.iter_mut().zip(&d_u) {
-            *u += d;
-        }
-        // Prescribed values exactly, not as sums of increments.
-        for (&dof, &u) in &end.displacement {
-            displacement[dof] = u;
-        }
-        self.state = State {
-            increment: self.state.increment + 1,
-            displacement,
-            last: Some((d_u, end.increment_from(start))),
-            internal,
-            loading: end.clone(),
-            energies,
-            contacts,
-            contact,
-            solution: Some(solution),
-        };
-        StepReport {
-            increment: self.state.increment,
-            fraction: 1.0,
-            newton_iterations: counts.newton,
-            nonlinear_solves: counts.solves,
-            contact_iterations: counts.contact,
-            factorisations: counts.factorisations,
-            shortened_steps: counts.shortened,
-            cuts: 0,
-            open,
-            stick,
-            slip,
-            plastic_fraction,
-            energies,
-            certificate,
-            out_of_balance,
-            residuals: counts.residuals,
-        }
-    }
-
-    /// Work over the increment of applied forces and reactions, by the trapezoidal rule.
-    fn external_work(
-        &self,
-        start: &Loading<D>,
-        end: &Loading<D>,
-        d_u: &[f64],
-        internal: &[f64],
-        contact: &[f64],
-    ) -> f64 {
-        let state = &self.state;
-        let mut work = 0.0;
-        for (dof, du) in d_u.iter().enumerate() {
-            work += 0.5 * (start.force[dof] + end.force[dof]) * du;
-        }
-        for &dof in end.displacement.keys() {
-            let before = state.internal[dof] - start.force[dof] - state.contact[dof];
-            let after = internal[dof] - end.force[dof] - contact[dof];
-            work += 0.5 * (before + after) * d_u[dof];
-        }
-        work
-    }
-}
-
-/// Part of the volume that flows.
-fn fraction(flows: f64, all: f64) -> f64 {
-    if all > 0.0 { flows / all } else { 0.0 }
 }

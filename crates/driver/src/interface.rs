@@ -35,7 +35,7 @@ pub(crate) struct ContactPoint<const D: usize> {
     pub(crate) tool: Option<usize>,
     /// Index of the contact (surface and what is opposite) that it belongs to.
     pub(crate) contact: usize,
-    /// Between forces: limits of the shear are those of its share of the surface.
+    /// Between tractions.
     pub(crate) law: Friction,
     /// Distance to what is opposite at which it touches \[mm\]: the gap is the distance less this.
     pub(crate) offset: f64,
@@ -111,6 +111,15 @@ impl<const D: usize> ContactPoint<D> {
     }
 }
 
+/// The laws of contact points between forces: limits of the shear are those of what each touches.
+pub(crate) fn laws<const D: usize>(
+    points: &[ContactPoint<D>],
+    footings: &[Footing<D>],
+) -> Vec<Friction> {
+    let pairs = points.iter().zip(footings);
+    pairs.map(|(p, f)| p.law.scaled(f.area)).collect()
+}
+
 /// Whose displacements make the relative displacement of a contact point during an increment:
 /// Σ own·v − Σ opposite·v. Forces go back with the same weights.
 #[derive(Debug, Clone, Default)]
@@ -154,6 +163,29 @@ impl<const D: usize> Footing<D> {
     /// Σ own·v − Σ opposite·v.
     pub(crate) fn relative(&self, v: impl Fn(usize) -> SVector<f64, D>) -> SVector<f64, D> {
         self.weights().map(|(a, w)| v(a) * w).sum()
+    }
+
+    /// Adds a part of the multiplier of another point to its own: rows and gaps become means by
+    /// area.
+    pub(crate) fn take_over(&mut self, other: &Self, part: f64) {
+        let (own, given) = (self.area, part * other.area);
+        let area = own + given;
+        let mean = |a: &[(usize, f64)], b: &[(usize, f64)]| -> Vec<(usize, f64)> {
+            let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
+            for (weights, share) in [(a, own), (b, given)] {
+                for &(node, weight) in weights {
+                    *sum.entry(node).or_insert(0.0) += share / area * weight;
+                }
+            }
+            sum.into_iter().collect()
+        };
+        self.own = mean(&self.own, &other.own);
+        self.opposite = mean(&self.opposite, &other.opposite);
+        self.area = area;
+        if let (Some((n, gap)), Some((m, beside))) = (&mut self.plane, other.plane) {
+            *n = (*n * own + m * given).normalize();
+            *gap = (*gap * own + beside * given) / area;
+        }
     }
 
     /// Nodes with their weights, negative on the opposite side.
@@ -323,5 +355,28 @@ mod tests {
         // A direction is free if the own node is, or all of those opposite are.
         assert_eq!(footing.free(0, |dof| dof != 0), [true, true]);
         assert_eq!(footing.free(0, |dof| dof != 0 && dof != 4), [false, true]);
+    }
+
+    #[test]
+    fn what_is_taken_over_is_a_mean_by_area() {
+        let plane = |y: f64, gap| Some((SVector::<f64, 2>::new(0.0, y), gap));
+        let mut footing = Footing {
+            own: vec![(0, 1.0)],
+            opposite: vec![(2, 0.5), (3, 0.5)],
+            area: 3.0,
+            plane: plane(1.0, 0.1),
+        };
+        let held = Footing {
+            own: vec![(1, 1.0)],
+            opposite: vec![(2, 1.0)],
+            area: 2.0,
+            plane: plane(1.0, 0.5),
+        };
+        footing.take_over(&held, 0.5);
+        assert_eq!(footing.area, 4.0);
+        assert_eq!(footing.own, [(0, 0.75), (1, 0.25)]);
+        assert_eq!(footing.opposite, [(2, 0.625), (3, 0.375)]);
+        let (normal, gap) = footing.plane(&SVector::zeros()).expect("a surface");
+        assert_eq!((normal[1], gap), (1.0, 0.2));
     }
 }

@@ -328,7 +328,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 node: share.node,
                 tool,
                 contact: self.contacts.len(),
-                law: law.scaled(share.area),
+                law,
                 offset: 0.0,
                 area: share.area,
                 kind: share.kind,

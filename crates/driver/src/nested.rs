@@ -5,6 +5,7 @@ use crate::condensation::Condensation;
 use crate::driver::Driver;
 use crate::error::StepError;
 use crate::increment::{Candidate, Counts, Start};
+use crate::interface::laws;
 use crate::iterate::Iterate;
 use crate::line_search::Line;
 use crate::load::Loading;
@@ -62,15 +63,15 @@ impl<const D: usize> Driver<D> {
                 .iter()
                 .map(|k| Local::from_fn(|j, _| if k.active[j] || j == 0 { k.u[j] } else { 0.0 }))
                 .collect();
-            let law = |i: usize| &self.points[i].law;
+            let laws = laws(&self.points, &self.footings);
             let scale = self.force_scale(&now.assembly, end, &now.contact);
             let residual = (0..t.len())
-                .map(|i| law(i).natural_map(&u[i], &t[i], common[i]).norm())
+                .map(|i| laws[i].natural_map(&u[i], &t[i], common[i]).norm())
                 .fold(0.0, f64::max);
             counts.contact += 1;
             left = residual;
             let status: Vec<Status> = (0..t.len())
-                .map(|i| law(i).status(&u[i], &t[i], common[i]))
+                .map(|i| laws[i].status(&u[i], &t[i], common[i]))
                 .collect();
             let unbalanced = now.imbalance(end, &free);
             watch(&Iteration {
@@ -103,7 +104,7 @@ impl<const D: usize> Driver<D> {
                 };
                 return Ok(self.commit(start, end, candidate));
             }
-            let shifted: Vec<Local<D>> = (0..t.len()).map(|i| law(i).shifted(&u[i])).collect();
+            let shifted: Vec<Local<D>> = (0..t.len()).map(|i| laws[i].shifted(&u[i])).collect();
             if let Some((old_t, old_shifted)) = &before {
                 // A contraction needs α ‖Δũ‖ < 2 ‖Δt‖; keep away from the limit.
                 let moved = |a: &[Local<D>], b: &[Local<D>], weight: &dyn Fn(usize) -> f64| {
@@ -118,7 +119,7 @@ impl<const D: usize> Driver<D> {
                 }
             }
             let corrected = (0..t.len())
-                .map(|i| law(i).correct(&u[i], &t[i], alpha[i]))
+                .map(|i| laws[i].correct(&u[i], &t[i], alpha[i]))
                 .collect();
             before = Some((std::mem::replace(&mut t, corrected), shifted));
         }

@@ -124,8 +124,8 @@ pub struct ContactRecord<const D: usize> {
     pub t: Local<D>,
     /// Force on the body in space \[N\].
     pub force: SVector<f64, D>,
-    /// Consistent share of the surface \[mm²\], between bodies that of the overlap: t over it is a
-    /// traction. On faces of serendipity hexahedra and quadratic tetrahedra shares and forces are
+    /// Consistent share of the surface \[mm²\], between bodies that of the overlap; none at a node
+    /// that is held, whose neighbours have it. On faces of serendipity hexahedra and quadratic tetrahedra shares and forces are
     /// those of a basis with positive integrals, not of the nodes.
     pub area: f64,
     /// Status; for a point held along the surface, `Open` or `Stick`.
@@ -135,4 +135,15 @@ pub struct ContactRecord<const D: usize> {
     /// Displacement in the springs of the penalty method \[mm\]: total across the gap, of the
     /// increment along the surface; zero for the exact methods.
     pub spring: Local<D>,
+}
+
+impl<const D: usize> ContactRecord<D> {
+    /// Traction on the body, normal and tangential \[MPa\]: t over the share of the surface, zero
+    /// without one.
+    pub fn traction(&self) -> Local<D> {
+        match self.area > 0.0 {
+            true => self.t / self.area,
+            false => Local::zeros(),
+        }
+    }
 }

@@ -3,9 +3,9 @@
 
 use crate::ModelError;
 use crate::block::{Block, Stiffness};
-use crate::cholesky::{Cholesky, NotPositiveDefinite, Pattern, square};
+use crate::cholesky::{Cholesky, NotPositiveDefinite, square};
 use crate::norm::largest;
-use crate::ordering::nested_dissection;
+use crate::numbering::Numbering;
 use crate::scatter::{FIXED, Scatter};
 use crate::timings::{Timings, timed};
 use moreau_mesh::Mesh;
@@ -35,6 +35,8 @@ pub(crate) struct System {
     cholesky: Cholesky,
     /// Whether the factor held is that of the elastic stiffness.
     elastic_factor: bool,
+    /// Whether the values are those that the factor was made of.
+    current: bool,
     /// Factorisations done since the system was set up.
     pub(crate) factorisations: usize,
     pub(crate) timings: Timings,
@@ -54,6 +56,9 @@ pub(crate) struct Assembly {
 /// Residual of a solve with the factor, over the size of the terms that it is a difference of, up
 /// to which the factor is right: a thousand times what rounding leaves.
 const ACCURATE: f64 = 1e-12;
+
+/// Operations of a factorisation in the time in which a step takes up an entry of the factor.
+const OPERATIONS: f64 = 200.0;
 
 /// A factor that does not solve the system it was made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -107,45 +112,12 @@ impl System {
         tools: usize,
     ) -> Result<Self, ModelError> {
         let clock = Instant::now();
-        let nodes = mesh.nodes().len() + tools;
-        let adjacency = adjacency(mesh, nodes);
-        let neighbours = |a: usize| &adjacency.entries[adjacency.start[a]..adjacency.start[a + 1]];
-        let mut is_interface = vec![false; nodes];
-        for &a in interface_nodes.iter().chain(&pivot) {
-            is_interface[a] = true;
-        }
-        is_interface[mesh.nodes().len()..].fill(true);
-        let interior: Vec<usize> = (0..nodes).filter(|&a| !is_interface[a]).collect();
-        let mut order = nested_dissection(&interior, mesh.nodes(), neighbours);
-        order.extend((0..nodes).filter(|&a| is_interface[a]));
-        let mut position = vec![FIXED; D * nodes];
-        let mut dofs = Vec::new();
-        let mut interface = 0;
-        for &a in &order {
-            for dof in D * a..D * a + D {
-                if !fixed(dof) {
-                    position[dof] = dofs.len() as u32;
-                    dofs.push(dof);
-                    interface += usize::from(is_interface[a]);
-                }
-            }
-        }
-        let mut column_start = Vec::with_capacity(dofs.len() + 1);
-        column_start.push(0u32);
-        let mut row: Vec<u32> = Vec::new();
-        let mut column = Vec::new();
-        for (p, &dof) in dofs.iter().enumerate() {
-            column.clear();
-            let own = dof / D;
-            for &b in neighbours(own).iter().chain(std::iter::once(&own)) {
-                let rows = position[D * b..D * b + D].iter();
-                column.extend(rows.copied().filter(|&q| q != FIXED && q as usize >= p));
-            }
-            column.sort_unstable();
-            row.extend_from_slice(&column);
-            column_start.push(row.len() as u32);
-        }
-        let pattern = Pattern { column_start, row };
+        let Numbering {
+            position,
+            dofs,
+            interface,
+            pattern,
+        } = Numbering::new(mesh, fixed, interface_nodes, pivot, tools);
         let scatter = blocks
             .iter()
             .map(|b| Scatter::new(b.as_ref(), &position, &pattern))
@@ -165,6 +137,7 @@ impl System {
             stiffest: 0.0,
             cholesky,
             elastic_factor: false,
+            current: false,
             factorisations: 0,
             timings: Timings {
                 ordering: clock.elapsed(),
@@ -222,6 +195,7 @@ impl System {
         let mut flows = false;
         if stiffness != Stiffness::None {
             self.values.fill(0.0);
+            self.current = false;
         }
         let missing = missing.iter().any(|&m| m != 0.0).then_some(missing);
         let (position, values) = (&self.position, &mut self.values);
@@ -261,6 +235,12 @@ impl System {
         self.elastic_factor
     }
 
+    /// How many steps without a factorisation take about as long as one: operations of the one over
+    /// what the others read of the factor.
+    pub(crate) fn steps_per_factorisation(&self) -> f64 {
+        self.cholesky.operations() / (OPERATIONS * self.cholesky.entries() as f64)
+    }
+
     /// Largest diagonal of the elastic stiffness \[N/mm\].
     pub(crate) fn stiffest(&self) -> f64 {
         self.stiffest
@@ -273,6 +253,7 @@ impl System {
     /// The degree of freedom at which K + σE is not positive definite.
     pub(crate) fn factorise(&mut self, elastic: bool) -> Result<(), usize> {
         if elastic && self.elastic_factor {
+            self.current = true;
             return Ok(());
         }
         let first = self.size() - self.interface;
@@ -287,6 +268,7 @@ impl System {
         })
         .map_err(|NotPositiveDefinite { row }| self.dofs[row])?;
         self.elastic_factor = elastic;
+        self.current = true;
         Ok(())
     }
 
@@ -415,8 +397,12 @@ impl System {
     }
 
     /// Checks the first `rows` rows of K u = f, with the others of u given, and corrects u once
-    /// where they do not hold: faults of memory and of kernels corrupt a factor silently.
+    /// where they do not hold: faults of memory and of kernels corrupt a factor silently. The first
+    /// solve with a factor tells; later ones are of another matrix.
     fn refine(&mut self, f: &[f64], u: &mut [f64], rows: usize) -> Result<(), Inaccurate> {
+        if !self.current {
+            return Ok(());
+        }
         let (_, values) = self.values.split_last().unwrap_or((&0.0, &[]));
         let mut refined = false;
         loop {
@@ -442,36 +428,6 @@ impl System {
             refined = true;
         }
     }
-}
-
-struct Adjacency {
-    start: Vec<usize>,
-    entries: Vec<usize>,
-}
-
-/// Nodes that share a cell with each node, without the node itself, sorted.
-fn adjacency<const D: usize>(mesh: &Mesh<D>, nodes: usize) -> Adjacency {
-    let mut cells_of = vec![Vec::new(); nodes];
-    for cell in 0..mesh.cell_count() {
-        for &a in mesh.cell_nodes(cell) {
-            cells_of[a].push(cell);
-        }
-    }
-    let mut start = Vec::with_capacity(nodes + 1);
-    start.push(0);
-    let mut entries = Vec::new();
-    let mut row = Vec::new();
-    for (a, cells) in cells_of.iter().enumerate() {
-        row.clear();
-        for &cell in cells {
-            row.extend(mesh.cell_nodes(cell).iter().copied().filter(|&b| b != a));
-        }
-        row.sort_unstable();
-        row.dedup();
-        entries.extend_from_slice(&row);
-        start.push(entries.len());
-    }
-    Adjacency { start, entries }
 }
 
 #[cfg(test)]

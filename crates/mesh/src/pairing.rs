@@ -20,6 +20,9 @@ use face::{Face, Values, unit};
 use std::collections::BTreeMap;
 use tree::Tree;
 
+/// Part of the normal in the middle of a facet that is added at its nodes: nothing beside a normal.
+const DEGENERATE: f64 = 1e-12;
+
 /// How a node of one surface is coupled to the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Pairing {
@@ -163,17 +166,18 @@ impl<const D: usize> Sides<'_, D> {
     }
 }
 
-/// Outward unit normals of the nodes, averaged over the facets that they belong to.
+/// Outward unit normals of the nodes, those of the facets there, averaged. At a plane of symmetry the
+/// mean over a facet that is curved would lean outwards.
 fn normals<const D: usize>(faces: &[Face<D>]) -> BTreeMap<usize, [f64; D]> {
     let mut sums: BTreeMap<usize, [f64; D]> = BTreeMap::new();
     for face in faces {
-        for sample in facet_samples::<D>(face.kind) {
-            let outward = sample.area_vector(&face.x);
-            for (&node, share) in face.nodes.iter().zip(face.lifted(&sample.shape)) {
-                let sum = sums.entry(node).or_insert([0.0; D]);
-                for i in 0..D {
-                    sum[i] += sample.weight * share * outward[i];
-                }
+        let middle = face.outward(face.middle());
+        for (&node, xi) in face.nodes.iter().zip(face.places()) {
+            let sum = sums.entry(node).or_insert([0.0; D]);
+            let outward = face.outward(xi);
+            for i in 0..D {
+                // Of a facet that is degenerate there a trace is left.
+                sum[i] += outward[i] + DEGENERATE * middle[i];
             }
         }
     }

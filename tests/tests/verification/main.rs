@@ -1,6 +1,7 @@
 //! Verification: problems with known answers, from one contact to elastoplastic bodies; not the
 //! unit tests of the crates.
 
+mod bars;
 mod bodies;
 mod cattaneo;
 mod contact_patch;

@@ -206,6 +206,13 @@ impl<const D: usize> Face<D> {
         (inside && dot(&self.outward(xi), n) < 0.0).then_some(xi)
     }
 
+    /// Whether a place is within the face or next to it: farther outside its shape functions, which
+    /// are continued there, say little.
+    pub(super) fn is_near(&self, xi: &Xi) -> bool {
+        let middle = self.middle();
+        (0..2).all(|i| (xi[i] - middle[i]).abs() <= self.unit())
+    }
+
     /// The place that is seen at a point of a view, by Newton's method from the middle; `None` if
     /// none is found, as may happen far outside.
     pub(super) fn below(&self, view: &View<D>, point: [f64; 2]) -> Option<Xi> {

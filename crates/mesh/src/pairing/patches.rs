@@ -8,7 +8,7 @@ use super::face::{Face, View, difference};
 use super::mortar::{NEAR, Overlap, SLIVER, Sample};
 use super::polygon::{self, Polygon};
 use crate::Rule;
-use crate::geometry::dot;
+use crate::geometry::{dot, interpolate};
 
 /// Degree of the polynomials that are integrated exactly between linear faces: N_a N_b.
 const LINEAR: usize = 5;
@@ -16,6 +16,9 @@ const LINEAR: usize = 5;
 /// The degree where a face is not the linear image of its reference face and shape functions are no
 /// polynomials on it.
 const OTHERWISE: usize = 12;
+
+/// Normals whose cosine is nearer to 1 are those of a flat surface.
+const FLAT: f64 = 1e-14;
 
 /// A part of a face that a face of the other surface covers, as seen along its normal.
 struct Patch {
@@ -101,6 +104,9 @@ impl<const D: usize> Sides<'_, D> {
             true => LINEAR,
             false => OTHERWISE,
         });
+        let normals = self.normals_of(face);
+        let tilted = |n: &[f64; D]| dot(n, &view.normal) < 1.0 - FLAT;
+        let curved = normals.iter().any(tilted);
         let mut samples = Vec::new();
         for triangle in patch.polygon.triangles() {
             let [a, b, c] = triangle;
@@ -108,13 +114,20 @@ impl<const D: usize> Sides<'_, D> {
             for point in &rule.points {
                 let [s, t] = point.xi;
                 let at = [0, 1].map(|i| a[i] + s * (b[i] - a[i]) + t * (c[i] - a[i]));
-                let (Some(xi), Some(eta)) = (face.below(view, at), other.below(view, at)) else {
+                let (Some(xi), Some(mut eta)) = (face.below(view, at), other.below(view, at))
+                else {
                     continue;
                 };
+                let shape = face.shape(xi);
+                if curved {
+                    // Opposite is what is met along the normal, which changes from place to place.
+                    let along = View::new(face.at(xi), &interpolate(&shape, &normals));
+                    let met = other.below(&along, [0.0; 2]);
+                    eta = met.filter(|eta| other.is_near(eta)).unwrap_or(eta);
+                }
                 // The area of the face itself, not of what is seen.
                 let outward = face.outward(xi);
                 let tilt = dot(&outward, &outward).sqrt() / dot(&outward, &view.normal);
-                let shape = face.shape(xi);
                 samples.push(Sample {
                     shape,
                     lifted: face.lifted(&shape),

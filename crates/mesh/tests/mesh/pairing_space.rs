@@ -177,6 +177,53 @@ fn a_node_on_a_face_that_matches_meets_its_twin_alone() {
     }
 }
 
+/// A gap between cylinders of one axis is the same everywhere, also where a mesh ends at a plane of
+/// symmetry: normals of quadratic faces miss the radius by less than a thousandth of the angle that a
+/// cell turns by.
+#[test]
+fn gaps_and_normals_between_curved_faces_are_those_of_the_surfaces() {
+    const GAP: f64 = 0.02;
+    for kind in [CellKind::Hex20, CellKind::Hex27] {
+        let ring = |name: &str, n: usize, radii: [f64; 2]| {
+            let angle = uniform(0.0, 1.2, n);
+            let line = |a: [f64; 2]| uniform(a[0], a[1], 1);
+            block3(name, kind, &line(radii), &angle, &line([0.0, 0.4]))
+                .and_then(|m| m.map(|[r, a, z]| [r * a.cos(), r * a.sin(), z]))
+                .expect("valid")
+        };
+        let mesh = ring("outer", 16, [2.0 + GAP, 3.0])
+            .joined(ring("inner", 13, [1.0, 2.0]))
+            .expect("valid");
+        let group = |name| mesh.facet_group(name).expect("named");
+        let surfaces = (group("outer.left"), group("inner.right"));
+        for c in mesh.couplings(mesh.nodes(), surfaces, Pairing::Mortar, &Solid) {
+            let [x, y, _] = mesh.nodes()[c.node];
+            let lean = (c.normal[0] * y - c.normal[1] * x) / x.hypot(y);
+            assert!(
+                lean.abs() < 1e-3 * 1.2 / 16.0,
+                "{kind}: {lean:.1e} at {x}, {y}"
+            );
+            // Both sides in one mean of the normals' direction.
+            let along = |w: &[(usize, f64)]| {
+                sum(w, |a| {
+                    let [x, y, _] = mesh.nodes()[a];
+                    c.normal[0] * x + c.normal[1] * y
+                })
+            };
+            let radial = |w: &[(usize, f64)]| {
+                sum(w, |a| {
+                    let [x, y, _] = mesh.nodes()[a];
+                    (c.normal[0] * x + c.normal[1] * y) / x.hypot(y)
+                })
+            };
+            let gap = along(&c.own) - along(&c.opposite);
+            let exact = GAP * radial(&c.own);
+            let off = (gap - exact).abs() / GAP;
+            assert!(off < 1e-3, "{kind}: gap off by {off:.1e} at {x}, {y}");
+        }
+    }
+}
+
 /// Two tubes: the far side and the back of a surface are not met.
 #[test]
 fn a_tube_meets_the_near_side_of_the_tube_within() {

@@ -22,7 +22,7 @@ pub(super) fn rows<const D: usize>(
 ) -> Vec<String> {
     let row = |c: &crate::driver::ContactRecord<D>| {
         let at = |k: usize, v: &[f64]| number(v.get(k).copied().unwrap_or(0.0));
-        let traction = c.t / c.area;
+        let traction = c.traction();
         let kind = match c.kind {
             NodeKind::Corner => "corner",
             NodeKind::Midside => "midside",

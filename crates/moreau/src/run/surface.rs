@@ -43,10 +43,8 @@ pub(super) fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
             }),
             array("gap", &|c| vec![c.u[0]]),
             array("slip", &|c| c.u.iter().skip(1).copied().collect()),
-            array("pressure", &|c| vec![c.t[0] / c.area]),
-            array("shear", &|c| {
-                c.t.iter().skip(1).map(|t| t / c.area).collect()
-            }),
+            array("pressure", &|c| vec![c.traction()[0]]),
+            array("shear", &|c| c.traction().iter().skip(1).copied().collect()),
             array("force", &|c| three(c.force.as_slice()).to_vec()),
             array("status", &|c| {
                 vec![match c.status {

@@ -1,0 +1,82 @@
+//! Whether the factor of an earlier tangent serves a step; not the factorisation.
+
+/// What the steps of an increment tell of the factor at hand.
+///
+/// A step with the factor of an earlier tangent, of the chord method, lacks the factorisation, which
+/// in space takes as long as many solves. It contracts the imbalance by about as much every time:
+/// by what the tangent has changed since.
+#[derive(Debug, Default)]
+pub(crate) struct Chord {
+    /// Imbalance before the last step \[N\].
+    before: f64,
+    /// Whether the last step had the factor of its own tangent.
+    fresh: bool,
+    /// Part of the last step that was taken; zero before the first.
+    part: f64,
+}
+
+/// The tangent changes in the step that follows as well.
+const AGEING: f64 = 4.0;
+
+/// Contraction from which on a factor is of no use.
+const POOR: f64 = 0.5;
+
+impl Chord {
+    /// Takes note of a step that begins at this imbalance \[N\].
+    pub(crate) fn begin(&mut self, imbalance: f64, fresh: bool) {
+        self.before = imbalance;
+        self.fresh = fresh;
+    }
+
+    /// Takes note of the part of the step that was taken.
+    pub(crate) fn taken(&mut self, part: f64) {
+        self.part = part;
+    }
+
+    /// Whether steps with the factor at hand reach the target \[N\] sooner than one with a new factor,
+    /// which takes as long as `worth` steps.
+    pub(crate) fn serves(&self, imbalance: f64, target: f64, worth: f64) -> bool {
+        let ageing = if self.fresh { AGEING } else { 1.0 };
+        let contraction = ageing * imbalance / self.before;
+        if self.part < 1.0 || contraction.is_nan() || contraction >= POOR {
+            return false;
+        }
+        let steps = (target / imbalance).ln() / contraction.ln();
+        // A new factor would need a step or two as well.
+        steps <= 1.0 + 0.5 * worth
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(before: f64, fresh: bool) -> Chord {
+        let mut chord = Chord::default();
+        chord.begin(before, fresh);
+        chord.taken(1.0);
+        chord
+    }
+
+    #[test]
+    fn the_last_step_needs_no_factor_of_its_own() {
+        let (imbalance, target) = (1e-8, 1e-10);
+        assert!(after(1e-4, true).serves(imbalance, target, 0.0));
+        // A first step tells nothing, nor does a shortened one.
+        assert!(!Chord::default().serves(imbalance, target, 100.0));
+        let mut shortened = after(1e-4, true);
+        shortened.taken(0.5);
+        assert!(!shortened.serves(imbalance, target, 100.0));
+    }
+
+    #[test]
+    fn slow_steps_serve_as_far_as_a_factorisation_is_dear() {
+        // A tenth a step, seven steps to go.
+        let chord = after(1e-2, false);
+        assert!(!chord.serves(1e-3, 1e-10, 11.0));
+        assert!(chord.serves(1e-3, 1e-10, 13.0));
+        assert!(!after(1e-2, true).serves(1e-3, 1e-10, 13.0));
+        assert!(!after(1e-2, false).serves(9e-3, 1e-10, 13.0));
+        assert!(!after(1e-2, false).serves(f64::NAN, 1e-10, 13.0));
+    }
+}

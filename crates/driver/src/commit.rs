@@ -1,0 +1,174 @@
+//! A converged increment becomes the state of the driver, with its energies and its certificate; not
+//! how it converged.
+
+use crate::driver::{Driver, State};
+use crate::increment::Candidate;
+use crate::interface::laws;
+use crate::load::Loading;
+use crate::report::{ContactRecord, StepReport};
+use moreau_contact::Certificate;
+use moreau_laws::{Local, Status};
+
+impl<const D: usize> Driver<D> {
+    pub(crate) fn plastic_fraction(&self) -> f64 {
+        let energies = self.blocks.iter().map(|b| b.energy());
+        let (flow, all) =
+            energies.fold((0.0, 0.0), |(f, a), e| (f + e.plastic_volume, a + e.volume));
+        fraction(flow, all)
+    }
+
+    /// Makes a converged increment the state of the driver.
+    pub(crate) fn commit(
+        &mut self,
+        start: &Loading<D>,
+        end: &Loading<D>,
+        candidate: Candidate<D>,
+    ) -> StepReport {
+        let Candidate {
+            d_u,
+            internal,
+            kinematics,
+            solution,
+            out_of_balance,
+            counts,
+        } = candidate;
+        let laws = laws(&self.points, &self.footings);
+        let mut irreversible = Vec::with_capacity(kinematics.len());
+        let mut contacts = Vec::with_capacity(kinematics.len());
+        let mut friction = 0.0;
+        let mut penalty = 0.0;
+        let (mut open, mut stick, mut slip) = (0, 0, 0);
+        for (i, (p, k)) in self.points.iter().zip(&kinematics).enumerate() {
+            let mut u = k.u;
+            let mut t = solution.force[i];
+            for j in 0..D {
+                if !k.active[j] {
+                    t[j] = 0.0;
+                    if j > 0 {
+                        u[j] = 0.0;
+                    }
+                }
+            }
+            let elastic = solution.irreversible[i] - solution.displacement[i];
+            let obeying = u + elastic;
+            friction -= (1..D).map(|j| t[j] * obeying[j]).sum::<f64>();
+            // Springs in series: ½ t·C t, with C t₀* the part they held before.
+            let before = k.local_force(&self.state.contacts[i].force);
+            penalty += 0.5 * elastic[0] * t[0];
+            penalty += (1..D)
+                .map(|j| 0.5 * elastic[j] * (t[j] + before[j]))
+                .sum::<f64>();
+            penalty -= 0.5 * self.state.contacts[i].t[0] * self.state.contacts[i].spring[0];
+            irreversible.push(obeying);
+            // A point that is held along one tangent of a surface in space slips along the other.
+            let held = !(1..D).any(|j| k.active[j]);
+            let status = match solution.status[i] {
+                Status::Slip if held => Status::Stick,
+                other => other,
+            };
+            match status {
+                Status::Open => open += 1,
+                Status::Stick if !held => stick += 1,
+                Status::Slip if !held => slip += 1,
+                _ => {}
+            }
+            contacts.push(ContactRecord {
+                contact: p.contact,
+                node: p.node,
+                position: self.mesh.nodes()[p.node],
+                kind: p.kind,
+                u,
+                t,
+                force: k.force(&t),
+                area: self.footings[i].area,
+                status,
+                held,
+                spring: elastic,
+            });
+        }
+        let forces: Vec<Local<D>> = contacts.iter().map(|c| c.t).collect();
+        let certificate = Certificate::new(&laws, &irreversible, &forces);
+        let contact = self.contact_forces(&kinematics, &forces);
+        let mut energies = self.state.energies;
+        energies.external_work += self.external_work(start, end, &d_u, &internal, &contact);
+        energies.friction_dissipation += friction;
+        energies.penalty += penalty;
+        energies.stored = 0.0;
+        let (mut plastic_volume, mut volume) = (0.0, 0.0);
+        for block in &mut self.blocks {
+            let energy = block.energy();
+            energies.stored += energy.stored;
+            energies.plastic_dissipation += energy.dissipated;
+            plastic_volume += energy.plastic_volume;
+            volume += energy.volume;
+        }
+        let plastic_fraction = fraction(plastic_volume, volume);
+        for block in &mut self.blocks {
+            block.commit();
+        }
+        let mut displacement = self.state.displacement.clone();
+        for (u, d) in displacement.iter_mut().zip(&d_u) {
+            *u += d;
+        }
+        // Prescribed values exactly, not as sums of increments.
+        for (&dof, &u) in &end.displacement {
+            displacement[dof] = u;
+        }
+        self.state = State {
+            increment: self.state.increment + 1,
+            displacement,
+            last: Some((d_u, end.increment_from(start))),
+            internal,
+            loading: end.clone(),
+            energies,
+            contacts,
+            contact,
+            solution: Some(solution),
+        };
+        StepReport {
+            increment: self.state.increment,
+            fraction: 1.0,
+            newton_iterations: counts.newton,
+            nonlinear_solves: counts.solves,
+            contact_iterations: counts.contact,
+            factorisations: counts.factorisations,
+            shortened_steps: counts.shortened,
+            cuts: 0,
+            open,
+            stick,
+            slip,
+            plastic_fraction,
+            energies,
+            certificate,
+            out_of_balance,
+            residuals: counts.residuals,
+        }
+    }
+
+    /// Work over the increment of applied forces and reactions, by the trapezoidal rule.
+    fn external_work(
+        &self,
+        start: &Loading<D>,
+        end: &Loading<D>,
+        d_u: &[f64],
+        internal: &[f64],
+        contact: &[f64],
+    ) -> f64 {
+        let state = &self.state;
+        let mut work = 0.0;
+        for (dof, du) in d_u.iter().enumerate() {
+            work += 0.5 * (start.force[dof] + end.force[dof]) * du;
+        }
+        for &dof in end.displacement.keys() {
+            let before = state.internal[dof] - start.force[dof] - state.contact[dof];
+            let after = internal[dof] - end.force[dof] - contact[dof];
+            work += 0.5 * (before + after) * d_u[dof];
+        }
+        work
+    }
+}
+
+/// Part of the volume that flows.
+fn fraction(flows: f64, all: f64) -> f64 {
+    if all > 0.0 { flows / all } else { 0.0 }
+}

@@ -1,0 +1,105 @@
+//! Which displacement is which unknown, and which unknowns share a cell; no values.
+
+use crate::cholesky::Pattern;
+use crate::ordering::nested_dissection;
+use crate::scatter::FIXED;
+use moreau_mesh::Mesh;
+
+/// The unknowns of a mesh, in the order of their elimination.
+pub(crate) struct Numbering {
+    /// Position of a degree of freedom among the unknowns, or [`FIXED`].
+    pub(crate) position: Vec<u32>,
+    /// Degree of freedom at a position.
+    pub(crate) dofs: Vec<usize>,
+    /// Number of interface unknowns: the last.
+    pub(crate) interface: usize,
+    /// Which unknowns share a cell.
+    pub(crate) pattern: Pattern,
+}
+
+impl Numbering {
+    /// By nested dissection of the nodes, and with those of the interface, the pivot and the tools
+    /// last; the tools are nodes after those of the mesh.
+    pub(crate) fn new<const D: usize>(
+        mesh: &Mesh<D>,
+        fixed: impl Fn(usize) -> bool,
+        interface_nodes: &[usize],
+        pivot: Option<usize>,
+        tools: usize,
+    ) -> Self {
+        let nodes = mesh.nodes().len() + tools;
+        let adjacency = adjacency(mesh, nodes);
+        let neighbours = |a: usize| &adjacency.entries[adjacency.start[a]..adjacency.start[a + 1]];
+        let mut is_interface = vec![false; nodes];
+        for &a in interface_nodes.iter().chain(&pivot) {
+            is_interface[a] = true;
+        }
+        is_interface[mesh.nodes().len()..].fill(true);
+        let interior: Vec<usize> = (0..nodes).filter(|&a| !is_interface[a]).collect();
+        let mut order = nested_dissection(&interior, mesh.nodes(), neighbours);
+        order.extend((0..nodes).filter(|&a| is_interface[a]));
+        let mut position = vec![FIXED; D * nodes];
+        let mut dofs = Vec::new();
+        let mut interface = 0;
+        for &a in &order {
+            for dof in D * a..D * a + D {
+                if !fixed(dof) {
+                    position[dof] = dofs.len() as u32;
+                    dofs.push(dof);
+                    interface += usize::from(is_interface[a]);
+                }
+            }
+        }
+        let mut column_start = Vec::with_capacity(dofs.len() + 1);
+        column_start.push(0u32);
+        let mut row: Vec<u32> = Vec::new();
+        let mut column = Vec::new();
+        for (p, &dof) in dofs.iter().enumerate() {
+            column.clear();
+            let own = dof / D;
+            for &b in neighbours(own).iter().chain(std::iter::once(&own)) {
+                let rows = position[D * b..D * b + D].iter();
+                column.extend(rows.copied().filter(|&q| q != FIXED && q as usize >= p));
+            }
+            column.sort_unstable();
+            row.extend_from_slice(&column);
+            column_start.push(row.len() as u32);
+        }
+        Self {
+            position,
+            dofs,
+            interface,
+            pattern: Pattern { column_start, row },
+        }
+    }
+}
+
+struct Adjacency {
+    start: Vec<usize>,
+    entries: Vec<usize>,
+}
+
+/// Nodes that share a cell with each node, without the node itself, sorted.
+fn adjacency<const D: usize>(mesh: &Mesh<D>, nodes: usize) -> Adjacency {
+    let mut cells_of = vec![Vec::new(); nodes];
+    for cell in 0..mesh.cell_count() {
+        for &a in mesh.cell_nodes(cell) {
+            cells_of[a].push(cell);
+        }
+    }
+    let mut start = Vec::with_capacity(nodes + 1);
+    start.push(0);
+    let mut entries = Vec::new();
+    let mut row = Vec::new();
+    for (a, cells) in cells_of.iter().enumerate() {
+        row.clear();
+        for &cell in cells {
+            row.extend(mesh.cell_nodes(cell).iter().copied().filter(|&b| b != a));
+        }
+        row.sort_unstable();
+        row.dedup();
+        entries.extend_from_slice(&row);
+        start.push(entries.len());
+    }
+    Adjacency { start, entries }
+}
