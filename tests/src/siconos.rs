@@ -1,17 +1,20 @@
-//! Reader of discrete frictional contact problems in the text format of the program Siconos; not of
-//! its HDF5 form, which holds the same numbers.
-//!
-//! ```text
-//! local :  d  contacts  MATRIX W            q  μ
-//! global:  d  contacts  MATRIX M  MATRIX H  f  w  μ
-//! ```
-//!
-//! Numbers stand between white space; what follows the last μ is ignored. A matrix is dense (by
-//! columns), of blocks (compressed by rows, each block by columns) or sparse (a dump of triplets or of
-//! compressed columns).
+//! Discrete frictional contact problems in the files of other programs: the text format of the program
+//! Siconos, and FCLIB's layout in HDF5 behind the feature `hdf5`; not how they are solved.
 
-use moreau::contact::{BlockMatrix, ContactError, GlobalProblem, LocalProblem};
+#[cfg(feature = "hdf5")]
+mod fclib;
+#[cfg(test)]
+mod tests;
+mod text;
+
+pub use text::read;
+
+use moreau::contact::{ContactError, GlobalProblem, LocalProblem};
 use moreau::laws::{Coulomb, LawError, Local};
+use std::path::Path;
+
+/// Entries of a matrix: row, column, value.
+pub type Entries = Vec<(usize, usize, f64)>;
 
 /// A problem of either form in two or three dimensions.
 #[derive(Debug)]
@@ -21,9 +24,40 @@ pub enum Problem {
     /// Local form, spatial.
     Local3(LocalProblem<3>),
     /// Global form, plane.
-    Global2(GlobalProblem<2>),
+    Global2(Global<2>),
     /// Global form, spatial.
-    Global3(GlobalProblem<3>),
+    Global3(Global<3>),
+}
+
+/// The parts of a problem in global form, not reduced yet: a program that is timed has to reduce it.
+#[derive(Debug, Clone)]
+pub struct Global<const D: usize> {
+    /// Entries of M.
+    pub stiffness: Entries,
+    /// Entries of H.
+    pub directions: Entries,
+    /// Loads f of the bodies.
+    pub load: Vec<f64>,
+    /// Free displacements w of the contacts.
+    pub free: Vec<Local<D>>,
+    /// The law of every contact.
+    pub friction: Vec<Coulomb>,
+}
+
+impl<const D: usize> Global<D> {
+    /// The problem, reduced to its local form.
+    ///
+    /// # Errors
+    /// Those of [`GlobalProblem::new`].
+    pub fn problem(self) -> Result<GlobalProblem<D>, ContactError> {
+        GlobalProblem::new(
+            self.stiffness,
+            self.directions,
+            self.load,
+            self.free,
+            self.friction,
+        )
+    }
 }
 
 /// The form of a file; the file itself does not say.
@@ -73,6 +107,17 @@ pub enum SiconosError {
         /// The size that fits.
         expected: usize,
     },
+    /// A file that cannot be read.
+    File(String),
+    /// A file in HDF5, and a build without the feature that reads it.
+    Feature,
+    /// An object of a file in HDF5 that is not as it should be.
+    Hdf5 {
+        /// Where it is in the file.
+        object: String,
+        /// What is wrong with it.
+        what: String,
+    },
     /// A coefficient of friction that is none.
     Law(LawError),
     /// A problem that cannot be posed.
@@ -93,6 +138,12 @@ impl std::fmt::Display for SiconosError {
                 found,
                 expected,
             } => write!(f, "line {line}: {what} is {found}, expected {expected}"),
+            Self::File(what) => f.write_str(what),
+            Self::Feature => f.write_str(
+                "HDF5 is read by builds with the feature `hdf5`, which need the library: \
+                 `cargo run --release -p xtask --features hdf5 -- contact-bench …`",
+            ),
+            Self::Hdf5 { object, what } => write!(f, "{object}: {what}"),
             Self::Law(error) => error.fmt(f),
             Self::Contact(error) => error.fmt(f),
         }
@@ -113,341 +164,23 @@ impl From<ContactError> for SiconosError {
     }
 }
 
-/// Reads a problem of the given form.
+/// Reads the problem of a file: `*.hdf5` in the layout of FCLIB, all else as text whose form the name
+/// tells.
 ///
 /// # Errors
-/// [`SiconosError`] with the line where the text is not what the format says.
-pub fn read(text: &str, form: Form) -> Result<Problem, SiconosError> {
-    let mut reader = Reader::new(text);
-    let dimension = reader.count("the dimension, 2 or 3")?;
-    match (dimension, form) {
-        (2, Form::Local) => local(reader).map(Problem::Local2),
-        (3, Form::Local) => local(reader).map(Problem::Local3),
-        (2, Form::Global) => global(reader).map(Problem::Global2),
-        (3, Form::Global) => global(reader).map(Problem::Global3),
-        _ => Err(reader.wrong(&dimension.to_string(), "the dimension, 2 or 3")),
+/// [`SiconosError::File`], [`SiconosError::Feature`], and those of the formats.
+pub fn open(path: &Path) -> Result<Problem, SiconosError> {
+    if path
+        .extension()
+        .is_some_and(|extension| extension == "hdf5")
+    {
+        #[cfg(feature = "hdf5")]
+        return fclib::read(path);
+        #[cfg(not(feature = "hdf5"))]
+        return Err(SiconosError::Feature);
     }
-}
-
-fn local<const D: usize>(mut reader: Reader) -> Result<LocalProblem<D>, SiconosError> {
-    let contacts = reader.count("the number of contacts")?;
-    let operator = reader.matrix("W", [D * contacts; 2])?;
-    let q = reader.locals(contacts)?;
-    let friction = reader.friction(contacts)?;
-    let operator = BlockMatrix::from_entries(contacts, operator);
-    Ok(LocalProblem::new(operator, q, friction)?)
-}
-
-fn global<const D: usize>(mut reader: Reader) -> Result<GlobalProblem<D>, SiconosError> {
-    let contacts = reader.count("the number of contacts")?;
-    let line = reader.line;
-    let (size, stiffness) = reader.any_matrix()?;
-    if size[0] != size[1] {
-        return Err(SiconosError::Size {
-            line,
-            what: "columns of M",
-            found: size[1],
-            expected: size[0],
-        });
-    }
-    let directions = reader.matrix("H", [size[0], D * contacts])?;
-    let load = (0..size[0])
-        .map(|_| reader.number("a load"))
-        .collect::<Result<_, _>>()?;
-    let free = reader.locals(contacts)?;
-    let friction = reader.friction(contacts)?;
-    Ok(GlobalProblem::new(
-        stiffness, directions, load, free, friction,
-    )?)
-}
-
-/// Entries of a matrix: row, column, value.
-type Entries = Vec<(usize, usize, f64)>;
-
-/// A place in a text.
-struct Reader<'a> {
-    rest: &'a str,
-    line: usize,
-}
-
-impl<'a> Reader<'a> {
-    fn new(text: &'a str) -> Self {
-        Self {
-            rest: text,
-            line: 1,
-        }
-    }
-
-    fn wrong(&self, found: &str, expected: &'static str) -> SiconosError {
-        SiconosError::Syntax {
-            line: self.line,
-            found: found.to_owned(),
-            expected,
-        }
-    }
-
-    /// The next word; empty at the end.
-    fn word(&mut self) -> &'a str {
-        let begin = self
-            .rest
-            .find(|c: char| !c.is_whitespace())
-            .unwrap_or(self.rest.len());
-        self.line += self.rest[..begin].matches('\n').count();
-        let rest = &self.rest[begin..];
-        let end = rest.find(char::is_whitespace).unwrap_or(rest.len());
-        self.rest = &rest[end..];
-        &rest[..end]
-    }
-
-    /// The rest of the line.
-    fn rest_of_line(&mut self) -> &'a str {
-        let (line, rest) = self.rest.split_once('\n').unwrap_or((self.rest, ""));
-        self.rest = rest;
-        self.line += 1;
-        line
-    }
-
-    fn number(&mut self, expected: &'static str) -> Result<f64, SiconosError> {
-        let word = self.word();
-        word.parse().map_err(|_| self.wrong(word, expected))
-    }
-
-    fn count(&mut self, expected: &'static str) -> Result<usize, SiconosError> {
-        let word = self.word();
-        word.parse().map_err(|_| self.wrong(word, expected))
-    }
-
-    fn counts(&mut self, n: usize, expected: &'static str) -> Result<Vec<usize>, SiconosError> {
-        (0..n).map(|_| self.count(expected)).collect()
-    }
-
-    fn keyword(&mut self, keyword: &'static str) -> Result<(), SiconosError> {
-        let word = self.word();
-        if word == keyword {
-            Ok(())
-        } else {
-            Err(self.wrong(word, keyword))
-        }
-    }
-
-    fn locals<const D: usize>(&mut self, contacts: usize) -> Result<Vec<Local<D>>, SiconosError> {
-        let mut all = vec![Local::<D>::zeros(); contacts];
-        for value in all.iter_mut().flat_map(|v| v.iter_mut()) {
-            *value = self.number("a component of a contact")?;
-        }
-        Ok(all)
-    }
-
-    fn friction(&mut self, contacts: usize) -> Result<Vec<Coulomb>, SiconosError> {
-        (0..contacts)
-            .map(|_| Ok(Coulomb::new(self.number("a coefficient of friction")?)?))
-            .collect()
-    }
-
-    /// A matrix whose size is known.
-    fn matrix(
-        &mut self,
-        what: &'static str,
-        expected: [usize; 2],
-    ) -> Result<Entries, SiconosError> {
-        let line = self.line;
-        let (size, entries) = self.any_matrix()?;
-        match size.iter().zip(&expected).find(|(found, due)| found != due) {
-            None => Ok(entries),
-            Some((&found, &expected)) => Err(SiconosError::Size {
-                line,
-                what,
-                found,
-                expected,
-            }),
-        }
-    }
-
-    /// A matrix with its size.
-    fn any_matrix(&mut self) -> Result<([usize; 2], Entries), SiconosError> {
-        let storage = self.count("a storage: 0 dense, 1 blocks, 2 sparse")?;
-        let size = [self.count("rows")?, self.count("columns")?];
-        let entries = match storage {
-            0 => self.dense()?,
-            1 => self.blocks()?,
-            2 => self.sparse()?,
-            _ => {
-                let expected = "a storage: 0 dense, 1 blocks, 2 sparse";
-                return Err(self.wrong(&storage.to_string(), expected));
-            }
-        };
-        for &(i, j, _) in &entries {
-            for (found, expected, what) in [(i, size[0], "a row"), (j, size[1], "a column")] {
-                if found >= expected {
-                    return Err(SiconosError::Size {
-                        line: self.line,
-                        what,
-                        found,
-                        expected: expected.saturating_sub(1),
-                    });
-                }
-            }
-        }
-        Ok((size, entries))
-    }
-
-    fn dense(&mut self) -> Result<Entries, SiconosError> {
-        let (rows, columns) = (self.count("rows")?, self.count("columns")?);
-        let mut entries = Vec::new();
-        for k in 0..rows * columns {
-            entries.push((k % rows, k / rows, self.number("an entry")?));
-        }
-        Ok(entries)
-    }
-
-    fn blocks(&mut self) -> Result<Entries, SiconosError> {
-        let stored = self.count("the number of blocks")?;
-        let [rows, columns] = [self.count("block rows")?, self.count("block columns")?];
-        let row_ends = self.counts(rows, "the end of a block row")?;
-        let column_ends = self.counts(columns, "the end of a block column")?;
-        let lengths = [self.count("a length")?, self.count("a length")?];
-        let starts = self.counts(lengths[0], "the start of a block row")?;
-        let places = self.counts(lengths[1], "a block column")?;
-        let mut entries = Vec::new();
-        for (row, ends) in starts.windows(2).enumerate() {
-            for block in ends[0]..ends[1] {
-                let column = places.get(block).copied().unwrap_or(usize::MAX);
-                if block >= stored || row >= rows || column >= columns {
-                    return Err(SiconosError::Size {
-                        line: self.line,
-                        what: "a block",
-                        found: block,
-                        expected: stored.min(places.len()),
-                    });
-                }
-                self.count("the number of a block")?;
-                let begin = |ends: &[usize], at: usize| if at > 0 { ends[at - 1] } else { 0 };
-                let (top, left) = (begin(&row_ends, row), begin(&column_ends, column));
-                for j in left..column_ends[column] {
-                    for i in top..row_ends[row] {
-                        entries.push((i, j, self.number("an entry")?));
-                    }
-                }
-            }
-        }
-        Ok(entries)
-    }
-
-    fn sparse(&mut self) -> Result<Entries, SiconosError> {
-        let origin = self.count("an origin: 1 triplets, 2 compressed columns")?;
-        self.rest_of_line();
-        self.rest_of_line();
-        let mut entries = Vec::new();
-        match origin {
-            1 => {
-                self.keyword("triplet:")?;
-                let header = self.rest_of_line();
-                let stored = header
-                    .rsplit(' ')
-                    .next()
-                    .and_then(|n| n.trim().parse().ok());
-                let stored: usize = stored.ok_or_else(|| self.wrong(header, "nnz: a number"))?;
-                for _ in 0..stored {
-                    let (i, j) = (self.count("a row")?, self.count("a column")?);
-                    self.keyword(":")?;
-                    entries.push((i, j, self.number("an entry")?));
-                }
-            }
-            2 => {
-                let header = self.rest_of_line();
-                let columns = (header.split_once("-by-"))
-                    .and_then(|(_, rest)| rest.split_once(','))
-                    .and_then(|(n, _)| n.trim().parse().ok());
-                let columns: usize =
-                    columns.ok_or_else(|| self.wrong(header, "rows-by-columns, …"))?;
-                for j in 0..columns {
-                    self.keyword("col")?;
-                    self.count("a column")?;
-                    self.keyword(":")?;
-                    self.keyword("locations")?;
-                    let first = self.count("the first location")?;
-                    self.keyword("to")?;
-                    let last = self.number("the last location")?;
-                    for _ in 0..(last + 1.0 - first as f64) as usize {
-                        let i = self.count("a row")?;
-                        self.keyword(":")?;
-                        entries.push((i, j, self.number("an entry")?));
-                    }
-                }
-            }
-            _ => {
-                let expected = "an origin: 1 triplets, 2 compressed columns";
-                return Err(self.wrong(&origin.to_string(), expected));
-            }
-        }
-        Ok(entries)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_three_storages_say_the_same() {
-        // W = [[2, 1], [0, 3]] by columns, q = (-1, 0.5), μ = 0.25, and something to ignore.
-        let end = "-1 0.5\n0.25\n1\n";
-        let dense = format!("2\n1\n0\n2\n2\n2\t2\n 2 0\n 1 3\n{end}");
-        let blocks = format!("2 1 1 2 2  1 1 1  2  2  2 1  0 1  0  0 2 0 1 3 {end}");
-        let triplets = format!(
-            "2\n1\n2\n2\n2\n1\nCSparse\ntriplet: 2-by-2, nzmax: 3 nnz: 3\n0 0 : 2\n0 1 : 1\n1 1 : 3\n{end}"
-        );
-        let columns = format!(
-            "2 1 2 2 2 2\nCSparse\n2-by-2, nzmax: 3 nnz: 3, 1-norm: 4\n col 0 : locations 0 to 0\n \
-             0 : 2\n col 1 : locations 1 to 2\n 0 : 1\n 1 : 3\n{end}"
-        );
-        for text in [dense, blocks, triplets, columns] {
-            let Ok(Problem::Local2(problem)) = read(&text, Form::Local) else {
-                panic!("not read: {text}");
-            };
-            let own = problem.operator().diagonal(0);
-            assert_eq!(own.as_slice(), [2.0, 0.0, 1.0, 3.0]);
-            assert_eq!(problem.free()[0].as_slice(), [-1.0, 0.5]);
-            assert_eq!(problem.friction()[0].friction(), 0.25);
-        }
-    }
-
-    #[test]
-    fn errors_say_where() {
-        let error = read("2\n1\n0 2 2\n2 2\n1 0 0\nx", Form::Local).expect_err("no number");
-        assert_eq!(error.to_string(), "line 6: `x`, expected an entry");
-        assert!(matches!(
-            read("3\n1\n0 2 2 2 2 1 0 0 1", Form::Local),
-            Err(SiconosError::Size {
-                found: 2,
-                expected: 3,
-                ..
-            })
-        ));
-        assert!(matches!(
-            read("4 1", Form::Local),
-            Err(SiconosError::Syntax { line: 1, .. })
-        ));
-        assert!(matches!(
-            read("", Form::Global),
-            Err(SiconosError::Syntax { .. })
-        ));
-    }
-
-    #[test]
-    fn names_tell_the_form() {
-        for (name, form) in [
-            ("Rover1039.dat", Form::Local),
-            ("GFC3D_TwoRods1.dat", Form::Global),
-            ("GFC3D_TwoRods1-condensed.dat", Form::Local),
-            (
-                "gfc2d_granularflowonwall_00069_00350.condensed.dat",
-                Form::Local,
-            ),
-            ("CubeH8.fclib-global.dat", Form::Global),
-            ("Capsules-i125-1213.fclib-local.dat", Form::Local),
-        ] {
-            assert_eq!(Form::of_name(name), form, "{name}");
-        }
-    }
+    let text = std::fs::read_to_string(path);
+    let text = text.map_err(|error| SiconosError::File(error.to_string()))?;
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    read(&text, Form::of_name(&name))
 }

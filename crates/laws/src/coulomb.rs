@@ -4,7 +4,7 @@
 
 use crate::duality::{Bipotential, at_most, restricted};
 use crate::error::LawError;
-use crate::local::{Local, Status, direction, tangential_norm};
+use crate::local::{Local, Status, direction, hypotenuse, tangential_norm};
 use nalgebra::SMatrix;
 
 /// Unilateral contact with Coulomb friction of coefficient μ; μ = 0 is frictionless.
@@ -153,7 +153,7 @@ impl Coulomb {
     /// Cosine and sine of the half-angle of K_μ; (1, μ)/√(1 + μ²) without overflow.
     #[inline]
     fn half_angle(&self) -> (f64, f64) {
-        let cos = 1.0 / 1f64.hypot(self.friction);
+        let cos = 1.0 / hypotenuse(1.0, self.friction);
         (cos, self.friction * cos)
     }
 

@@ -3,8 +3,42 @@
 
 use moreau::plot::{Chart, PlotError, Style};
 
+use super::outcome::{Best, Run};
+
 /// Method, problem, and the seconds if it solved it.
 pub type Time<'a> = (&'a str, &'a str, Option<f64>);
+
+/// What is drawn of the runs: all methods of ours; of Siconos' solvers, which are many, those that solve
+/// half of the problems, and together the best of them on every problem. Problems that Siconos was not
+/// asked are left out where it was asked others.
+pub fn times<'a>(runs: &'a [Run], known: &[Best]) -> Vec<Time<'a>> {
+    let foreign = |run: &Run| run.method.starts_with("Siconos");
+    let mut asked: Vec<&str> = runs
+        .iter()
+        .filter(|run| foreign(run))
+        .map(|run| run.file.as_str())
+        .collect();
+    asked.dedup();
+    let solved = |method: &str| {
+        runs.iter()
+            .filter(|run| run.method == method && run.solved())
+            .count()
+    };
+    let drawn = |run: &&Run| {
+        let compared = asked.is_empty() || asked.contains(&run.file.as_str());
+        compared && (!foreign(run) || 2 * solved(&run.method) >= asked.len())
+    };
+    let time = |run: &'a Run| (run.method.as_str(), run.file.as_str(), run.success());
+    let together = asked.iter().map(|file| {
+        let best = known.iter().find(|best| best.file == *file);
+        ("best of Siconos", *file, best.map(|best| best.seconds))
+    });
+    runs.iter()
+        .filter(drawn)
+        .map(time)
+        .chain(together)
+        .collect()
+}
 
 /// The profile as a picture; `None` if nothing was solved.
 pub fn svg(times: &[Time<'_>]) -> Result<Option<String>, PlotError> {
@@ -35,6 +69,7 @@ pub fn svg(times: &[Time<'_>]) -> Result<Option<String>, PlotError> {
 /// Corners of the step function of every method, in the order in which the methods first occur.
 fn curves<'a>(times: &[Time<'a>]) -> Vec<(&'a str, Vec<[f64; 2]>)> {
     let mut problems: Vec<&str> = times.iter().map(|time| time.1).collect();
+    problems.sort_unstable();
     problems.dedup();
     let mut methods: Vec<&str> = Vec::new();
     for (method, ..) in times {
@@ -81,5 +116,43 @@ mod tests {
         );
         assert!(svg(&times).unwrap().unwrap().starts_with("<svg "));
         assert_eq!(svg(&[("a", "one", None)]).unwrap(), None);
+    }
+
+    #[test]
+    fn rare_solvers_and_problems_of_one_side_are_left_out() {
+        let run = |method: &str, file: &str, error| Run {
+            file: file.to_owned(),
+            method: method.to_owned(),
+            contacts: 1,
+            rank: None,
+            residual: moreau::contact::Residual {
+                scaled: error,
+                of_load: error,
+                unscaled: error,
+            },
+            iterations: 1,
+            seconds: 1.0,
+            end: String::new(),
+        };
+        let runs = [
+            run("Auto", "a", 0.0),
+            run("Siconos often", "a", 0.0),
+            run("Siconos never", "a", 1.0),
+            run("Auto", "b", 0.0),
+        ];
+        let known = super::super::outcome::best_of_siconos(&runs);
+        let drawn: Vec<_> = times(&runs, &known)
+            .iter()
+            .map(|time| (time.0, time.1))
+            .collect();
+        assert_eq!(
+            drawn,
+            [
+                ("Auto", "a"),
+                ("Siconos often", "a"),
+                ("best of Siconos", "a")
+            ]
+        );
+        assert_eq!(times(&runs[3..], &[]).len(), 1);
     }
 }

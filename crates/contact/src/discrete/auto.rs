@@ -106,32 +106,33 @@ impl Auto {
         problem: &LocalProblem<D>,
         mut r: Vec<Local<D>>,
     ) -> LocalSolution<D> {
-        const NAME: &str = "Gauss-Seidel";
         let exact = Proximal {
             problem,
             alpha: 0.0,
             centre: &r.clone(),
         };
-        let mut best = LocalSolution::at(problem, r.clone(), 0, NAME);
-        let mut sweeps = 0;
-        while best.residual.size() > self.tolerance {
+        let size = |r: &[Local<D>]| problem.size(r, &problem.displacement(r));
+        let (mut best, mut least) = (r.clone(), size(&r));
+        let (mut sweeps, mut arrived) = (0, 0);
+        while least > self.tolerance {
             for _ in 0..LOOK {
                 sweeps += 1;
                 if sweep(&exact, &mut r) <= 0.1 * self.tolerance {
                     break;
                 }
             }
-            let now = LocalSolution::at(problem, r.clone(), sweeps, NAME);
-            let rate = (now.residual.size() / best.residual.size()).powf(1.0 / LOOK as f64);
-            let left = (self.tolerance / now.residual.size()).ln() / rate.ln();
-            if now.residual.size() < best.residual.size() {
-                best = now;
+            let now = size(&r);
+            let rate = (now / least).powf(1.0 / LOOK as f64);
+            let left = (self.tolerance / now).ln() / rate.ln();
+            if now < least {
+                best.clone_from(&r);
+                (least, arrived) = (now, sweeps);
             }
             // The first sweeps find out what is open; they are not typical.
             if sweeps > 2 * LOOK && !(rate < 1.0 && left < WORTH) {
                 break;
             }
         }
-        best
+        LocalSolution::at(problem, best, arrived, "Gauss-Seidel")
     }
 }

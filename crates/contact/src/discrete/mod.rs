@@ -6,6 +6,7 @@
 mod admm;
 mod auto;
 mod blocks;
+mod elimination;
 mod gauss_seidel;
 mod global;
 mod newton;
@@ -28,8 +29,9 @@ pub use tresca::TrescaFixedPoint;
 
 use moreau_laws::Local;
 
-/// Residual at which the methods stop when nothing else is asked for.
-const TOLERANCE: f64 = 1e-9;
+/// Residual at which the methods stop when nothing else is asked for: small enough that measures in
+/// other units, which may be some ten times larger, are met as well.
+const TOLERANCE: f64 = 1e-10;
 
 /// A solution of the local problem, or the best point that a method met.
 #[derive(Debug, Clone, PartialEq)]

@@ -2,6 +2,7 @@
 //! condensed stiffness, see `SemismoothNewton`.
 
 use super::blocks::{BlockMatrix, Factor};
+use super::elimination::Elimination;
 use super::problem::LocalProblem;
 use moreau_laws::{Coulomb, Local};
 use nalgebra::SMatrix;
@@ -65,7 +66,10 @@ impl NewtonMap {
             r[0]
         };
         let radius = mu * pressure.max(0.0);
-        let size = (1..D).fold(0.0, |norm: f64, k| norm.hypot(prediction[k]));
+        let size = (1..D)
+            .map(|k| prediction[k] * prediction[k])
+            .sum::<f64>()
+            .sqrt();
         if size <= radius && radius > 0.0 {
             for k in 1..D {
                 at.map[k] = rho[k] * u[k];
@@ -131,6 +135,9 @@ const MEMORY: usize = 5;
 /// Steps over which the residual must halve.
 const PATIENCE: usize = 10;
 
+/// Shortest step that is tried: who needs a shorter one fares better with a softer problem.
+const SHORTEST: f64 = 0.1;
+
 /// What a run of Newton's method came to.
 pub(super) struct Run<const D: usize> {
     pub(super) force: Vec<Local<D>>,
@@ -146,12 +153,13 @@ pub(super) struct Run<const D: usize> {
 pub(super) fn newton<const D: usize>(
     problem: &Proximal<D>,
     map: NewtonMap,
+    elimination: &mut Option<Elimination<D>>,
     start: &[Local<D>],
     target: f64,
     limit: usize,
 ) -> Run<D> {
-    let method = Method::new(problem, map);
-    let mut now = method.iterate(start.to_vec());
+    let mut method = Method::new(problem, map, elimination);
+    let mut now = method.iterate(start.to_vec(), problem.displacement(start));
     let mut best = Run {
         force: now.r.clone(),
         iterations: 0,
@@ -179,13 +187,15 @@ pub(super) fn newton<const D: usize>(
             .fold(0.0, |m: f64, v| m.max(*v));
         let mut length = 1.0;
         let next = loop {
-            let moved = |(r, d): (&Local<D>, &Local<D>)| r + d * length;
-            let next = method.iterate(now.r.iter().zip(&step).map(moved).collect());
+            let moved = |(a, d): (&Local<D>, &Local<D>)| a + d * length;
+            let r = now.r.iter().zip(&step.force).map(moved).collect();
+            let u = now.u.iter().zip(&step.displacement).map(moved).collect();
+            let next = method.iterate(r, u);
             if next.merit < (1.0 - 1e-4 * length) * reference {
                 break Some(next);
             }
             length *= 0.5;
-            if length < 1e-3 {
+            if length < SHORTEST {
                 break None;
             }
         };
@@ -204,19 +214,37 @@ pub(super) fn newton<const D: usize>(
 struct Iterate<const D: usize> {
     r: Vec<Local<D>>,
     u: Vec<Local<D>>,
+    /// F and its derivatives.
+    at: Vec<Linearised<D>>,
     merit: f64,
     residual: f64,
+}
+
+/// A Newton step, and the change of u that it makes.
+struct Step<const D: usize> {
+    force: Vec<Local<D>>,
+    displacement: Vec<Local<D>>,
 }
 
 struct Method<'a, 'b, const D: usize> {
     problem: &'a Proximal<'b, D>,
     map: NewtonMap,
+    elimination: &'a mut Option<Elimination<D>>,
     /// ρ of every component.
     rho: Vec<Local<D>>,
 }
 
+/// Errors of a solution of Newton's equation, relative to F, above which it is refined, and above
+/// which it is solved again with an exchange of pivots.
+const REFINE: f64 = 1e-6;
+const REFUSE: f64 = 1e-3;
+
 impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
-    fn new(problem: &'a Proximal<'b, D>, map: NewtonMap) -> Self {
+    fn new(
+        problem: &'a Proximal<'b, D>,
+        map: NewtonMap,
+        elimination: &'a mut Option<Elimination<D>>,
+    ) -> Self {
         let rho = |i: usize| {
             let own = problem.problem.own(i);
             let tangential = (1..D).map(|k| own[(k, k)]).sum::<f64>() / (D.max(2) - 1) as f64;
@@ -227,74 +255,159 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
         Self {
             problem,
             map,
+            elimination,
             rho: (0..problem.problem.contacts()).map(rho).collect(),
         }
     }
 
-    fn iterate(&self, r: Vec<Local<D>>) -> Iterate<D> {
+    fn iterate(&self, r: Vec<Local<D>>, u: Vec<Local<D>>) -> Iterate<D> {
         let p = self.problem.problem;
-        let u = self.problem.displacement(&r);
+        let linearise = |i| {
+            let law: &Coulomb = &p.friction()[i];
+            self.map.linearise(law, &self.rho[i], &r[i], &u[i])
+        };
+        let at: Vec<Linearised<D>> = (0..r.len()).map(linearise).collect();
         // Multiplied by a compliance a square is an energy: unlike contacts weigh alike.
-        let merit = (0..r.len())
-            .map(|i| {
-                let at = self
-                    .map
-                    .linearise(&p.friction()[i], &self.rho[i], &r[i], &u[i]);
-                at.map.norm_squared() * p.compliance(i)
-            })
-            .sum();
-        let residual = p.residual(&r, &u).size();
+        let energy = |(i, at): (usize, &Linearised<D>)| at.map.norm_squared() * p.compliance(i);
         Iterate {
+            merit: at.iter().enumerate().map(energy).sum(),
+            residual: p.size(&r, &u),
             r,
             u,
-            merit,
-            residual,
+            at,
         }
     }
 
     /// Newton step; `None` if the matrix is singular.
-    fn step(&self, now: &Iterate<D>) -> Option<Vec<Local<D>>> {
-        let p = self.problem.problem;
-        let contacts = p.contacts();
-        let mut step = vec![Local::<D>::zeros(); contacts];
+    fn step(&mut self, now: &Iterate<D>) -> Option<Step<D>> {
+        let contacts = now.r.len();
+        let mut force = vec![Local::<D>::zeros(); contacts];
         // Where F does not see displacements its step is known: contacts that open.
-        let mut place = vec![usize::MAX; contacts];
-        let mut active = Vec::new();
-        for i in 0..contacts {
-            let (r, u) = (&now.r[i], &now.u[i]);
-            let at = self.map.linearise(&p.friction()[i], &self.rho[i], r, u);
-            if at.displacement.iter().all(|b| *b == 0.0) {
-                step[i] = -(at.force.try_inverse()? * at.map);
-            } else {
-                place[i] = active.len();
-                active.push((i, at));
+        let mut opens = vec![false; contacts];
+        for (i, at) in now.at.iter().enumerate() {
+            opens[i] = at.displacement.iter().all(|b| *b == 0.0);
+            if opens[i] {
+                force[i] = -(at.force.try_inverse()? * at.map);
             }
+        }
+        if let Some(mut elimination) = self.elimination.take() {
+            let step = self.eliminate(&mut elimination, now, &opens, force.clone());
+            *self.elimination = Some(elimination);
+            if step.is_some() {
+                return step;
+            }
+        }
+        self.exchange(now, &opens, force)
+    }
+
+    /// The step by elimination of the contacts that do not open; `None` if it is not good enough.
+    fn eliminate(
+        &self,
+        elimination: &mut Elimination<D>,
+        now: &Iterate<D>,
+        opens: &[bool],
+        force: Vec<Local<D>>,
+    ) -> Option<Step<D>> {
+        let operator = self.problem.problem.operator();
+        elimination.factorise(|i, add| {
+            let at = &now.at[i];
+            if opens[i] {
+                return false;
+            }
+            for (j, block) in operator.row(i).filter(|(j, _)| !opens[*j]) {
+                let spread = at.displacement * block;
+                add(
+                    j,
+                    if j == i {
+                        spread + self.own(i, at)
+                    } else {
+                        spread
+                    },
+                );
+            }
+            true
+        })?;
+        let size: f64 = now.at.iter().map(|at| at.map.norm_squared()).sum();
+        let (mut step, mut left, _) = self.check(now, opens, force);
+        let mut correction = left.clone();
+        for bound in [REFINE, REFUSE] {
+            elimination.solve(&left, &mut correction);
+            for (i, d) in correction.iter().enumerate() {
+                step.force[i] += d;
+            }
+            let error;
+            (step, left, error) = self.check(now, opens, step.force);
+            if error <= bound * bound * size {
+                return Some(step);
+            }
+        }
+        None
+    }
+
+    /// A + s B of a contact.
+    fn own(&self, i: usize, at: &Linearised<D>) -> SMatrix<f64, D, D> {
+        at.force + at.displacement * self.problem.spring(i)
+    }
+
+    /// A step with its change of u, what it leaves of Newton's equation, and the square of that.
+    fn check(
+        &self,
+        now: &Iterate<D>,
+        opens: &[bool],
+        force: Vec<Local<D>>,
+    ) -> (Step<D>, Vec<Local<D>>, f64) {
+        let operator = self.problem.problem.operator();
+        let change = |i| operator.row_times(i, &force) + force[i] * self.problem.spring(i);
+        let displacement: Vec<Local<D>> = (0..force.len()).map(change).collect();
+        let left = |(i, at): (usize, &Linearised<D>)| match opens[i] {
+            true => Local::zeros(),
+            false => -at.map - at.force * force[i] - at.displacement * displacement[i],
+        };
+        let left: Vec<Local<D>> = now.at.iter().enumerate().map(left).collect();
+        let error = left.iter().map(|left| left.norm_squared()).sum();
+        let step = Step {
+            force,
+            displacement,
+        };
+        (step, left, error)
+    }
+
+    /// The step by a factorisation with pivoting; `None` if the matrix is singular.
+    fn exchange(
+        &self,
+        now: &Iterate<D>,
+        opens: &[bool],
+        mut force: Vec<Local<D>>,
+    ) -> Option<Step<D>> {
+        let operator = self.problem.problem.operator();
+        let mut place = vec![usize::MAX; force.len()];
+        let active: Vec<usize> = (0..force.len()).filter(|i| !opens[*i]).collect();
+        for (at, &i) in active.iter().enumerate() {
+            place[i] = at;
         }
         let mut matrix = BlockMatrix::empty();
-        let mut rhs = Vec::with_capacity(active.len());
-        for (i, at) in &active {
-            let mut known = Local::<D>::zeros();
-            for (j, block) in p.operator().row(*i) {
-                if place[j] == usize::MAX {
-                    known += block * step[j];
-                }
-            }
-            rhs.push(-at.map - at.displacement * known);
-            let own = at.force + at.displacement * self.problem.spring(*i);
-            let row = p
-                .operator()
-                .row(*i)
-                .filter(|(j, _)| place[*j] != usize::MAX);
+        for &i in &active {
+            let at = &now.at[i];
+            let row = operator.row(i).filter(|(j, _)| !opens[*j]);
             matrix.push_row(row.map(|(j, block)| {
                 let spread = at.displacement * block;
-                (place[j], if j == *i { spread + own } else { spread })
+                (
+                    place[j],
+                    if j == i {
+                        spread + self.own(i, at)
+                    } else {
+                        spread
+                    },
+                )
             }));
         }
+        let (_, left, _) = self.check(now, opens, force.clone());
+        let rhs: Vec<Local<D>> = active.iter().map(|&i| left[i]).collect();
         let solved = Factor::new(&matrix)?.solve(&rhs)?;
-        for ((i, _), solved) in active.iter().zip(solved) {
-            step[*i] = solved;
+        for (&i, solved) in active.iter().zip(solved) {
+            force[i] = solved;
         }
-        Some(step)
+        Some(self.check(now, opens, force).0)
     }
 }
 

@@ -59,7 +59,7 @@ pub(super) fn solve<const D: usize>(
         }
         let (x, y) = ((d2 * b1 - s12 * b2) / det, (d1 * b2 - s21 * b1) / det);
         let (dx, dy) = ((s12 * y - d2 * x) / det, (s21 * x - d1 * y) / det);
-        let size = x.hypot(y);
+        let size = (x * x + y * y).sqrt();
         let pressure = -(q[0] + w[(0, 1)] * x + w[(0, 2)] * y) * normal;
         let d_size = if size > 0.0 {
             (x * dx + y * dy) / size
@@ -174,7 +174,7 @@ fn disc<const D: usize>(s: &SMatrix<f64, D, D>, b: &Local<D>, radius: f64) -> Lo
         let det = d1 * d2 - s[(1, 2)] * s[(2, 1)];
         t[1] = (d2 * b[1] - s[(1, 2)] * b[2]) / det;
         t[2] = (d1 * b[2] - s[(2, 1)] * b[1]) / det;
-        let size = t[1].hypot(t[2]);
+        let size = (t[1] * t[1] + t[2] * t[2]).sqrt();
         if size <= radius * (1.0 + 4.0 * f64::EPSILON) {
             break;
         }

@@ -40,6 +40,8 @@ pub struct LocalProblem<const D: usize> {
     own: Vec<SMatrix<f64, D, D>>,
     /// |W_ii|₂ of every contact.
     compliance: Vec<f64>,
+    /// |ρ q|.
+    load: f64,
 }
 
 /// Distances of a point (r, u) to the contact law, dimensionless, by the natural map of \[90′\].
@@ -109,13 +111,19 @@ impl<const D: usize> LocalProblem<D> {
                 compliance: own[contact][(0, 0)],
             });
         }
-        let compliance = own.iter().map(spectral_norm).collect();
+        let compliance: Vec<f64> = own.iter().map(spectral_norm).collect();
+        let scaled = free
+            .iter()
+            .zip(&compliance)
+            .map(|(q, w)| (q / *w).norm_squared());
+        let load = scaled.sum::<f64>().sqrt();
         Ok(Self {
             own,
             operator,
             free,
             friction,
             compliance,
+            load,
         })
     }
 
@@ -171,6 +179,18 @@ impl<const D: usize> LocalProblem<D> {
         }
     }
 
+    /// [`Residual::size`] alone, for those who ask often.
+    pub(super) fn size(&self, r: &[Local<D>], u: &[Local<D>]) -> f64 {
+        let (mut map, mut forces) = (0.0, 0.0);
+        for (i, law) in self.friction.iter().enumerate() {
+            let rho = 1.0 / self.compliance[i];
+            map += law.natural_map(&u[i], &r[i], rho).norm_squared();
+            forces += r[i].norm_squared();
+        }
+        let (map, forces): (f64, f64) = (map.sqrt(), forces.sqrt());
+        over(map, forces.max(self.load)).max(over(map, self.load) / LOAD)
+    }
+
     /// The norms of which residuals are made.
     pub(super) fn norms(&self, r: &[Local<D>], u: &[Local<D>]) -> Norms {
         let mut squares = Norms::default();
@@ -181,7 +201,6 @@ impl<const D: usize> LocalProblem<D> {
             squares.forces += r[i].norm_squared();
             squares.displacements += u[i].norm_squared();
             squares.loads += self.free[i].norm_squared();
-            squares.scaled_loads += (self.free[i] * rho).norm_squared();
         }
         Norms {
             scaled: squares.scaled.sqrt(),
@@ -189,7 +208,7 @@ impl<const D: usize> LocalProblem<D> {
             forces: squares.forces.sqrt(),
             displacements: squares.displacements.sqrt(),
             loads: squares.loads.sqrt(),
-            scaled_loads: squares.scaled_loads.sqrt(),
+            scaled_loads: self.load,
         }
     }
 

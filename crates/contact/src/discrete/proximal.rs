@@ -1,6 +1,7 @@
 //! The proximal point method around semismooth Newton, and Newton's method alone; not the maps that
 //! Newton's method solves.
 
+use super::elimination::Elimination;
 use super::gauss_seidel::sweep;
 use super::newton::{NewtonMap, Proximal, newton};
 use super::{LocalProblem, LocalSolution, LocalSolver, Reason, TOLERANCE, Unsolved, judge, start};
@@ -45,7 +46,15 @@ impl<const D: usize> LocalSolver<D> for Newton {
             alpha: 0.0,
             centre: &from,
         };
-        let run = newton(&exact, self.map, &from, relative, iterations);
+        let mut elimination = Elimination::new(problem.operator());
+        let run = newton(
+            &exact,
+            self.map,
+            &mut elimination,
+            &from,
+            relative,
+            iterations,
+        );
         let reason = if run.iterations == iterations {
             Reason::Iterations
         } else if run.singular {
@@ -84,8 +93,9 @@ impl Default for ProximalNewton {
     }
 }
 
-/// α over the residual.
-const SOFTNESS: f64 = 5.0;
+/// α is the residual to this power: less than one, because the forces of a softened problem move by
+/// much more than their residual, more than one half, for α has to vanish fast.
+const SOFTNESS: f64 = 0.75;
 
 /// Bounds of α; below the least, rounding of W spoils the forces that W does not see.
 const ALPHA: [f64; 2] = [1e-10, 10.0];
@@ -98,8 +108,11 @@ const EASY: usize = 8;
 const SOFTER: f64 = 4.0;
 const HARDER: f64 = 0.5;
 
-/// Sweeps where Newton's method fails.
-const SWEEPS: usize = 50;
+/// Sweeps where Newton's method fails, one of whose steps takes about as long as two of them.
+const SWEEPS: usize = 10;
+
+/// Part of the residual that a softened problem may leave.
+const TARGET: f64 = 0.3;
 
 /// Residual below which the centre may run ahead, by how much more at each problem that leaves the
 /// residual about the same, and how far at most.
@@ -125,16 +138,24 @@ impl<const D: usize> LocalSolver<D> for ProximalNewton {
         let mut best = now.clone();
         let mut centre = now.force.clone();
         let (mut iterations, mut idle, mut milestone) = (0, 0, best.residual.size());
+        let mut elimination = Elimination::new(problem.operator());
         let (mut factor, mut stride) = (1.0, 1.0);
         while best.residual.size() > relative && iterations < limit && idle < PATIENCE {
             let size = now.residual.size();
             let softened = Proximal {
                 problem,
-                alpha: (factor * SOFTNESS * size).clamp(ALPHA[0], ALPHA[1]),
+                alpha: (factor * size.powf(SOFTNESS)).clamp(ALPHA[0], ALPHA[1]),
                 centre: &centre,
             };
-            let target = (0.1 * size).clamp(0.3 * relative, 1.0);
-            let mut run = newton(&softened, self.map, &centre, target, STEPS);
+            let target = (TARGET * size).clamp(0.3 * relative, 1.0);
+            let mut run = newton(
+                &softened,
+                self.map,
+                &mut elimination,
+                &centre,
+                target,
+                STEPS,
+            );
             iterations += run.iterations.max(1);
             let reached = run.residual <= target;
             if !reached {
