@@ -101,11 +101,12 @@ pub trait Block<const D: usize>: Send + Sync {
     fn restore(&mut self, numbers: &[f64]) -> usize;
 }
 
-/// Cells evaluated before their results are handed on: bounds the memory of the buffers.
-const PANEL: usize = 512;
+/// Numbers of the stiffness of the cells that are evaluated before their results are handed on:
+/// bounds the memory of the buffers.
+const PANEL: usize = 1 << 19;
 
-/// Cells that are worth a thread.
-const GRAIN: usize = 128;
+/// Quadrature points that are worth a thread: waking one takes as long as some hundred.
+const GRAIN: usize = 2048;
 
 /// The block of some cells with law L.
 pub struct SolidBlock<L: BulkLaw, const D: usize> {
@@ -210,8 +211,10 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
         };
         // One entry a cell at least, so that the parallel chunks below stay aligned.
         let room = entries.max(1);
-        self.force.resize(PANEL.min(all) * size, 0.0);
-        self.stiffness.resize(PANEL.min(all) * room, 0.0);
+        let cells = PANEL.div_ceil(size * (size + 1) / 2).min(all);
+        let grain = GRAIN.div_ceil(per_cell);
+        self.force.resize(cells * size, 0.0);
+        self.stiffness.resize(cells * room, 0.0);
         let panel = Panel {
             cells: self.cells.as_ref(),
             law: &self.law,
@@ -223,22 +226,22 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
             d_u,
         };
         let mut flows = false;
-        for start in (0..all).step_by(PANEL) {
-            let count = PANEL.min(all - start);
+        for start in (0..all).step_by(cells) {
+            let count = cells.min(all - start);
             let forces = &mut self.force[..count * size];
             let matrices = &mut self.stiffness[..count * room];
             let new = &mut self.new[start * per_cell..(start + count) * per_cell];
             // The order of the cells, and with it every sum, is the same for any number of threads.
-            flows |= if count < 2 * GRAIN {
+            flows |= if count < 2 * grain {
                 panel.evaluate(start, entries, (forces, matrices, new))
             } else {
                 forces
-                    .par_chunks_mut(GRAIN * size)
-                    .zip(matrices.par_chunks_mut(GRAIN * room))
-                    .zip(new.par_chunks_mut(GRAIN * per_cell))
+                    .par_chunks_mut(grain * size)
+                    .zip(matrices.par_chunks_mut(grain * room))
+                    .zip(new.par_chunks_mut(grain * per_cell))
                     .enumerate()
                     .map(|(k, ((forces, matrices), new))| {
-                        panel.evaluate(start + k * GRAIN, entries, (forces, matrices, new))
+                        panel.evaluate(start + k * grain, entries, (forces, matrices, new))
                     })
                     .reduce(|| false, |a, b| a | b)
             };

@@ -216,19 +216,23 @@ impl<const D: usize, const N: usize> ElementCells<D, N> {
                     for g in first..tangents.len().min(first + POINTS) {
                         let fields = &fields[g * self.per_point..(g + 1) * self.per_point];
                         for left in self.operator[i] {
+                            let mut traction = [0.0; N];
                             for right in self.operator[j] {
                                 let c = weights[g] * tangents[g][(left.row, right.row)];
                                 let c = c * (left.factor * right.factor);
-                                add(&mut tractions[count], c, &fields[right.field]);
+                                add(&mut traction, c, &fields[right.field]);
                             }
+                            tractions[count] = traction;
                             strains[count] = &fields[left.field];
                             count += 1;
                         }
                     }
                     for a in 0..N {
+                        let mut row = sum[a];
                         for (strain, traction) in strains[..count].iter().zip(&tractions) {
-                            add(&mut sum[a], strain[a], traction);
+                            add(&mut row, strain[a], traction);
                         }
+                        sum[a] = row;
                     }
                 }
                 for a in 0..N {
