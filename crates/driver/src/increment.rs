@@ -59,6 +59,9 @@ pub(crate) struct Start {
 /// displacements with a somewhat smaller α.
 const CONTACT_SLACK: f64 = 10.0;
 
+/// How far an increment may move anything, in sizes of the mesh and of what it prescribes.
+const FARTHEST: f64 = 10.0;
+
 /// Parts of the elastic stiffness that are tried in turn where the tangent is a mechanism.
 const BLENDS: [f64; 4] = [1e-4, 1e-2, 0.2, 1.0];
 
@@ -133,7 +136,9 @@ impl<const D: usize> Driver<D> {
                 .as_ref()
                 .map_or(0.0, |s| CONTACT_SLACK * s.residual);
             let target = self.target(system, scale, &now.d_u) + left;
-            let balanced = now.part >= 1.0 && out_of_balance <= target;
+            let balanced = now.part >= 1.0
+                && out_of_balance <= target
+                && self.is_near(&now.d_u, (start, &end));
             if balanced
                 && let Some(s) = solution.take_if(|s| self.law_holds(system, &kinematics, s, scale))
             {
@@ -248,6 +253,15 @@ impl<const D: usize> Driver<D> {
         let motion = largest(moved.iter().copied()).clamp(f64::EPSILON * size, size);
         let rounding = 64.0 * f64::EPSILON * system.stiffest() * motion;
         (self.settings.tolerance * scale).max(rounding)
+    }
+
+    /// Whether nothing has gone so far that forces are rounding: what slides away is in balance with
+    /// anything there.
+    fn is_near(&self, d_u: &[f64], (start, end): (&Loading<D>, &Loading<D>)) -> bool {
+        let prescribed = end.displacement.iter();
+        let told = largest(prescribed.map(|(dof, u)| u - start.displacement.get(dof).unwrap_or(u)));
+        let moved = &d_u[..self.mesh_dofs()];
+        largest(moved.iter().copied()) <= FARTHEST * (self.mesh.size() + told)
     }
 
     /// Factorises the tangent at an iterate. Where that is a mechanism, as a plastic tangent may be
