@@ -31,6 +31,8 @@ pub(crate) struct Counts {
     pub(crate) shortened: usize,
     pub(crate) factorisations: usize,
     pub(crate) residuals: Vec<f64>,
+    /// [`StepReport::criticality`].
+    pub(crate) criticality: Option<(usize, f64)>,
 }
 
 /// A converged increment, not yet committed.
@@ -193,6 +195,11 @@ impl<const D: usize> Driver<D> {
             system.timings.contact += clock.elapsed();
             counts.contact += solved.iterations;
             counts.last_contact = solved.iterations;
+            // On a path the stiffness is not that of the structure alone.
+            counts.criticality = control
+                .is_none()
+                .then(|| condensation.problem.criticality(&solved.status))
+                .flatten();
             let mut step = std::mem::replace(&mut missing, vec![0.0; now.d_u.len()]);
             let x = condensation.interface(&solved.displacement);
             let growth = border.map_or(0.0, |b| system.factor(&b, &mut condensed, &x));
