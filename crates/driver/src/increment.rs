@@ -368,7 +368,9 @@ impl<const D: usize> Driver<D> {
             let kinematics = Kinematics::new(p, &obstacle.normal(&x), gap, &slip, free);
             kinematics.between_forces(footing.area)
         };
-        self.points.iter().zip(&self.footings).map(at).collect()
+        let mut all: Vec<_> = self.points.iter().zip(&self.footings).map(at).collect();
+        self.stop_once(|dof| system.is_free(dof), &mut all);
+        all
     }
 
     /// Contact forces t₀ at the start of the step, in the frames of now.
