@@ -95,6 +95,8 @@ pub struct Figures {
     iteration_over_factorisation: f64,
     /// Largest resident memory of the process \[MB\], where the system tells it.
     peak_memory: Option<f64>,
+    /// The part of it that came after mesh, model and states, over the size of the factor.
+    memory_over_factor: Option<f64>,
     /// Bipotential gap of the run over its external work.
     relative_gap: f64,
     /// Load of the punch \[N\] at the end.
@@ -190,6 +192,7 @@ fn measure(
     };
     let clock = Instant::now();
     let mut driver = paper::block(cells, friction, Integration::Reduced, settings)?;
+    let model = memory("VmRSS:");
     let reports = driver.run(&press(increments), increments, |_, _| {})?;
     let seconds = clock.elapsed().as_secs_f64();
     let sum = |f: fn(&moreau::driver::StepReport) -> usize| reports.iter().map(f).sum::<usize>();
@@ -198,6 +201,8 @@ fn measure(
     let one = timings.factorisation.as_secs_f64() / factorisations.max(1) as f64;
     let gap: f64 = reports.iter().map(|r| r.certificate.bipotential_gap).sum();
     let once = timings.ordering.as_secs_f64();
+    let peak = memory("VmHWM:");
+    let factor = driver.factor_entries() as f64 * size_of::<f64>() as f64 / MEGABYTE;
     Ok(Figures {
         cells,
         method,
@@ -216,7 +221,8 @@ fn measure(
         rest: seconds - timings.sum().as_secs_f64(),
         one_factorisation: one,
         iteration_over_factorisation: (seconds - once) / newton.max(1) as f64 / one,
-        peak_memory: peak(),
+        peak_memory: peak,
+        memory_over_factor: peak.zip(model).map(|(peak, model)| (peak - model) / factor),
         relative_gap: gap / driver.energies().external_work,
         punch_load: paper::block_punch_load(&driver)?,
     })
@@ -225,7 +231,7 @@ fn measure(
 fn header() -> String {
     format!(
         "{:>8} {:>12} {:>9} {:>8} {:>7} {:>8} {:>6} {:>9} │ {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} │ \
-         {:>9} {:>7} {:>8} {:>9}",
+         {:>9} {:>7} {:>8} {:>9} {:>9}",
         "cells",
         "method",
         "unknowns",
@@ -243,6 +249,7 @@ fn header() -> String {
         "1 fact. s",
         "it/fact",
         "peak MB",
+        "mem/fact",
         "gap/work"
     )
 }
@@ -253,7 +260,7 @@ fn row(f: &Figures) -> String {
     let part = |seconds: f64| format!("{:.1} %", 100.0 * seconds / f.seconds);
     format!(
         "{:>8} {:>12} {:>9} {:>8} {:>7} {:>8} {:>6} {:>9.3} │ {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} │ \
-         {:>9.5} {:>7.2} {:>8} {:>9.1e}",
+         {:>9.5} {:>7.2} {:>8} {:>9} {:>9.1e}",
         format!("{}x{}", f.cells[0], f.cells[1]),
         method,
         f.unknowns,
@@ -271,16 +278,20 @@ fn row(f: &Figures) -> String {
         f.one_factorisation,
         f.iteration_over_factorisation,
         f.peak_memory.map_or("–".into(), |m| format!("{m:.0}")),
+        f.memory_over_factor
+            .map_or("–".into(), |m| format!("{m:.2}")),
         f.relative_gap
     )
 }
 
-/// Largest resident memory so far \[MB\], from the process table of Linux.
-fn peak() -> Option<f64> {
+const MEGABYTE: f64 = 1024.0 * 1024.0;
+
+/// An entry of the process table of Linux \[MB\]: the resident memory, or the largest so far.
+fn memory(entry: &str) -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
+    let line = status.lines().find_map(|l| l.strip_prefix(entry))?;
     let kilobytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kilobytes / 1024.0)
+    Some(1024.0 * kilobytes / MEGABYTE)
 }
 
 /// Starts the largest resident memory anew, where the system allows it.

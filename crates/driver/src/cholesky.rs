@@ -7,7 +7,7 @@ use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::sparse::linalg::cholesky::{simplicial, supernodal};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
 use faer::{Accum, MatMut, MatRef, Par};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use std::fmt;
 
 /// Lower triangle of a symmetric sparse matrix by columns: pattern without values. The diagonal
@@ -275,10 +275,11 @@ impl Cholesky {
         self.below = below;
     }
 
-    /// The last `size` rows and columns of L, lower triangular.
-    pub(crate) fn trailing(&self, size: usize) -> DMatrix<f64> {
+    /// Hands on row, column and value of the entries of the last `size` rows and columns of L, both
+    /// counted from their first.
+    #[inline]
+    fn trailing_entries(&self, size: usize, mut each: impl FnMut(usize, usize, f64)) {
         let first = self.lower.nrows() - size;
-        let mut block = DMatrix::zeros(size, size);
         for s in (0..self.symbolic.n_supernodes()).rev() {
             let (start, width, rows, values) = self.supernode(s);
             if start + width <= first {
@@ -287,14 +288,34 @@ impl Cholesky {
             let columns = values.chunks_exact(width + rows.len());
             for (j, column) in (start..).zip(columns).filter(|(j, _)| *j >= first) {
                 for i in j..start + width {
-                    block[(i - first, j - first)] = column[i - start];
+                    each(i - first, j - first, column[i - start]);
                 }
                 for (&i, &l) in rows.iter().zip(&column[width..]) {
-                    block[(i as usize - first, j - first)] = l;
+                    each(i as usize - first, j - first, l);
                 }
             }
         }
+    }
+
+    /// The last `size` rows and columns of L, lower triangular.
+    pub(crate) fn trailing(&self, size: usize) -> DMatrix<f64> {
+        let mut block = DMatrix::zeros(size, size);
+        self.trailing_entries(size, |i, j, l| block[(i, j)] = l);
         block
+    }
+
+    /// L_cc x with the last rows and columns of L, as many as x has.
+    pub(crate) fn trailing_times(&self, x: &[f64]) -> DVector<f64> {
+        let mut product = DVector::zeros(x.len());
+        self.trailing_entries(x.len(), |i, j, l| product[i] += l * x[j]);
+        product
+    }
+
+    /// L_ccᵀ x with the last rows and columns of L, as many as x has.
+    pub(crate) fn trailing_transposed_times(&self, x: &[f64]) -> DVector<f64> {
+        let mut product = DVector::zeros(x.len());
+        self.trailing_entries(x.len(), |i, j, l| product[j] += l * x[i]);
+        product
     }
 
     /// Multiplies an entry of the factor, as a fault of memory or of a kernel would.

@@ -2,7 +2,7 @@
 //! it is solved.
 
 use crate::interface::{ContactPoint, Footing, Kinematics};
-use crate::system::{Condensed, System};
+use crate::system::System;
 use moreau_contact::{ContactError, ContactProblem};
 use moreau_laws::Local;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -22,19 +22,19 @@ pub(crate) struct Condensation<const D: usize> {
 }
 
 impl<const D: usize> Condensation<D> {
-    /// Turns the condensed system into the local frames of the contacts.
+    /// Turns stiffness and load of the condensed system into the local frames of the contacts.
     ///
     /// # Errors
     /// [`ContactError::Singular`] if a body is not held even with all its contacts stuck;
     /// [`ContactError::Overconstrained`] where displacement conditions leave contacts no freedom.
     pub(crate) fn new(
         system: &System,
-        condensed: &Condensed,
+        (stiffness, load): (DMatrix<f64>, &DVector<f64>),
         (points, footings): (&[ContactPoint<D>], &[Footing<D>]),
         kinematics: &[Kinematics<D>],
         previous: Vec<Local<D>>,
     ) -> Result<Self, ContactError> {
-        let mut rows = Elimination::new(condensed.load.len());
+        let mut rows = Elimination::new(load.len());
         for (c, k) in kinematics.iter().enumerate() {
             for j in (0..D).filter(|&j| k.active[j]) {
                 let row = row(&footings[c], k, j, |dof| system.interface_index(dof));
@@ -46,8 +46,8 @@ impl<const D: usize> Condensation<D> {
             }
         }
         let transformation = rows.finish(D * points.len());
-        let stiffness = transformation.congruence(&condensed.stiffness);
-        let load = transformation.transposed(&condensed.load);
+        let stiffness = transformation.congruence(stiffness);
+        let load = transformation.transposed(load);
         let (mut stiffness, load, rest) = Rest::condense(stiffness, load, D * points.len())?;
         // Components switched off: alone on their diagonal, of the size of their neighbours.
         let typical = stiffness.diagonal().amax().max(f64::MIN_POSITIVE);
@@ -244,7 +244,7 @@ impl Transformation {
     }
 
     /// Tᵀ S T of a symmetric S.
-    fn congruence(&self, s: &DMatrix<f64>) -> DMatrix<f64> {
+    fn congruence(&self, s: DMatrix<f64>) -> DMatrix<f64> {
         let own = |(i, row): (usize, &Vec<(usize, f64)>)| {
             let row = row.iter().map(move |&(k, c)| (i, k, c));
             row.collect::<Vec<_>>()
@@ -352,7 +352,7 @@ mod tests {
             }
             let t = elimination.finish(rows);
             prop_assert_eq!(t.columns, unknowns);
-            let identity = t.congruence(&DMatrix::identity(unknowns, unknowns));
+            let identity = t.congruence(DMatrix::identity(unknowns, unknowns));
             let mut product = DMatrix::zeros(rows, unknowns);
             for k in 0..unknowns {
                 let z = DVector::from_fn(unknowns, |i, _| f64::from(u8::from(i == k)));

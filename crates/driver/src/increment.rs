@@ -7,7 +7,7 @@ use crate::condensation::Condensation;
 use crate::control::Control;
 use crate::driver::Driver;
 use crate::error::{Imbalance, ModelError, StepError};
-use crate::interface::{ContactPoint, Footing, Kinematics};
+use crate::interface::Kinematics;
 use crate::iterate::Iterate;
 use crate::line_search::Line;
 use crate::load::{Loading, axis_letter};
@@ -15,8 +15,6 @@ use crate::norm::largest;
 use crate::report::{Iteration, StepReport};
 use crate::system::System;
 use moreau_contact::{ContactError, ContactSolution};
-use moreau_laws::Local;
-use nalgebra::SVector;
 use std::borrow::Cow;
 use std::time::Instant;
 
@@ -59,7 +57,7 @@ pub(crate) struct Start {
 
 /// What an increment may be off by, over the residual of its contact solution: that weighs
 /// displacements with a somewhat smaller α.
-const CONTACT_SLACK: f64 = 10.0;
+pub(crate) const CONTACT_SLACK: f64 = 10.0;
 
 /// How far an increment may move anything, in sizes of the mesh and of what it prescribes.
 const FARTHEST: f64 = 10.0;
@@ -185,8 +183,10 @@ impl<const D: usize> Driver<D> {
             let previous = self.previous_forces(&kinematics);
             let clock = Instant::now();
             let points = (self.points.as_slice(), self.footings.as_slice());
-            let condensation = Condensation::new(system, &condensed, points, &kinematics, previous)
-                .map_err(contact)?;
+            let stiffness = std::mem::take(&mut condensed.stiffness);
+            let seam = (stiffness, &condensed.load);
+            let condensation =
+                Condensation::new(system, seam, points, &kinematics, previous).map_err(contact)?;
             let solved = self
                 .settings
                 .contact
@@ -339,106 +339,6 @@ impl<const D: usize> Driver<D> {
             missing[dof] = increment - d_u[dof];
         }
         missing
-    }
-
-    /// Where a tool is at the end of an increment: as it is told, or moved by what it was driven to.
-    fn tool_position(&self, tool: usize, end: &Loading<D>, d_u: &[f64]) -> SVector<f64, D> {
-        SVector::from_fn(|i, _| {
-            let dof = D * self.tool_node(tool) + i;
-            let moved = self.state.displacement[dof] + d_u[dof];
-            end.displacement.get(&dof).copied().unwrap_or(moved)
-        })
-    }
-
-    /// Frames, gaps and slips of the contact points.
-    pub(crate) fn kinematics(
-        &self,
-        system: &System,
-        end: &Loading<D>,
-        d_u: &[f64],
-    ) -> Vec<Kinematics<D>> {
-        let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
-        let at = |(p, footing): (&ContactPoint<D>, &Footing<D>)| {
-            let free = footing.free(p.node, |dof| system.is_free(dof));
-            let slip = footing.relative(moved);
-            let Some(tool) = p.tool else {
-                let kinematics = match footing.plane(&slip) {
-                    Some((n, gap)) => Kinematics::new(p, &n, gap - p.offset, &slip, free),
-                    // Opposite to nothing: as far away as anything can be.
-                    None => Kinematics::open(p.law, self.mesh.size()),
-                };
-                return kinematics.between_forces(footing.area);
-            };
-            let obstacle = &self.tools[tool].obstacle;
-            let tool = self.tool_position(tool, end, d_u);
-            let now = |a: usize| match a < self.mesh.nodes().len() {
-                true => self.position(a) + moved(a),
-                false => tool,
-            };
-            let x = footing.relative(now);
-            let gap = obstacle.distance(&x) - p.offset;
-            let kinematics = Kinematics::new(p, &obstacle.normal(&x), gap, &slip, free);
-            kinematics.between_forces(footing.area)
-        };
-        let mut all: Vec<_> = self.points.iter().zip(&self.footings).map(at).collect();
-        self.stop_once(|dof| system.is_free(dof), &mut all);
-        all
-    }
-
-    /// Contact forces t₀ at the start of the step, in the frames of now.
-    pub(crate) fn previous_forces(&self, kinematics: &[Kinematics<D>]) -> Vec<Local<D>> {
-        let pairs = kinematics.iter().zip(&self.state.contacts);
-        pairs.map(|(k, c)| k.local_force(&c.force)).collect()
-    }
-
-    /// Contact forces at every degree of freedom \[N\].
-    pub(crate) fn contact_forces(&self, kinematics: &[Kinematics<D>], t: &[Local<D>]) -> Vec<f64> {
-        let mut forces = vec![0.0; self.state.displacement.len()];
-        for ((footing, k), t) in self.footings.iter().zip(kinematics).zip(t) {
-            let f = k.force(t);
-            for (a, w) in footing.weights() {
-                for i in 0..D {
-                    forces[D * a + i] += w * f[i];
-                }
-            }
-        }
-        forces
-    }
-
-    /// Whether gaps and slips of the displacements themselves obey the law with the forces of the
-    /// linearised problem: they do on a plane, and on a curved obstacle once the step is small.
-    fn law_holds(
-        &self,
-        system: &System,
-        kinematics: &[Kinematics<D>],
-        solution: &ContactSolution<D>,
-        scale: f64,
-    ) -> bool {
-        let reach = largest(
-            self.mesh
-                .bounds()
-                .0
-                .iter()
-                .chain(&self.mesh.bounds().1)
-                .copied(),
-        );
-        let stiffness = system.shift();
-        // Below this the difference of two positions is rounding.
-        let rounding = 16.0 * f64::EPSILON * reach * stiffness;
-        let tolerance =
-            self.settings.tolerance * scale + CONTACT_SLACK * solution.residual + rounding;
-        (0..kinematics.len()).all(|i| {
-            let elastic = solution.irreversible[i] - solution.displacement[i];
-            let mut u = kinematics[i].u + elastic;
-            let mut t = solution.force[i];
-            for j in 0..D {
-                if !kinematics[i].active[j] {
-                    (u[j], t[j]) = (0.0, 0.0);
-                }
-            }
-            // α of the size of the structure's stiffness, as in the contact problem.
-            kinematics[i].law.natural_map(&u, &t, stiffness).norm() <= tolerance
-        })
     }
 
     pub(crate) fn not_converged(

@@ -42,6 +42,7 @@ mod increment;
 mod increments;
 mod interface;
 mod iterate;
+mod kinematics;
 mod line_search;
 mod load;
 mod loading;

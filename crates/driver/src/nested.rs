@@ -44,8 +44,9 @@ impl<const D: usize> Driver<D> {
         self.factorise(system, &mut now, &missing)?;
         let condensed = system.condense(&vec![0.0; now.d_u.len()]);
         let points = (self.points.as_slice(), self.footings.as_slice());
-        let condensation = Condensation::new(system, &condensed, points, &kinematics, t.clone())
-            .map_err(contact)?;
+        let seam = (condensed.stiffness, &condensed.load);
+        let condensation =
+            Condensation::new(system, seam, points, &kinematics, t.clone()).map_err(contact)?;
         let mut alpha = uzawa_steps(&condensation.problem).map_err(contact)?;
         let common: Vec<f64> = (0..t.len())
             .map(|i| condensation.problem.alpha(i))

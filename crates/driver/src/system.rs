@@ -95,7 +95,6 @@ pub(crate) struct Border {
 /// The system condensed on its interface: S = L_cc L_ccᵀ − σ 1 and the condensed load.
 #[derive(Debug)]
 pub(crate) struct Condensed {
-    factor: DMatrix<f64>,
     /// S \[N/mm\], in the order of the interface unknowns.
     pub(crate) stiffness: DMatrix<f64>,
     /// f̃ \[N\].
@@ -317,15 +316,13 @@ impl System {
         });
         let clock = Instant::now();
         let first = self.size() - self.interface;
-        let factor = self.cholesky.trailing(self.interface);
-        let mut stiffness = square(&factor);
+        let mut stiffness = square(&self.cholesky.trailing(self.interface));
         for i in 0..self.interface {
             stiffness[(i, i)] -= self.shift;
         }
-        let load = &factor * DVector::from_column_slice(&forward[first..]);
+        let load = self.cholesky.trailing_times(&forward[first..]);
         self.timings.contact += clock.elapsed();
         Condensed {
-            factor,
             stiffness,
             load,
             applied,
@@ -353,7 +350,7 @@ impl System {
             pairs.map(|(a, b)| a * b).sum()
         };
         let border = Border {
-            load: &condensed.factor * DVector::from_column_slice(&forward[first..]),
+            load: self.cholesky.trailing_times(&forward[first..]),
             compliance: compliance + interior(&forward, &forward),
             missing: missing - interior(&forward, &condensed.forward),
             applied,
@@ -419,7 +416,7 @@ impl System {
         let first = self.size() - self.interface;
         let mut solution = condensed.forward;
         // (K + σE) u = f + t + σx has L⁻¹ of its right-hand side equal to L_ccᵀ x down here.
-        let tail = condensed.factor.tr_mul(x);
+        let tail = self.cholesky.trailing_transposed_times(x.as_slice());
         solution[first..].copy_from_slice(tail.as_slice());
         let clock = Instant::now();
         self.cholesky.backward(&mut solution);
