@@ -81,20 +81,30 @@ struct Adjacency {
 
 /// Nodes that share a cell with each node, without the node itself, sorted.
 fn adjacency<const D: usize>(mesh: &Mesh<D>, nodes: usize) -> Adjacency {
-    let mut cells_of = vec![Vec::new(); nodes];
-    for cell in 0..mesh.cell_count() {
-        for &a in mesh.cell_nodes(cell) {
-            cells_of[a].push(cell);
-        }
+    // Cells of node a: of[first[a]..first[a + 1]], written from the back.
+    let mut first = vec![0u32; nodes + 1];
+    let all =
+        || (0..mesh.cell_count()).flat_map(|c| mesh.cell_nodes(c).iter().map(move |&a| (c, a)));
+    all().for_each(|(_, a)| first[a] += 1);
+    let mut sum = 0;
+    for first in &mut first {
+        sum += *first;
+        *first = sum;
+    }
+    let mut of = vec![0u32; sum as usize];
+    for (cell, a) in all() {
+        first[a] -= 1;
+        of[first[a] as usize] = cell as u32;
     }
     let mut start = Vec::with_capacity(nodes + 1);
     start.push(0);
     let mut entries = Vec::new();
     let mut row = Vec::new();
-    for (a, cells) in cells_of.iter().enumerate() {
+    for a in 0..nodes {
         row.clear();
-        for &cell in cells {
-            row.extend(mesh.cell_nodes(cell).iter().copied().filter(|&b| b != a));
+        for &cell in &of[first[a] as usize..first[a + 1] as usize] {
+            let cell = mesh.cell_nodes(cell as usize).iter();
+            row.extend(cell.copied().filter(|&b| b != a));
         }
         row.sort_unstable();
         row.dedup();
