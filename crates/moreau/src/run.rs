@@ -13,6 +13,7 @@ mod history;
 mod log;
 mod outcome;
 mod pictures;
+mod points;
 mod report;
 mod surface;
 mod table;
