@@ -11,10 +11,11 @@ use rayon::prelude::*;
 pub enum Stiffness {
     /// None: forces only.
     None,
-    /// The consistent tangent ∂σ₁/∂Δε.
-    Consistent,
-    /// This part of the elastic stiffness, in [0, 1], and the rest of the consistent tangent.
-    Blended(f64),
+    /// The elastic one, ∫ Bᵀ C B dΩ.
+    Elastic,
+    /// This part, in [0, 1], of what flow adds to the elastic one: ∫ Bᵀ (∂σ₁/∂Δε − C) B dΩ, of the
+    /// cells in which plastic strain grows.
+    Plastic(f64),
 }
 
 /// Forces of a cell and, if asked for, its stiffness.
@@ -24,8 +25,8 @@ pub struct CellResult<'a> {
     pub cell: usize,
     /// ∫ Bᵀ σ₁ dΩ, node by node \[N\].
     pub force: &'a [f64],
-    /// The upper triangle of ∫ Bᵀ C B dΩ \[N/mm\], row by row without the lower one; empty if not
-    /// asked for.
+    /// The upper triangle of the stiffness asked for \[N/mm\], row by row without the lower one;
+    /// empty where that is nothing.
     pub stiffness: &'a [f64],
 }
 
@@ -117,6 +118,8 @@ pub struct SolidBlock<L: BulkLaw, const D: usize> {
     new: Vec<L::State>,
     force: Vec<f64>,
     stiffness: Vec<f64>,
+    /// Cells of the panel at hand in which plastic strain grows.
+    flows: Vec<bool>,
 }
 
 impl<L: BulkLaw, const D: usize> SolidBlock<L, D> {
@@ -131,6 +134,7 @@ impl<L: BulkLaw, const D: usize> SolidBlock<L, D> {
             new: states,
             force: Vec::new(),
             stiffness: Vec::new(),
+            flows: Vec::new(),
         }
     }
 }
@@ -140,47 +144,47 @@ struct Panel<'a, L: BulkLaw, const D: usize> {
     cells: &'a dyn Cells<D>,
     law: &'a L,
     old: &'a [L::State],
-    blend: Option<(f64, Sym4)>,
+    kind: Stiffness,
     d_u: &'a [f64],
 }
 
 impl<L: BulkLaw, const D: usize> Panel<'_, L, D> {
-    /// Forces, the upper triangles of the stiffness unless `entries` is zero, and new states of the
-    /// cells from `first` on. Returns whether plastic strain grows.
+    /// Forces, the upper triangles of the stiffness asked for, of so many entries, the new states,
+    /// and whether plastic strain grows, of the cells from `first` on.
     fn evaluate(
         &self,
         first: usize,
         entries: usize,
-        (forces, matrices, new): (&mut [f64], &mut [f64], &mut [L::State]),
-    ) -> bool {
+        (forces, matrices): (&mut [f64], &mut [f64]),
+        (new, flows): (&mut [L::State], &mut [bool]),
+    ) {
         let count = self.cells.points_per_cell();
         let size = D * self.cells.nodes(first).len();
+        let elastic = self.law.elastic_tangent();
         let mut d_eps = [Sym2::zeros(); MAX_POINTS];
         let mut stress = [Sym2::zeros(); MAX_POINTS];
         let mut tangent = [Sym4::zeros(); MAX_POINTS];
-        let mut flows = false;
         for (k, force) in forces.chunks_mut(size).enumerate() {
             let cell = first + k;
             self.cells.strain(cell, self.d_u, &mut d_eps[..count]);
+            flows[k] = false;
             for g in 0..count {
-                let old = &self.old[cell * count + g];
-                let response = self.law.respond(old, &d_eps[g]);
-                flows |= self.law.equivalent_plastic_strain(&response.state)
-                    > self.law.equivalent_plastic_strain(old);
+                let response = self.law.respond(&self.old[cell * count + g], &d_eps[g]);
+                flows[k] |= response.flows;
                 new[k * count + g] = response.state;
                 stress[g] = response.stress;
-                tangent[g] = match &self.blend {
-                    None => response.tangent,
-                    Some((part, elastic)) => elastic * *part + response.tangent * (1.0 - part),
+                tangent[g] = match self.kind {
+                    Stiffness::None => continue,
+                    Stiffness::Elastic => elastic,
+                    Stiffness::Plastic(part) => (response.tangent - elastic) * part,
                 };
             }
             self.cells.force(cell, &stress[..count], force);
-            if entries > 0 {
+            if self.kind == Stiffness::Elastic || self.kind != Stiffness::None && flows[k] {
                 let matrix = &mut matrices[k * entries..(k + 1) * entries];
                 self.cells.stiffness(cell, &tangent[..count], matrix);
             }
         }
-        flows
     }
 }
 
@@ -207,7 +211,7 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
         let per_cell = self.cells.points_per_cell();
         let entries = match stiffness {
             Stiffness::None => 0,
-            Stiffness::Consistent | Stiffness::Blended(_) => size * (size + 1) / 2,
+            Stiffness::Elastic | Stiffness::Plastic(_) => size * (size + 1) / 2,
         };
         // One entry a cell at least, so that the parallel chunks below stay aligned.
         let room = entries.max(1);
@@ -215,45 +219,48 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
         let grain = GRAIN.div_ceil(per_cell);
         self.force.resize(cells * size, 0.0);
         self.stiffness.resize(cells * room, 0.0);
+        self.flows.resize(cells, false);
         let panel = Panel {
             cells: self.cells.as_ref(),
             law: &self.law,
             old: &self.old,
-            blend: match stiffness {
-                Stiffness::Blended(part) => Some((part, self.law.elastic_tangent())),
-                Stiffness::None | Stiffness::Consistent => None,
-            },
+            kind: stiffness,
             d_u,
         };
-        let mut flows = false;
+        let mut any = false;
         for start in (0..all).step_by(cells) {
             let count = cells.min(all - start);
             let forces = &mut self.force[..count * size];
             let matrices = &mut self.stiffness[..count * room];
             let new = &mut self.new[start * per_cell..(start + count) * per_cell];
+            let flows = &mut self.flows[..count];
             // The order of the cells, and with it every sum, is the same for any number of threads.
-            flows |= if count < 2 * grain {
-                panel.evaluate(start, entries, (forces, matrices, new))
+            if count < 2 * grain {
+                panel.evaluate(start, entries, (forces, matrices), (new, flows));
             } else {
                 forces
                     .par_chunks_mut(grain * size)
                     .zip(matrices.par_chunks_mut(grain * room))
                     .zip(new.par_chunks_mut(grain * per_cell))
+                    .zip(flows.par_chunks_mut(grain))
                     .enumerate()
-                    .map(|(k, ((forces, matrices), new))| {
-                        panel.evaluate(start + k * grain, entries, (forces, matrices, new))
-                    })
-                    .reduce(|| false, |a, b| a | b)
-            };
-            for k in 0..count {
+                    .for_each(|(k, (((forces, matrices), new), flows))| {
+                        let first = start + k * grain;
+                        panel.evaluate(first, entries, (forces, matrices), (new, flows));
+                    });
+            }
+            for (k, &flows) in self.flows[..count].iter().enumerate() {
+                let given = stiffness == Stiffness::Elastic || flows;
+                let entries = if given { entries } else { 0 };
                 sink(CellResult {
                     cell: start + k,
                     force: &self.force[k * size..(k + 1) * size],
-                    stiffness: &self.stiffness[k * entries..(k + 1) * entries],
+                    stiffness: &self.stiffness[k * room..][..entries],
                 });
+                any |= flows;
             }
         }
-        flows
+        any
     }
 
     fn potential(&self, d_u: &[f64]) -> Option<f64> {

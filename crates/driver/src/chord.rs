@@ -13,6 +13,8 @@ pub(crate) struct Chord {
     fresh: bool,
     /// Part of the last step that was taken; zero before the first.
     part: f64,
+    /// Imbalance that the last step was expected to leave \[N\]; not finite before the second.
+    forecast: f64,
 }
 
 /// The tangent changes in the step that follows as well.
@@ -24,8 +26,26 @@ const POOR: f64 = 0.5;
 impl Chord {
     /// Takes note of a step that begins at this imbalance \[N\].
     pub(crate) fn begin(&mut self, imbalance: f64, fresh: bool) {
+        let last = match self.part < 1.0 {
+            true => f64::INFINITY,
+            false => imbalance / self.before,
+        };
+        let contraction = match (self.fresh, fresh) {
+            // Newton's method converges quadratically.
+            (true, true) => last * last,
+            (true, false) => AGEING * last,
+            (false, false) => last,
+            (false, true) => f64::INFINITY,
+        };
+        self.forecast = contraction * imbalance;
         self.before = imbalance;
         self.fresh = fresh;
+    }
+
+    /// Whether what the last step is expected to leave will do with the factor at hand, so that the
+    /// tangent there is not needed.
+    pub(crate) fn may_serve(&self, target: f64, worth: f64) -> bool {
+        self.reaches(self.forecast, target, worth)
     }
 
     /// Takes note of the part of the step that was taken.
@@ -36,9 +56,13 @@ impl Chord {
     /// Whether steps with the factor at hand reach the target \[N\] sooner than one with a new factor,
     /// which takes as long as `worth` steps.
     pub(crate) fn serves(&self, imbalance: f64, target: f64, worth: f64) -> bool {
+        self.part >= 1.0 && self.reaches(imbalance, target, worth)
+    }
+
+    fn reaches(&self, imbalance: f64, target: f64, worth: f64) -> bool {
         let ageing = if self.fresh { AGEING } else { 1.0 };
         let contraction = ageing * imbalance / self.before;
-        if self.part < 1.0 || contraction.is_nan() || contraction >= POOR {
+        if contraction.is_nan() || contraction >= POOR {
             return false;
         }
         let steps = (target / imbalance).ln() / contraction.ln();
@@ -78,5 +102,27 @@ mod tests {
         assert!(!after(1e-2, true).serves(1e-3, 1e-10, 13.0));
         assert!(!after(1e-2, false).serves(9e-3, 1e-10, 13.0));
         assert!(!after(1e-2, false).serves(f64::NAN, 1e-10, 13.0));
+    }
+
+    #[test]
+    fn a_step_that_is_likely_to_be_the_last_needs_no_tangent_at_its_end() {
+        let mut chord = after(1.0, true);
+        assert!(!chord.may_serve(1e-10, 0.0));
+        // A tenth, then a hundredth of that, then a ten thousandth.
+        chord.begin(1e-1, true);
+        assert!(!chord.may_serve(1e-10, 0.0));
+        chord.taken(1.0);
+        chord.begin(1e-3, true);
+        assert!(chord.may_serve(1e-10, 0.0));
+        // What was shortened tells nothing.
+        chord.taken(0.5);
+        chord.begin(1e-5, true);
+        assert!(!chord.may_serve(1e-10, 0.0));
+        // With a factor from before, a tenth of a tenth.
+        let mut stale = after(1e-8, false);
+        stale.begin(1e-9, false);
+        assert!(stale.may_serve(1e-10, 0.0));
+        assert!(!stale.may_serve(1e-13, 0.0));
+        assert!(stale.may_serve(1e-13, 6.0));
     }
 }

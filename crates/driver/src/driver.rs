@@ -1,6 +1,6 @@
 //! The driver: the state of a model, and steps applied to it; not the iteration of an increment.
 
-use crate::block::{Block, PointState, Stiffness};
+use crate::block::{Block, PointState};
 use crate::error::{ModelError, StepError};
 use crate::interface::{ContactPoint, Footing, Tool, tool_index};
 use crate::load::Loading;
@@ -391,9 +391,7 @@ impl<const D: usize> Driver<D> {
             self.tools.len(),
         )?;
         system.timings += self.timings();
-        let zero = vec![0.0; self.state.displacement.len()];
-        system.assemble(&mut self.blocks, &zero, &zero, Stiffness::Blended(1.0));
-        system.scale(self.settings.nesting == Nesting::Inside);
+        system.learn(&mut self.blocks, self.settings.nesting == Nesting::Inside);
         Ok(system)
     }
 

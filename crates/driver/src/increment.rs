@@ -59,8 +59,8 @@ pub(crate) struct Start {
 /// displacements with a somewhat smaller α.
 const CONTACT_SLACK: f64 = 10.0;
 
-/// Parts of the elastic stiffness that are tried in turn where the tangent is a mechanism.
-const BLENDS: [f64; 4] = [1e-4, 1e-2, 0.2, 1.0];
+/// Parts of what flow adds to the stiffness that are tried in turn where the tangent is a mechanism.
+const BLENDS: [f64; 4] = [1.0 - 1e-4, 0.99, 0.8, 0.0];
 
 impl<const D: usize> Driver<D> {
     /// Applies the increment from one loading to another and commits it; `watch` sees every
@@ -132,8 +132,8 @@ impl<const D: usize> Driver<D> {
             let left = solution
                 .as_ref()
                 .map_or(0.0, |s| CONTACT_SLACK * s.residual);
-            let target = self.target(system, scale, &now.d_u) + left;
-            let balanced = now.part >= 1.0 && out_of_balance <= target;
+            let balance = self.target(system, scale, &now.d_u) + left;
+            let balanced = now.part >= 1.0 && out_of_balance <= balance;
             if balanced
                 && let Some(s) = solution.take_if(|s| self.law_holds(system, &kinematics, s, scale))
             {
@@ -149,13 +149,13 @@ impl<const D: usize> Driver<D> {
                 return Ok(candidate);
             }
             if counts.newton >= self.settings.iterations || !out_of_balance.is_finite() {
-                return Err(self.not_converged(&residual, counts.newton, target));
+                return Err(self.not_converged(&residual, counts.newton, balance));
             }
             counts.newton += 1;
 
             let arrived = missing.iter().all(|&m| m == 0.0);
             let worth = system.steps_per_factorisation();
-            let fresh = !(arrived && chord.serves(out_of_balance, target, worth));
+            let fresh = !(arrived && chord.serves(out_of_balance, balance, worth));
             if fresh {
                 self.factorise(system, &mut now, &missing)?;
             }
@@ -195,7 +195,9 @@ impl<const D: usize> Driver<D> {
             let target = self.contact_forces(&kinematics, &solved.force);
             let slack = CONTACT_SLACK * solved.residual;
             solution = Some(solved);
+            let elastic = system.holds_elastic_factor() && !now.assembly.flows;
             let line = Line {
+                tangent: !(elastic || chord.may_serve(balance, worth)),
                 end: &end,
                 growth: control.as_ref().map_or_else(Vec::new, |c| c.scaled(growth)),
                 free: &free,
@@ -230,7 +232,12 @@ impl<const D: usize> Driver<D> {
         Start {
             free: system.free_dofs(),
             now: Iterate {
-                assembly: system.assemble(&mut self.blocks, &d_u, &missing, Stiffness::Consistent),
+                assembly: system.assemble(
+                    &mut self.blocks,
+                    &d_u,
+                    &missing,
+                    Stiffness::Plastic(1.0),
+                ),
                 d_u,
                 contact: self.state.contact.clone(),
                 part: 0.0,
@@ -259,12 +266,17 @@ impl<const D: usize> Driver<D> {
         now: &mut Iterate,
         missing: &[f64],
     ) -> Result<(), StepError> {
-        let mut outcome = system.factorise(!now.assembly.flows);
+        let elastic = !now.assembly.flows;
+        if !(now.assembly.stiffness || elastic && system.holds_elastic_factor()) {
+            let tangent = Stiffness::Plastic(1.0);
+            now.assembly = system.assemble(&mut self.blocks, &now.d_u, missing, tangent);
+        }
+        let mut outcome = system.factorise(elastic);
         for part in BLENDS {
             if outcome.is_ok() {
                 break;
             }
-            let blended = Stiffness::Blended(part);
+            let blended = Stiffness::Plastic(part);
             now.assembly = system.assemble(&mut self.blocks, &now.d_u, missing, blended);
             outcome = system.factorise(false);
         }

@@ -28,6 +28,8 @@ pub(crate) struct Line<'a, const D: usize> {
     pub(crate) complete: bool,
     /// Imbalance left by the contact solver \[N\].
     pub(crate) slack: f64,
+    /// Whether the tangent at its end is likely to be needed.
+    pub(crate) tangent: bool,
 }
 
 impl<const D: usize> Line<'_, D> {
@@ -89,7 +91,11 @@ impl<const D: usize> Driver<D> {
     ) -> Iterate {
         let none = vec![0.0; line.step.len()];
         let d_u = line.displacement(&now, 1.0);
-        let assembly = system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent);
+        let stiffness = match line.tangent {
+            true => Stiffness::Plastic(1.0),
+            false => Stiffness::None,
+        };
+        let assembly = system.assemble(&mut self.blocks, &d_u, &none, stiffness);
         let internal = &assembly.internal;
         let scale = self.force_scale(&assembly, line.end, line.target);
         let left = largest(line.imbalance(internal, line.target, 1.0).map(|(_, r)| r));
@@ -118,7 +124,7 @@ impl<const D: usize> Driver<D> {
         };
         let d_u = line.displacement(&now, s);
         Iterate {
-            assembly: system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Consistent),
+            assembly: system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Plastic(1.0)),
             d_u,
             contact: line.contact(&now, s),
             part: s,
@@ -245,7 +251,7 @@ mod tests {
         let end = pull(&driver, 200.0);
         let mut system = driver.prepare(&end, None).expect("held");
         let none = vec![0.0; end.force.len()];
-        let assembly = system.assemble(&mut driver.blocks, &none, &none, Stiffness::Consistent);
+        let assembly = system.assemble(&mut driver.blocks, &none, &none, Stiffness::Plastic(1.0));
         system.factorise(true).expect("elastic");
         let condensed = system.condense(&end.force);
         let mut step = none.clone();
@@ -268,6 +274,7 @@ mod tests {
             target: &none,
             complete: true,
             slack: 0.0,
+            tangent: true,
         };
         let next = driver.search(&mut system, &line, now);
         assert!(next.part < 1.0);

@@ -163,6 +163,7 @@ impl<const D: usize> Driver<D> {
             system.solve(&load, &mut step)?;
             let target = now.contact.clone();
             let line = Line {
+                tangent: true,
                 end,
                 growth: Vec::new(),
                 free,

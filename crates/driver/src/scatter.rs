@@ -66,15 +66,8 @@ impl Scatter {
         }
     }
 
-    /// Adds forces and stiffness of a cell to those of the system, and the stiffness between its
-    /// unknowns and prescribed displacements, times what is `missing` of these, if any is.
-    pub(crate) fn add(
-        &self,
-        cell: &CellResult<'_>,
-        position: &[u32],
-        missing: Option<&[f64]>,
-        (internal, coupling, values): (&mut [f64], &mut [f64], &mut [f64]),
-    ) {
+    /// Adds forces and stiffness of a cell to those of the system.
+    pub(crate) fn add(&self, cell: &CellResult<'_>, internal: &mut [f64], values: &mut [f64]) {
         let size = self.size;
         let triangle = size * (size + 1) / 2;
         let dofs = &self.dofs[cell.cell * size..(cell.cell + 1) * size];
@@ -85,25 +78,28 @@ impl Scatter {
         for (&slot, k) in slots.iter().zip(cell.stiffness) {
             values[slot as usize] += k;
         }
-        if let Some(missing) = missing
-            && self.held[cell.cell]
-        {
-            couple(cell.stiffness, dofs, position, missing, coupling);
-        }
     }
-}
 
-/// Adds the stiffness of a cell between its unknowns and its prescribed displacements, times what is
-/// missing of these.
-fn couple(stiffness: &[f64], dofs: &[u32], position: &[u32], missing: &[f64], sum: &mut [f64]) {
-    let mut entries = stiffness.iter();
-    for (i, &a) in dofs.iter().enumerate() {
-        for (&b, k) in dofs[i..].iter().zip(entries.by_ref()) {
-            let (a, b) = (a as usize, b as usize);
-            match (position[a] == FIXED, position[b] == FIXED) {
-                (false, true) => sum[a] += k * missing[b],
-                (true, false) => sum[b] += k * missing[a],
-                _ => {}
+    /// Hands on the stiffness of a cell between its unknowns and its prescribed displacements:
+    /// the degrees of freedom of the one and of the other, and the entry.
+    pub(crate) fn couplings(
+        &self,
+        cell: &CellResult<'_>,
+        position: &[u32],
+        sink: &mut dyn FnMut(u32, u32, f64),
+    ) {
+        if !self.held[cell.cell] {
+            return;
+        }
+        let dofs = &self.dofs[cell.cell * self.size..(cell.cell + 1) * self.size];
+        let mut entries = cell.stiffness.iter();
+        for (i, &a) in dofs.iter().enumerate() {
+            for (&b, &k) in dofs[i..].iter().zip(entries.by_ref()) {
+                match (position[a as usize] == FIXED, position[b as usize] == FIXED) {
+                    (false, true) => sink(a, b, k),
+                    (true, false) => sink(b, a, k),
+                    _ => {}
+                }
             }
         }
     }

@@ -29,6 +29,11 @@ pub(crate) struct System {
     pub(crate) pivot: Option<usize>,
     /// Where the cells of every block go.
     scatter: Vec<Scatter>,
+    /// The elastic K.
+    elastic: Vec<f64>,
+    /// Its entries between an unknown and a prescribed displacement: their degrees of freedom.
+    couplings: Vec<(u32, u32, f64)>,
+    /// K.
     values: Vec<f64>,
     shift: f64,
     stiffest: f64,
@@ -51,6 +56,8 @@ pub(crate) struct Assembly {
     pub(crate) coupling: Vec<f64>,
     /// Whether plastic strain grows anywhere.
     pub(crate) flows: bool,
+    /// Whether the system has the stiffness that belongs to these forces.
+    pub(crate) stiffness: bool,
 }
 
 /// Residual of a solve with the factor, over the size of the terms that it is a difference of, up
@@ -132,6 +139,8 @@ impl System {
             interface,
             pivot,
             scatter,
+            elastic: values.clone(),
+            couplings: Vec::new(),
             values,
             shift: 0.0,
             stiffest: 0.0,
@@ -193,41 +202,69 @@ impl System {
         let mut internal = vec![0.0; d_u.len()];
         let mut coupling = vec![0.0; d_u.len()];
         let mut flows = false;
-        if stiffness != Stiffness::None {
-            self.values.fill(0.0);
-            self.current = false;
+        let with_stiffness = stiffness != Stiffness::None;
+        if with_stiffness {
+            self.values.copy_from_slice(&self.elastic);
         }
         let missing = missing.iter().any(|&m| m != 0.0).then_some(missing);
+        if let Some(missing) = missing {
+            for &(unknown, prescribed, k) in &self.couplings {
+                coupling[unknown as usize] += k * missing[prescribed as usize];
+            }
+        }
         let (position, values) = (&self.position, &mut self.values);
         for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
             flows |= block.evaluate(d_u, stiffness, &mut |cell| {
-                let sums = (
-                    internal.as_mut_slice(),
-                    coupling.as_mut_slice(),
-                    values.as_mut_slice(),
-                );
-                scatter.add(&cell, position, missing, sums);
+                scatter.add(&cell, &mut internal, values);
+                if let Some(missing) = missing {
+                    scatter.couplings(&cell, position, &mut |unknown, prescribed, k| {
+                        coupling[unknown as usize] += k * missing[prescribed as usize];
+                    });
+                }
             });
+        }
+        if with_stiffness {
+            self.current = self.elastic_factor && !flows;
         }
         self.timings.assembly += clock.elapsed();
         Assembly {
             internal,
             coupling,
             flows,
+            stiffness: with_stiffness,
         }
     }
 
-    /// Learns the size of the assembled (elastic) stiffness, and chooses σ: its largest diagonal
-    /// on the interface, or zero if the bodies must be held without it.
-    pub(crate) fn scale(&mut self, shifted: bool) {
+    /// Assembles the elastic stiffness, to which flow only adds, learns its size, and chooses σ: its
+    /// largest diagonal on the interface, or zero if the bodies must be held without it.
+    pub(crate) fn learn<const D: usize>(
+        &mut self,
+        blocks: &mut [Box<dyn Block<D>>],
+        shifted: bool,
+    ) {
+        let clock = Instant::now();
+        let rest = vec![0.0; self.position.len()];
+        let mut internal = rest.clone();
+        let (position, elastic, couplings) =
+            (&self.position, &mut self.elastic, &mut self.couplings);
+        for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
+            block.evaluate(&rest, Stiffness::Elastic, &mut |cell| {
+                scatter.add(&cell, &mut internal, elastic);
+                scatter.couplings(&cell, position, &mut |unknown, prescribed, k| {
+                    couplings.push((unknown, prescribed, k));
+                });
+            });
+        }
+        self.values.copy_from_slice(&self.elastic);
         let first = self.size() - self.interface;
-        let diagonal = |p: usize| self.values[self.cholesky.diagonal(p)];
+        let diagonal = |p: usize| self.elastic[self.cholesky.diagonal(p)];
         self.stiffest = (0..self.size()).map(diagonal).fold(0.0, f64::max);
         self.shift = if shifted {
             (first..self.size()).map(diagonal).fold(0.0, f64::max)
         } else {
             0.0
         };
+        self.timings.assembly += clock.elapsed();
     }
 
     /// Whether the factor held is that of the elastic stiffness.
@@ -253,7 +290,6 @@ impl System {
     /// The degree of freedom at which K + σE is not positive definite.
     pub(crate) fn factorise(&mut self, elastic: bool) -> Result<(), usize> {
         if elastic && self.elastic_factor {
-            self.current = true;
             return Ok(());
         }
         let first = self.size() - self.interface;

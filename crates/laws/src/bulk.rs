@@ -27,6 +27,8 @@ pub struct Response<S> {
     /// Consistent tangent ∂σ₁/∂Δε \[MPa\], 6×6 and symmetric; where the flow is not associated a
     /// symmetric matrix near it, with which Newton's method converges linearly.
     pub tangent: Sym4,
+    /// Whether plastic strain grows; the tangent is the elastic one otherwise.
+    pub flows: bool,
     /// State at the end of the step.
     pub state: S,
 }

@@ -86,6 +86,7 @@ impl BulkLaw for Elastic {
         Response {
             stress: self.stress(&state),
             tangent: self.tangent(),
+            flows: false,
             state,
         }
     }

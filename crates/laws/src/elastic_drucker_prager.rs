@@ -112,6 +112,7 @@ impl BulkLaw for ElasticDruckerPrager {
             return Response {
                 stress: self.stress(&state),
                 tangent: self.elastic.tangent(),
+                flows: false,
                 state,
             };
         }
@@ -131,6 +132,7 @@ impl BulkLaw for ElasticDruckerPrager {
         Response {
             stress: self.stress(&state),
             tangent,
+            flows: true,
             state,
         }
     }

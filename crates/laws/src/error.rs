@@ -58,14 +58,6 @@ pub enum LawError {
         /// What is wrong with it.
         problem: &'static str,
     },
-    /// More terms of kinematic hardening with recall than a state has room for.
-    #[error("{found} terms of kinematic hardening with recall, at most {most} are remembered")]
-    TooManyTerms {
-        /// Terms given.
-        found: usize,
-        /// Terms that a state holds.
-        most: usize,
-    },
     /// A damage outside [0, 1[.
     #[error("the damage must lie in [0, 1[, got {damage}")]
     DamageOutOfRange {

@@ -93,4 +93,4 @@ pub use regularised::{RegularisedCoulomb, RegularisedResponse};
 pub use signorini::Signorini;
 pub use tresca::Tresca;
 pub use uniaxial::{Uniaxial, UniaxialResponse};
-pub use von_mises::{RECALLED_TERMS, VonMises, VonMisesDissipation, VonMisesState};
+pub use von_mises::{VonMises, VonMisesDissipation, VonMisesState};

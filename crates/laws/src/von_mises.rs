@@ -44,13 +44,10 @@ impl Superpotential<Sym2> for VonMisesDissipation {
     }
 }
 
-/// Terms of kinematic hardening with recall that a state remembers, so that its size is fixed; terms
-/// without recall need no room. Fits of cyclic tests take two or three.
-pub const RECALLED_TERMS: usize = 4;
-
-/// What a von Mises material remembers; the stress is recovered from the elastic strain.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct VonMisesState {
+/// What a von Mises material remembers, with so many terms of kinematic hardening with recall; the
+/// stress is recovered from the elastic strain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VonMisesState<const TERMS: usize = 0> {
     /// Elastic strain εᵉ.
     pub elastic_strain: Sym2,
     /// Plastic strain eᵖ, a deviator; the back stress without recall is ⅔ H_k eᵖ.
@@ -58,10 +55,21 @@ pub struct VonMisesState {
     /// Equivalent plastic strain p ≥ 0, \[60\].
     pub p: f64,
     /// Back strains αᵢ, deviators, of the terms with recall: their back stresses are ⅔ Cᵢ αᵢ.
-    pub back_strain: [Sym2; RECALLED_TERMS],
+    pub back_strain: [Sym2; TERMS],
 }
 
-impl Numbers for VonMisesState {
+impl<const TERMS: usize> Default for VonMisesState<TERMS> {
+    fn default() -> Self {
+        Self {
+            elastic_strain: Sym2::zeros(),
+            plastic_strain: Sym2::zeros(),
+            p: 0.0,
+            back_strain: [Sym2::zeros(); TERMS],
+        }
+    }
+}
+
+impl<const TERMS: usize> Numbers for VonMisesState<TERMS> {
     fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
         self.elastic_strain.visit(each);
         self.plastic_strain.visit(each);
@@ -90,15 +98,14 @@ impl Numbers for VonMisesState {
 /// (1985) 101-118, the consistent tangent; J. L. Chaboche, *International Journal of Plasticity* 5
 /// (1989) 247-302, the sum of terms.
 #[derive(Debug, Clone, PartialEq)]
-pub struct VonMises {
+pub struct VonMises<const TERMS: usize = 0> {
     elastic: Elastic,
     yield_stress: f64,
     isotropic: Isotropic,
     /// H_k, the sum of the moduli without recall.
     kinematic: f64,
     /// (C, γ) of the terms with recall.
-    recalled: [(f64, f64); RECALLED_TERMS],
-    terms: usize,
+    recalled: [(f64, f64); TERMS],
 }
 
 /// A step that yields.
@@ -126,11 +133,34 @@ impl VonMises {
             yield_stress: positive("yield stress", yield_stress)?,
             isotropic: Isotropic::linear(0.0)?,
             kinematic: 0.0,
-            recalled: [(0.0, 0.0); RECALLED_TERMS],
-            terms: 0,
+            recalled: [],
         })
     }
 
+    /// The same law with these terms of kinematic hardening, each of modulus C \[MPa\] and recall γ;
+    /// of one without recall, [`Self::with_kinematic`] remembers less.
+    ///
+    /// # Errors
+    /// `Negative` unless every C ≥ 0 and γ ≥ 0 is finite.
+    pub fn with_recall<const TERMS: usize>(
+        self,
+        terms: [(f64, f64); TERMS],
+    ) -> Result<VonMises<TERMS>, LawError> {
+        for (modulus, recall) in terms {
+            non_negative("kinematic hardening modulus", modulus)?;
+            non_negative("recall of kinematic hardening", recall)?;
+        }
+        Ok(VonMises {
+            elastic: self.elastic,
+            yield_stress: self.yield_stress,
+            isotropic: self.isotropic,
+            kinematic: self.kinematic,
+            recalled: terms,
+        })
+    }
+}
+
+impl<const TERMS: usize> VonMises<TERMS> {
     /// The same law with linear isotropic hardening of modulus H = dσ_y/dp \[MPa\].
     ///
     /// # Errors
@@ -148,28 +178,8 @@ impl VonMises {
     ///
     /// # Errors
     /// `Negative` unless H_k ≥ 0 is finite.
-    pub fn with_kinematic(self, modulus: f64) -> Result<Self, LawError> {
-        self.with_recall(modulus, 0.0)
-    }
-
-    /// The same law with another term of kinematic hardening, of modulus C \[MPa\] and recall γ.
-    ///
-    /// # Errors
-    /// `Negative` unless C ≥ 0 and γ ≥ 0 are finite; `TooManyTerms` beyond [`RECALLED_TERMS`] with
-    /// a recall.
-    pub fn with_recall(mut self, modulus: f64, recall: f64) -> Result<Self, LawError> {
-        let modulus = non_negative("kinematic hardening modulus", modulus)?;
-        if non_negative("recall of kinematic hardening", recall)? == 0.0 {
-            self.kinematic += modulus;
-        } else if self.terms < RECALLED_TERMS {
-            self.recalled[self.terms] = (modulus, recall);
-            self.terms += 1;
-        } else {
-            return Err(LawError::TooManyTerms {
-                found: self.terms + 1,
-                most: RECALLED_TERMS,
-            });
-        }
+    pub fn with_kinematic(mut self, modulus: f64) -> Result<Self, LawError> {
+        self.kinematic += non_negative("kinematic hardening modulus", modulus)?;
         Ok(self)
     }
 
@@ -194,13 +204,13 @@ impl VonMises {
     }
 
     /// Modulus C \[MPa\] and recall γ of the terms that have one.
-    pub fn recalled(&self) -> &[(f64, f64)] {
-        &self.recalled[..self.terms]
+    pub fn recalled(&self) -> &[(f64, f64); TERMS] {
+        &self.recalled
     }
 
     /// Back stress X of a state \[MPa\], a deviator.
     #[inline]
-    pub fn back_stress(&self, state: &VonMisesState) -> Sym2 {
+    pub fn back_stress(&self, state: &VonMisesState<TERMS>) -> Sym2 {
         let mut x = 2.0 / 3.0 * self.kinematic * state.plastic_strain;
         for ((modulus, _), back) in self.recalled().iter().zip(&state.back_strain) {
             x += 2.0 / 3.0 * modulus * back;
@@ -210,7 +220,7 @@ impl VonMises {
 
     /// Yield function f of a state \[MPa\]; f ≤ 0 in every admissible state.
     #[inline]
-    pub fn yield_function(&self, state: &VonMisesState) -> f64 {
+    pub fn yield_function(&self, state: &VonMisesState<TERMS>) -> f64 {
         self.overstress(state, &self.stress(state))
     }
 
@@ -221,8 +231,8 @@ impl VonMises {
     /// sup over Δp ≥ 0 of f Δp − ½ H_k Δp² − (ψ(p + Δp) − ψ(p) − R(p) Δp) at f = f(σ₀ + Δσ), with the
     /// hardening of the start of the step. Of linear hardening that is ⟨f⟩₊² / 2(H + H_k), without
     /// hardening the indicator of f ≤ 0.
-    pub fn complementary(&self, old: &VonMisesState, d_sigma: &Sym2) -> Option<f64> {
-        if self.terms > 0 {
+    pub fn complementary(&self, old: &VonMisesState<TERMS>, d_sigma: &Sym2) -> Option<f64> {
+        if TERMS > 0 {
             return None;
         }
         let stress = self.stress(old) + d_sigma;
@@ -270,7 +280,7 @@ impl VonMises {
 
     /// f(σ) with the hardening of `state`.
     #[inline]
-    fn overstress(&self, state: &VonMisesState, stress: &Sym2) -> f64 {
+    fn overstress(&self, state: &VonMisesState<TERMS>, stress: &Sym2) -> f64 {
         von_mises(&(stress - self.back_stress(state)))
             - self.yield_stress
             - self.isotropic.stress(state.p)
@@ -278,7 +288,7 @@ impl VonMises {
 
     /// Return onto the yield surface; `None` when the step is elastic.
     #[inline]
-    fn radial_return(&self, old: &VonMisesState, d_eps: &Sym2) -> Option<Return> {
+    fn radial_return(&self, old: &VonMisesState<TERMS>, d_eps: &Sym2) -> Option<Return> {
         let g = self.elastic.shear_modulus();
         let xi = 2.0 * g * deviator(&(old.elastic_strain + d_eps)) - self.back_stress(old);
         let norm = xi.norm();
@@ -287,7 +297,7 @@ impl VonMises {
         if f <= ON_SURFACE * trial {
             return None;
         }
-        if let (Some(isotropic), 0) = (self.isotropic.constant_modulus(), self.terms) {
+        if let (Some(isotropic), 0) = (self.isotropic.constant_modulus(), TERMS) {
             let slope = 3.0 * g + isotropic + self.kinematic;
             return Some(Return {
                 d_p: f / slope,
@@ -329,7 +339,7 @@ impl VonMises {
 
     /// What the return lacks at Δp \[MPa\], and the step if that is nothing; ξ without recall.
     #[inline]
-    fn at(&self, old: &VonMisesState, xi: &Sym2, d_p: f64) -> (f64, Return) {
+    fn at(&self, old: &VonMisesState<TERMS>, xi: &Sym2, d_p: f64) -> (f64, Return) {
         let g = self.elastic.shear_modulus();
         let mut xi = *xi;
         let mut recall = Sym2::zeros();
@@ -358,17 +368,18 @@ impl VonMises {
     }
 }
 
-impl BulkLaw for VonMises {
-    type State = VonMisesState;
+impl<const TERMS: usize> BulkLaw for VonMises<TERMS> {
+    type State = VonMisesState<TERMS>;
 
     #[inline]
-    fn respond(&self, old: &VonMisesState, d_eps: &Sym2) -> Response<VonMisesState> {
+    fn respond(&self, old: &VonMisesState<TERMS>, d_eps: &Sym2) -> Response<VonMisesState<TERMS>> {
         let mut state = *old;
         state.elastic_strain += d_eps;
         let Some(step) = self.radial_return(old, d_eps) else {
             return Response {
                 stress: self.stress(&state),
                 tangent: self.elastic.tangent(),
+                flows: false,
                 state,
             };
         };
@@ -391,7 +402,7 @@ impl BulkLaw for VonMises {
             + 2.0
                 * g
                 * ((1.0 - beta) * deviatoric_projector() + (beta - gamma) * n * n.transpose());
-        if self.terms > 0 {
+        if TERMS > 0 {
             // Recall turns n: a part a⊗n that is not symmetric, of which the symmetric is kept.
             let across = step.recall - n * n.dot(&step.recall);
             let turned = -(1.5f64.sqrt() * g * beta / step.slope) * across;
@@ -400,12 +411,13 @@ impl BulkLaw for VonMises {
         Response {
             stress: self.stress(&state),
             tangent,
+            flows: true,
             state,
         }
     }
 
     #[inline]
-    fn stress(&self, state: &VonMisesState) -> Sym2 {
+    fn stress(&self, state: &VonMisesState<TERMS>) -> Sym2 {
         self.elastic.stress(&state.elastic_strain)
     }
 
@@ -414,7 +426,7 @@ impl BulkLaw for VonMises {
     }
 
     /// ½ εᵉ·S·εᵉ + ψ(p) + ⅓ H_k ‖eᵖ‖² + Σ ⅓ Cᵢ ‖αᵢ‖².
-    fn stored_energy(&self, state: &VonMisesState) -> f64 {
+    fn stored_energy(&self, state: &VonMisesState<TERMS>) -> f64 {
         let mut energy = self.elastic.energy(&state.elastic_strain)
             + self.isotropic.energy(state.p)
             + self.kinematic / 3.0 * state.plastic_strain.norm_squared();
@@ -426,7 +438,7 @@ impl BulkLaw for VonMises {
 
     /// σ_y Δp, \[61\], and Σ ⅔ γᵢ Cᵢ ‖αᵢ‖² Δp lost to recall: the rest of the plastic work is stored
     /// by the hardening.
-    fn dissipation(&self, old: &VonMisesState, new: &VonMisesState) -> f64 {
+    fn dissipation(&self, old: &VonMisesState<TERMS>, new: &VonMisesState<TERMS>) -> f64 {
         let d_p = new.p - old.p;
         let mut dissipation = self.yield_stress * d_p;
         for ((modulus, gamma), back) in self.recalled().iter().zip(&new.back_strain) {
@@ -435,12 +447,12 @@ impl BulkLaw for VonMises {
         dissipation
     }
 
-    fn equivalent_plastic_strain(&self, state: &VonMisesState) -> f64 {
+    fn equivalent_plastic_strain(&self, state: &VonMisesState<TERMS>) -> f64 {
         state.p
     }
 
     /// √(2/3) (σ_y + R(p)) ‖ė‖ + X : ė; a change of volume is elastic, σ_m tr ε̇.
-    fn flow_power(&self, state: &VonMisesState, rate: &Sym2) -> Option<FlowPower> {
+    fn flow_power(&self, state: &VonMisesState<TERMS>, rate: &Sym2) -> Option<FlowPower> {
         let e = deviator(rate);
         let yield_stress = self.yield_stress + self.isotropic.stress(state.p);
         let flow = yield_stress * equivalent_strain(&e) + self.back_stress(state).dot(&e);
@@ -456,8 +468,8 @@ impl BulkLaw for VonMises {
     /// value of the infimum \[62\], whose bracket then also holds the energy stored by hardening; with
     /// linear hardening \[63\] less ½ (H + H_k) Δp². `None` with recall.
     #[inline]
-    fn potential(&self, old: &VonMisesState, d_eps: &Sym2) -> Option<f64> {
-        if self.terms > 0 {
+    fn potential(&self, old: &VonMisesState<TERMS>, d_eps: &Sym2) -> Option<f64> {
+        if TERMS > 0 {
             return None;
         }
         let elastic = self.elastic.energy(d_eps);

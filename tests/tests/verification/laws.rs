@@ -137,8 +137,7 @@ fn hardening_bars_follow_their_curves() -> Fallible {
     let (e, y) = (210e3, 300.0);
     let law = VonMises::new(e, 0.3, y)?
         .with_hardening(Isotropic::voce(60.0, 30.0)?)
-        .with_recall(30e3, 200.0)?
-        .with_recall(5e3, 20.0)?
+        .with_recall([(30e3, 200.0), (5e3, 20.0)])?
         .with_kinematic(500.0)?;
     let curve = |p: f64| {
         let recalled = |c: f64, g: f64| c / g * (1.0 - (-g * p).exp());
@@ -174,9 +173,7 @@ fn hardening_bars_follow_their_curves() -> Fallible {
 /// the tangent is a symmetric part, and it converges all the same.
 #[test]
 fn recall_converges_where_stresses_turn() -> Fallible {
-    let law = VonMises::new(210e3, 0.3, 240.0)?
-        .with_recall(60e3, 400.0)?
-        .with_recall(10e3, 50.0)?;
+    let law = VonMises::new(210e3, 0.3, 240.0)?.with_recall([(60e3, 400.0), (10e3, 50.0)])?;
     let run =
         |steps: usize| -> Fallible<(f64, f64, usize)> {
             let (r, z) = (uniform(100.0, 200.0, 8), uniform(0.0, 10.0, 1));

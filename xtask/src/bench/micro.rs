@@ -63,7 +63,11 @@ pub(super) fn run() -> Result<bool, Box<dyn Error>> {
         let stretched = |x: &[f64; 2]| [size * x[0], 0.3 * size * x[1]];
         let d_u: Vec<f64> = mesh.nodes().iter().flat_map(stretched).collect();
         for (what, kind) in [
-            ("forces and stiffness", Stiffness::Consistent),
+            (
+                "forces and what flow adds to the stiffness",
+                Stiffness::Plastic(1.0),
+            ),
+            ("forces and elastic stiffness", Stiffness::Elastic),
             ("forces", Stiffness::None),
         ] {
             let what = format!("cell of eight nodes and four points, {state}: {what}");

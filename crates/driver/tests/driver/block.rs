@@ -80,7 +80,8 @@ fn obeys<H: Analysis<D>, L: BulkLaw, const D: usize>(
     evaluate(&mut block, &first, Stiffness::None);
     block.commit();
     let d_u = displacement(mesh, 1.5e-3, 2.0);
-    let at = evaluate(&mut block, &d_u, Stiffness::Consistent);
+    let mut at = evaluate(&mut block, &d_u, Stiffness::Plastic(1.0));
+    at.stiffness += evaluate(&mut block, &d_u, Stiffness::Elastic).stiffness;
     let force_size = at.force.iter().fold(0.0f64, |a, f| a.max(f.abs()));
     let stiffness_size = at.stiffness.amax();
     let h = 1e-7;
@@ -109,6 +110,36 @@ fn obeys<H: Analysis<D>, L: BulkLaw, const D: usize>(
     }
     // Forces alone are the same forces.
     assert_eq!(evaluate(&mut block, &d_u, Stiffness::None).force, at.force);
+}
+
+/// Cells that stay elastic hand on no stiffness but the elastic one.
+#[test]
+fn flow_adds_to_the_stiffness_of_cells_that_flow() {
+    let x = [0.0, 1.0, 2.0];
+    let mesh = block2("b", CellKind::Quad8, &x, &[0.0, 1.0]).expect("valid");
+    let cells = PlaneStrain::default()
+        .cells(&mesh, CellKind::Quad8, &[0, 1], Integration::Reduced)
+        .expect("an element of the plane");
+    let mut block = SolidBlock::new(vec![0, 1], cells, steel());
+    let pulled = |x: &[f64; 2]| [1e-2 * (x[0] - 1.0).max(0.0), 0.0];
+    let d_u: Vec<f64> = mesh.nodes().iter().flat_map(pulled).collect();
+    let entries = |block: &mut dyn Block<2>, kind, d_u: &[f64]| {
+        let mut counts = Vec::new();
+        let flows = block.evaluate(d_u, kind, &mut |cell| counts.push(cell.stiffness.len()));
+        (flows, counts)
+    };
+    let rest = vec![0.0; d_u.len()];
+    let plastic = Stiffness::Plastic(1.0);
+    assert_eq!(entries(&mut block, plastic, &rest), (false, vec![0, 0]));
+    assert_eq!(entries(&mut block, plastic, &d_u), (true, vec![0, 136]));
+    assert_eq!(
+        entries(&mut block, Stiffness::None, &d_u),
+        (true, vec![0, 0])
+    );
+    assert_eq!(
+        entries(&mut block, Stiffness::Elastic, &d_u),
+        (true, vec![136, 136])
+    );
 }
 
 fn steel() -> VonMises {

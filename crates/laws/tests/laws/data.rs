@@ -55,8 +55,8 @@ fn hardening_and_friction() {
     let von_mises = |x: f64| VonMises::new(1.0, 0.3, 1.0).map(|law| (law, x));
     refuses_negative(|x| von_mises(x).and_then(|(law, x)| law.with_isotropic(x)));
     refuses_negative(|x| von_mises(x).and_then(|(law, x)| law.with_kinematic(x)));
-    refuses_negative(|x| von_mises(x).and_then(|(law, x)| law.with_recall(x, 1.0)));
-    refuses_negative(|x| von_mises(x).and_then(|(law, x)| law.with_recall(1.0, x)));
+    refuses_negative(|x| von_mises(x).and_then(|(law, x)| law.with_recall([(x, 1.0)])));
+    refuses_negative(|x| von_mises(x).and_then(|(law, x)| law.with_recall([(1.0, x)])));
     refuses_negative(|x| Isotropic::voce(x, 1.0));
     refuses_negative(|x| Isotropic::voce(1.0, x));
     refuses_negative(|x| Isotropic::swift(x, 0.1, 0.2));
@@ -95,17 +95,6 @@ fn tables_and_terms() -> Result<(), LawError> {
         let error = Isotropic::table(points).expect_err(message);
         assert_eq!(error.to_string(), message);
     }
-    let mut law = VonMises::new(1.0, 0.3, 1.0)?;
-    for _ in 0..RECALLED_TERMS {
-        // Terms without recall need no room.
-        law = law.with_recall(1.0, 2.0)?.with_kinematic(1.0)?;
-    }
-    assert_eq!(law.recalled(), [(1.0, 2.0); RECALLED_TERMS]);
-    assert_eq!(law.kinematic_modulus(), RECALLED_TERMS as f64);
-    assert!(matches!(
-        law.with_recall(1.0, 2.0),
-        Err(LawError::TooManyTerms { .. })
-    ));
     Ok(())
 }
 

@@ -17,15 +17,14 @@ const STRAIN: f64 = YIELD / YOUNG;
 const POWER: f64 = 1e-10 * YIELD * STRAIN;
 
 /// With a yield surface that grows, moves, and does both, with recall or without.
-fn von_mises_laws() -> Result<Vec<VonMises>, LawError> {
-    let perfect = VonMises::new(YOUNG, POISSON, YIELD)?;
+fn von_mises_laws() -> Result<Vec<VonMises<1>>, LawError> {
+    let perfect = |term| VonMises::new(YOUNG, POISSON, YIELD)?.with_recall([term]);
+    let bare = perfect((0.0, 0.0))?;
     Ok(vec![
-        perfect.clone(),
-        perfect.clone().with_isotropic(5e3)?,
-        perfect.clone().with_kinematic(20e3)?,
-        perfect
-            .with_hardening(Isotropic::voce(150.0, 200.0)?)
-            .with_recall(40e3, 300.0)?,
+        bare.clone(),
+        bare.clone().with_isotropic(5e3)?,
+        bare.with_kinematic(20e3)?,
+        perfect((40e3, 300.0))?.with_hardening(Isotropic::voce(150.0, 200.0)?),
     ])
 }
 

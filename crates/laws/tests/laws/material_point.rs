@@ -19,14 +19,14 @@ fn perfect() -> Result<VonMises, LawError> {
 }
 
 /// A point driven in steps, its strain and its state.
-pub(crate) struct Point {
-    pub(crate) law: VonMises,
-    pub(crate) state: VonMisesState,
+pub(crate) struct Point<const TERMS: usize> {
+    pub(crate) law: VonMises<TERMS>,
+    pub(crate) state: VonMisesState<TERMS>,
     pub(crate) strain: Sym2,
 }
 
-impl Point {
-    pub(crate) fn new(law: VonMises) -> Self {
+impl<const TERMS: usize> Point<TERMS> {
+    pub(crate) fn new(law: VonMises<TERMS>) -> Self {
         Self {
             law,
             state: VonMisesState::default(),

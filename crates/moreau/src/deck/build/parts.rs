@@ -15,11 +15,16 @@ use crate::laws::{
 use crate::mesh::{CellKind, Integration, Mesh, MeshError};
 use std::ops::Range;
 
+/// Most terms of kinematic hardening with recall; those without are as many as there are. Fits of
+/// cyclic tests take two or three.
+const RECALLED: usize = 4;
+
 /// A bulk law.
 #[derive(Debug, Clone)]
 enum Law {
     Elastic(Elastic),
     VonMises(VonMises),
+    Chaboche(VonMises<RECALLED>),
     DruckerPrager(ElasticDruckerPrager),
 }
 
@@ -118,18 +123,37 @@ fn law(material: &MaterialEntry) -> Result<Law, (Range<usize>, String)> {
     if let Some(given) = &material.isotropic {
         law = law.with_hardening(hardening(given, yield_stress)?);
     }
+    let mut recalled = [(0.0, 0.0); RECALLED];
+    let mut terms = 0;
     for [modulus, recall] in &material.kinematic {
-        law = law
-            .with_recall(modulus.value, recall.value)
-            .map_err(|error| {
-                let at = match &error {
-                    LawError::Negative { name, .. } if name.contains("recall") => recall,
-                    _ => modulus,
-                };
-                (at.span.clone(), error.to_string())
-            })?;
+        let term = (modulus.value, recall.value);
+        if let Err(error) = law.clone().with_recall([term]) {
+            let at = match &error {
+                LawError::Negative { name, .. } if name.contains("recall") => recall,
+                _ => modulus,
+            };
+            return Err((at.span.clone(), error.to_string()));
+        }
+        if recall.value == 0.0 {
+            law = law.with_kinematic(modulus.value).map_err(moduli)?;
+        } else {
+            if let Some(free) = recalled.get_mut(terms) {
+                *free = term;
+            }
+            terms += 1;
+        }
     }
-    Ok(Law::VonMises(law))
+    if terms > RECALLED {
+        let [first, _] = &material.kinematic[0];
+        let message = format!(
+            "{terms} terms of kinematic hardening with recall, at most {RECALLED} are remembered"
+        );
+        return Err((first.span.clone(), message));
+    }
+    if terms == 0 {
+        return Ok(Law::VonMises(law));
+    }
+    Ok(Law::Chaboche(law.with_recall(recalled).map_err(moduli)?))
 }
 
 /// The plastic law of a soil; or what is wrong with it, and where.
@@ -385,6 +409,7 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
         let added = match law {
             Law::Elastic(law) => model.material(&name, law, rule),
             Law::VonMises(law) => model.material(&name, law, rule),
+            Law::Chaboche(law) => model.material(&name, law, rule),
             Law::DruckerPrager(law) => model.material(&name, law, rule),
         };
         model = added.map_err(|e| note(&entry.on.span, e)).ok()?;
