@@ -67,7 +67,7 @@ mod tests {
     use crate::laws::{BulkLaw, Elastic, VonMises};
     use crate::mandel::from_matrix;
     use crate::mesh::{
-        Axisymmetric, CellKind, Hypothesis, Integration, Mesh, PlaneStrain, Solid, block2, block3,
+        Axisymmetric, CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3,
     };
     use crate::run::body::body;
     use nalgebra::Matrix3;
@@ -130,7 +130,7 @@ mod tests {
     }
 
     /// Under an affine displacement every point has it, and the one stress that it makes.
-    fn uniform<const D: usize, H: Hypothesis<D> + Analysis<D> + Clone>(
+    fn uniform<const D: usize, H: Analysis<D>>(
         meshes: impl Iterator<Item = Mesh<D>>,
         hypothesis: &H,
         gradient: Matrix3<f64>,
@@ -144,7 +144,7 @@ mod tests {
         let at = |x: &[f64]| gradient * nalgebra::Vector3::from(three(x));
         for mesh in meshes {
             for rule in RULES {
-                let state = ((&mesh, hypothesis.clone()), (law.clone(), rule));
+                let state = ((&mesh, *hypothesis), (law, rule));
                 let (volume, driver) = displaced(state.0, state.1, |x| at(x).into());
                 let grid = points(&driver);
                 let what = format!("{} {rule:?}", mesh.kind(0));
@@ -172,7 +172,7 @@ mod tests {
     }
 
     /// What the body has in a cell is the mean by volume of what the points have that name it.
-    fn means<const D: usize, H: Hypothesis<D> + Analysis<D> + Clone>(
+    fn means<const D: usize, H: Analysis<D>>(
         meshes: impl Iterator<Item = Mesh<D>>,
         hypothesis: &H,
     ) {
@@ -180,7 +180,7 @@ mod tests {
         let bent = |x: &[f64; D]| three(&x.map(|x| 0.02 * x * x));
         for mesh in meshes {
             let rule = mesh.kind(0).integration();
-            let (_, driver) = displaced((&mesh, hypothesis.clone()), (law.clone(), rule), bent);
+            let (_, driver) = displaced((&mesh, *hypothesis), (law.clone(), rule), bent);
             let (body, grid) = (body(&driver).0, points(&driver));
             let volume = values(&grid.point_data, "volume");
             let cell = values(&grid.point_data, "cell");
