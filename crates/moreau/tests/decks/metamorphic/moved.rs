@@ -152,7 +152,7 @@ fn a_mirror_and_a_shift_change_nothing() {
     }
 }
 
-/// Exchanges the axes in turn in whatever stands under the tools and steps of a deck: x for y, y for
+/// Exchanges the axes in turn in whatever stands under the tools, contacts and steps of a deck: x for y, y for
 /// z, z for x.
 fn axes_turned(value: &mut Value) {
     const NEXT: [(&str, &str); 3] = [("x", "y"), ("y", "z"), ("z", "x")];
@@ -189,7 +189,7 @@ fn axes_in_space_are_alike() {
         let base = history(&deck, &base, &format!("{name}-xyz"), false);
         let turn = |[x, y, z]: [f64; 3]| [z, x, y];
         let (mut turned, at) = moved(&format!("{name}-zxy"), &deck, |n, _| n, turn);
-        for key in ["tool", "step"] {
+        for key in ["tool", "contact", "step"] {
             if let Some(value) = turned.get_mut(key) {
                 axes_turned(value);
             }
