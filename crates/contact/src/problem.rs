@@ -2,7 +2,7 @@
 
 use crate::ContactError;
 use moreau_laws::{Friction, Local, Status};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 /// The contact problem of one linearised increment, in the contacts' local frames:
 ///
@@ -234,6 +234,33 @@ impl<const D: usize> ContactProblem<D> {
         let stiffest = self.stiffness.diagonal().amax();
         let terms = (self.load.len() as f64).sqrt();
         4.0 * f64::EPSILON * terms * (stiffest * reach + self.load.amax())
+    }
+
+    /// Largest ratio μ/μ_c over the contacts that are closed, or were at the start of the step, with its
+    /// contact, 1/μ_c = |S_tt⁻¹ S_tn| of the diagonal block; `None` if there are none.
+    ///
+    /// In the plane μ_c = S_tt/|S_tn|: while all others stick, a contact has exactly one solution for
+    /// μ < μ_c, and from μ_c on it may have several, lose the path of its load, or wedge (A. Klarbring,
+    /// *Ingenieur-Archiv* 60 (1990) 529-541). That is one contact alone: together contacts may have
+    /// several solutions at smaller ratios, and need not have them at larger ones, nor in space. It
+    /// is an indicator, not a bound. For a single contact it is that of
+    /// [`LocalProblem::criticality`](crate::LocalProblem::criticality); of several, the block of W is
+    /// taken while all others are open.
+    pub fn criticality(&self, status: &[Status]) -> Option<(usize, f64)> {
+        let ratio = |i: usize| {
+            let s = |a: usize, b: usize| match a.max(b) < D {
+                true => self.stiffness[(D * i + a, D * i + b)],
+                false => f64::from(u8::from(a == b)),
+            };
+            let along = Matrix2::new(s(1, 1), s(1, 2), s(2, 1), s(2, 2)).cholesky();
+            let coupling = Vector2::new(s(1, 0), s(2, 0));
+            // What has no stiffness has no coupling either.
+            let moved = along.map_or(0.0, |along| along.solve(&coupling).norm());
+            (i, self.friction[i].friction() * moved)
+        };
+        let touches = |i: &usize| status[*i] != Status::Open || self.previous[*i][0] > 0.0;
+        let touching = (0..self.contacts()).filter(touches);
+        touching.map(ratio).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Status of every contact at (u, t), \[35\].

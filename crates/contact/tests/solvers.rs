@@ -1,8 +1,8 @@
 //! Every solver on problems with known answers, and all of them against each other.
 
 use moreau_contact::{
-    ContactError, ContactProblem, ContactSolution, ContactSolver, GaussSeidel, Penalty,
-    SemismoothNewton, Uzawa,
+    BlockMatrix, ContactError, ContactProblem, ContactSolution, ContactSolver, GaussSeidel,
+    LocalProblem, Penalty, SemismoothNewton, Uzawa,
 };
 use moreau_laws::{
     AnisotropicCoulomb, Coulomb, Friction, LimitedCoulomb, Local, RegularisedCoulomb, Status,
@@ -129,8 +129,33 @@ fn klarbring_below_the_critical_friction() {
                 (s.force[0] - Local::<2>::new(r_n, r_t)).norm() < 1e-9,
                 "{solver:?}"
             );
+            // Half of the critical coefficient, where it touches.
+            let found = problem.criticality(&s.status);
+            let expected = (r_n > 0.0).then_some((0, 0.5));
+            assert_eq!(found, expected, "{solver:?}");
         }
     }
+}
+
+/// From S as from W, in the plane and in space.
+#[test]
+fn the_critical_friction_of_a_contact_is_that_of_its_compliance() {
+    fn check<const D: usize>(w: &[f64], mu: f64) {
+        let w = DMatrix::from_row_slice(D, D, w);
+        let (law, q) = (
+            vec![Coulomb::new(mu).expect("valid")],
+            [Local::<D>::zeros()],
+        );
+        let local = LocalProblem::new(BlockMatrix::from_dense(&w), q.to_vec(), law.clone());
+        let (_, expected) = local.expect("valid").criticality().expect("a contact");
+        let problem = ContactProblem::from_delassus(w, &q, law).expect("definite");
+        let (contact, found) = problem.criticality(&[Status::Stick]).expect("closed");
+        assert_eq!(contact, 0);
+        assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+        assert_eq!(problem.criticality(&[Status::Open]), None);
+    }
+    check::<2>(&[4.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, 4.0 / 3.0], 3.0);
+    check::<3>(&[1.0, 0.2, -0.1, 0.2, 0.8, 0.05, -0.1, 0.05, 0.6], 0.9);
 }
 
 /// A random symmetric positive definite matrix with eigenvalues in [0.05, …].

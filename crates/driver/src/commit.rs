@@ -140,6 +140,7 @@ impl<const D: usize> Driver<D> {
             plastic_fraction,
             energies,
             certificate,
+            criticality: counts.criticality,
             out_of_balance,
             residuals: counts.residuals,
         }

@@ -1,10 +1,13 @@
-//! Contact points between bodies that displacement conditions leave no freedom of their own: their
-//! multipliers go to their neighbours; not the multipliers themselves.
+//! Contact points that displacement conditions leave no freedom of their own: between bodies their
+//! multipliers go to their neighbours, on a tool to the nearest; not the multipliers themselves.
 //!
 //! A node of the non-mortar side that is held cannot answer its multiplier, and where many nodes are
 //! held opposite to few that are free, their multipliers are more than what decides them. The sum of
 //! two multipliers is one again: Σ Φ_a = 1 stays true, so that a uniform pressure passes as before,
 //! and weights that are means of weights keep linear fields, and action equal to reaction.
+//!
+//! Where nodes are held opposite to a tool that a force drives, rigid meets rigid: the one that the tool
+//! comes to first stops it, and what others at the same distance would bear nothing decides.
 
 use crate::condensation::{Elimination, row};
 use crate::driver::Driver;
@@ -13,6 +16,9 @@ use crate::load::Loading;
 use moreau_mesh::Facet;
 use nalgebra::SVector;
 use std::collections::{BTreeMap, BTreeSet};
+
+/// Way of a tool, over the size of the mesh, that is rounding of positions.
+const NO_WAY: f64 = 1e-12;
 
 /// Least coefficient of a row over its largest, after those before it have been taken out, for it to
 /// say something of its own: forces grow by its inverse.
@@ -75,6 +81,46 @@ impl<const D: usize> Driver<D> {
                     give(footings, c, &takers);
                 }
             }
+        }
+    }
+
+    /// Opens the points at which held nodes meet a driven tool, but for the one that each tool comes to
+    /// first: after the least way gap / |m|, m the normal along the free directions of the tool. What is
+    /// behind it is not reached; what is reached with it, and stops other motions than it does, wedges
+    /// the tool: then neither is first for long, and the increment does not converge.
+    pub(crate) fn stop_once(
+        &self,
+        is_free: impl Fn(usize) -> bool,
+        kinematics: &mut [Kinematics<D>],
+    ) {
+        // By tool, the point and the way to it.
+        let mut first: BTreeMap<usize, (usize, f64)> = BTreeMap::new();
+        let mut rest = Vec::new();
+        for (c, (p, k)) in self.points.iter().zip(kinematics.iter()).enumerate() {
+            let Some(tool) = p.tool.filter(|_| k.active[0]) else {
+                continue;
+            };
+            let n = k.axes.column(0);
+            let along = |node: usize| {
+                SVector::<f64, D>::from_fn(|i, _| if is_free(D * node + i) { n[i] } else { 0.0 })
+            };
+            if p.own().into_iter().any(|(a, _)| along(a).norm() > 0.0) {
+                continue;
+            }
+            let way = k.u[0] / along(self.tool_node(tool)).norm();
+            match first.get_mut(&tool) {
+                None => {
+                    first.insert(tool, (c, way));
+                }
+                Some(first) if way < first.1 - NO_WAY * self.mesh.size() => {
+                    rest.push(std::mem::replace(first, (c, way)).0);
+                }
+                Some(_) => rest.push(c),
+            }
+        }
+        for c in rest {
+            let k = &kinematics[c];
+            kinematics[c] = Kinematics::open(k.law, k.u[0].max(0.0) + f64::MIN_POSITIVE);
         }
     }
 

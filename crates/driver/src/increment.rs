@@ -31,6 +31,8 @@ pub(crate) struct Counts {
     pub(crate) shortened: usize,
     pub(crate) factorisations: usize,
     pub(crate) residuals: Vec<f64>,
+    /// [`StepReport::criticality`].
+    pub(crate) criticality: Option<(usize, f64)>,
 }
 
 /// A converged increment, not yet committed.
@@ -58,6 +60,9 @@ pub(crate) struct Start {
 /// What an increment may be off by, over the residual of its contact solution: that weighs
 /// displacements with a somewhat smaller α.
 const CONTACT_SLACK: f64 = 10.0;
+
+/// How far an increment may move anything, in sizes of the mesh and of what it prescribes.
+const FARTHEST: f64 = 10.0;
 
 /// Parts of what flow adds to the stiffness that are tried in turn where the tangent is a mechanism.
 const BLENDS: [f64; 4] = [1.0 - 1e-4, 0.99, 0.8, 0.0];
@@ -133,7 +138,9 @@ impl<const D: usize> Driver<D> {
                 .as_ref()
                 .map_or(0.0, |s| CONTACT_SLACK * s.residual);
             let balance = self.target(system, scale, &now.d_u) + left;
-            let balanced = now.part >= 1.0 && out_of_balance <= balance;
+            let balanced = now.part >= 1.0
+                && out_of_balance <= balance
+                && self.is_near(&now.d_u, (start, &end));
             if balanced
                 && let Some(s) = solution.take_if(|s| self.law_holds(system, &kinematics, s, scale))
             {
@@ -188,6 +195,11 @@ impl<const D: usize> Driver<D> {
             system.timings.contact += clock.elapsed();
             counts.contact += solved.iterations;
             counts.last_contact = solved.iterations;
+            // On a path the stiffness is not that of the structure alone.
+            counts.criticality = control
+                .is_none()
+                .then(|| condensation.problem.criticality(&solved.status))
+                .flatten();
             let mut step = std::mem::replace(&mut missing, vec![0.0; now.d_u.len()]);
             let x = condensation.interface(&solved.displacement);
             let growth = border.map_or(0.0, |b| system.factor(&b, &mut condensed, &x));
@@ -255,6 +267,15 @@ impl<const D: usize> Driver<D> {
         let motion = largest(moved.iter().copied()).clamp(f64::EPSILON * size, size);
         let rounding = 64.0 * f64::EPSILON * system.stiffest() * motion;
         (self.settings.tolerance * scale).max(rounding)
+    }
+
+    /// Whether nothing has gone so far that forces are rounding: what slides away is in balance with
+    /// anything there.
+    fn is_near(&self, d_u: &[f64], (start, end): (&Loading<D>, &Loading<D>)) -> bool {
+        let prescribed = end.displacement.iter();
+        let told = largest(prescribed.map(|(dof, u)| u - start.displacement.get(dof).unwrap_or(u)));
+        let moved = &d_u[..self.mesh_dofs()];
+        largest(moved.iter().copied()) <= FARTHEST * (self.mesh.size() + told)
     }
 
     /// Factorises the tangent at an iterate. Where that is a mechanism, as a plastic tangent may be
@@ -359,7 +380,9 @@ impl<const D: usize> Driver<D> {
             let kinematics = Kinematics::new(p, &obstacle.normal(&x), gap, &slip, free);
             kinematics.between_forces(footing.area)
         };
-        self.points.iter().zip(&self.footings).map(at).collect()
+        let mut all: Vec<_> = self.points.iter().zip(&self.footings).map(at).collect();
+        self.stop_once(|dof| system.is_free(dof), &mut all);
+        all
     }
 
     /// Contact forces t₀ at the start of the step, in the frames of now.

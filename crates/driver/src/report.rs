@@ -88,6 +88,13 @@ pub struct StepReport {
     pub energies: Energies,
     /// The bipotential gap of the increment and what it cannot see.
     pub certificate: Certificate,
+    /// Largest coefficient of friction over its critical value among the contact points that are closed
+    /// or were at the start, with its index in [`Driver::contacts`](crate::Driver::contacts): from 1 on there may be other solutions,
+    /// and the path may break off, see
+    /// [`ContactProblem::criticality`](moreau_contact::ContactProblem::criticality). Of the stiffness of
+    /// the last iteration; `None` where nothing touches, on a path of unknown load factor, and under
+    /// the paper's nesting.
+    pub criticality: Option<(usize, f64)>,
     /// Largest nodal force that nothing balances \[N\].
     pub out_of_balance: f64,
     /// Out-of-balance force of every Newton iteration \[N\].

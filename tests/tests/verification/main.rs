@@ -20,6 +20,7 @@ mod locking;
 mod modes;
 mod newton;
 mod notch;
+mod pad;
 mod patch;
 mod prandtl;
 mod rates;

@@ -3,5 +3,6 @@
 mod anisotropic;
 mod block;
 mod collapse;
+mod klarbring;
 mod steps;
 mod tools;

@@ -137,6 +137,83 @@ fn a_given_force_leads_where_the_motion_does_that_takes_it() {
     }
 }
 
+/// The sides of a block that is clamped are held in the surface that a tool comes to.
+#[test]
+fn a_given_force_leads_where_the_motion_does_beside_nodes_that_are_held() {
+    let clamped = held("press")
+        .fix("block.left", &[Axis::X, Axis::Y])
+        .fix("block.right", &[Axis::X, Axis::Y]);
+    let over_the_middle = || {
+        let mesh = (block(), Integration::Reduced);
+        indented(mesh, PlaneStrain::default(), ([20.0, 120.3], 100.0), 0.2)
+    };
+    by_motion_and_by_force(over_the_middle, &clamped, (1, -0.35));
+    // Driven along as well: less than friction takes.
+    let mut driver = over_the_middle();
+    let both = |x: f64| {
+        let push = clamped.clone().push("ball", Axis::Y, -3000.0);
+        push.push("ball", Axis::X, x)
+    };
+    driver.run(&both(0.0), 2, |_, _| {}).expect("converges");
+    driver.run(&both(100.0), 2, |_, _| {}).expect("sticks");
+    let force = driver.tool_force("ball").expect("exists");
+    assert!((force[0] - 100.0).abs() < 1e-6 && (force[1] + 3000.0).abs() < 1e-6);
+    let lines = uniform(0.0, 10.0, 4);
+    let on_a_cube = || {
+        let cube = block3("block", CellKind::Hex8, &lines, &lines, &lines).expect("valid");
+        let ball = ([5.0, 60.02, 5.0], 50.0);
+        indented((cube, Integration::Full), Solid, ball, 0.2)
+    };
+    let all = [Axis::X, Axis::Y, Axis::Z];
+    let clamped = held("press").fix("block.left", &all);
+    by_motion_and_by_force(on_a_cube, &clamped, (1, -0.1));
+}
+
+/// Rigid meets rigid: a tool that comes to held nodes goes no further than the nearest lets it, and all
+/// of its force is borne; what several at one distance bear together is decided, not their parts.
+#[test]
+fn a_tool_that_is_driven_on_held_nodes_stops_at_the_nearest() {
+    let lines = uniform(0.0, 10.0, 4);
+    let cube = || block3("block", CellKind::Hex8, &lines, &lines, &lines).expect("valid");
+    let all = [Axis::X, Axis::Y, Axis::Z];
+    let press = held("press").fix("block.left", &all);
+    // Over the clamped edge, beside the middle of it, and over the middle between two of its nodes.
+    for (z, nearest) in [(4.0, 1.0), (6.25, 1.25)] {
+        let height = 3.0;
+        let ball = ([0.0, 10.0 + 50.0 + height, z], 50.0);
+        let mut driver = indented((cube(), Integration::Full), Solid, ball, 0.2);
+        let push = press.clone().push("ball", Axis::Y, -100.0);
+        let reports = driver.run(&push, 2, |_, _| {}).expect("is stopped");
+        assert!(reports.iter().all(|r| r.cuts == 0));
+        let reached = driver.tool_displacement("ball").expect("exists")[1];
+        let expected = f64::sqrt(50.0 * 50.0 - nearest * nearest) - 50.0 - height;
+        assert!((reached - expected).abs() < 1e-9, "{reached} {expected}");
+        let force = driver.tool_force("ball").expect("exists")[1];
+        assert!((force + 100.0).abs() < 1e-7, "{force}");
+        let supports = driver.reaction("block.left").expect("held")[1];
+        assert!((supports - 100.0).abs() < 1e-6, "{supports}");
+        for c in driver.contacts() {
+            let x = nalgebra::Vector3::from(c.position) + driver.displacement(c.node);
+            let center = nalgebra::Vector3::new(0.0, ball.0[1] + reached, z);
+            assert!((x - center).norm() - 50.0 > -1e-9, "{c:?}");
+        }
+    }
+    // A lid on all of the top, which the clamped edge holds alone.
+    let lid = Plane::new([0.0, 10.5, 0.0], [0.0, -1.0, 0.0]).expect("valid");
+    let model = Model::new(cube(), Solid)
+        .material("block", steel(), Integration::Full)
+        .and_then(|m| m.tool("lid", lid))
+        .and_then(|m| m.contact("block.top", "lid", coulomb(0.3)))
+        .expect("valid");
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    let push = press.push("lid", Axis::Y, -100.0);
+    driver.run(&push, 2, |_, _| {}).expect("is stopped");
+    let reached = driver.tool_displacement("lid").expect("exists")[1];
+    let force = driver.tool_force("lid").expect("exists")[1];
+    assert!((reached + 0.5).abs() < 1e-12 && (force + 100.0).abs() < 1e-9);
+    assert!((0..driver.mesh().nodes().len()).all(|n| driver.displacement(n).norm() < 1e-12));
+}
+
 /// Moved, then driven by what the motion took: nothing changes. More of it, less of it, and none.
 #[test]
 fn a_tool_is_handed_over_from_motion_to_force_and_back() {

@@ -80,6 +80,8 @@ pub(super) struct Tally {
     relative_gap: f64,
     /// Whether each contact was ever closed.
     closed: Vec<bool>,
+    /// The largest [`StepReport::criticality`], with its contact point and the increment.
+    criticality: Option<(usize, f64, usize)>,
     /// The last collapse and the step, from 0, that ended in it.
     pub(super) collapse: Option<(usize, Collapse)>,
 }
@@ -95,6 +97,7 @@ impl Tally {
             certificate: Certificate::default(),
             relative_gap: 0.0,
             closed: vec![false; contacts.unwrap_or(0)],
+            criticality: None,
             collapse: None,
         }
     }
@@ -116,6 +119,11 @@ impl Tally {
         {
             self.closed[c.contact] = true;
         }
+        if let Some((point, ratio)) = report.criticality
+            && self.criticality.is_none_or(|most| ratio > most.1)
+        {
+            self.criticality = Some((point, ratio, report.increment));
+        }
     }
 
     /// Appends all that [`Tally::read`] needs.
@@ -126,6 +134,10 @@ impl Tally {
         out.extend([c.bipotential_gap, c.penetration, c.excess_force]);
         out.push(self.relative_gap);
         out.extend(self.closed.iter().map(|&c| f64::from(u8::from(c))));
+        out.push(f64::from(u8::from(self.criticality.is_some())));
+        if let Some((point, ratio, increment)) = self.criticality {
+            out.extend([point as f64, ratio, increment as f64]);
+        }
         out.push(f64::from(u8::from(self.collapse.is_some())));
         if let Some((stage, c)) = &self.collapse {
             out.extend([*stage as f64, c.load_factor, c.growth]);
@@ -149,6 +161,9 @@ impl Tally {
         self.relative_gap = from.number()?;
         for closed in &mut self.closed {
             *closed = from.count()? == 1;
+        }
+        if from.count()? == 1 {
+            self.criticality = Some((from.count()?, from.number()?, from.count()?));
         }
         if from.count()? == 1 {
             let stage = from.count()?;
@@ -201,6 +216,8 @@ pub struct Outcome {
     pub certificate: Certificate,
     /// The largest gap in parts of the external work.
     pub relative_gap: f64,
+    /// The largest coefficient of friction over its critical value, see [`StepReport::criticality`].
+    pub criticality: Option<f64>,
     /// Contact points that are open, stick and slip at the end; those held along the surface are
     /// not counted as sticking or slipping.
     pub contacts: [usize; 3],
@@ -244,6 +261,18 @@ pub(super) fn conclude<const D: usize>(
         (!closed && driver.increments() > 0)
             .then(|| format!("the contact of \"{surface}\" with \"{tool}\" never closed"))
     };
+    let critical = |(point, ratio, increment): (usize, f64, usize)| {
+        let c = driver.contacts().get(point).filter(|_| ratio >= 1.0)?;
+        let (surface, tool) = driver.contact_name(c.contact);
+        Some(format!(
+            "the friction of \"{surface}\" with \"{tool}\" is {} times its critical value at node {} in \
+             increment {increment}: other solutions are possible there beside the one found, and sudden \
+             motion under a steady load",
+            shown(ratio, 3),
+            c.node
+        ))
+    };
+    let never = tally.closed.iter().enumerate().filter_map(never);
     let values = history
         .names()
         .filter(|n| n.starts_with("force.") || n.starts_with("u."))
@@ -263,9 +292,10 @@ pub(super) fn conclude<const D: usize>(
         threads: rayon::current_num_threads(),
         certificate: tally.certificate,
         relative_gap: tally.relative_gap,
+        criticality: tally.criticality.map(|c| c.1),
         values,
         verdicts: deck.expectations.iter().map(verdict).collect(),
-        warnings: tally.closed.iter().enumerate().filter_map(never).collect(),
+        warnings: never.chain(tally.criticality.and_then(critical)).collect(),
         contacts: [Status::Open, Status::Stick, Status::Slip].map(count),
         energies: driver.energies(),
         collapse: tally.collapse.map(|(stage, c)| {
@@ -319,6 +349,7 @@ impl Outcome {
                 "relative_gap": self.relative_gap,
                 "penetration": self.certificate.penetration,
                 "excess_force": self.certificate.excess_force,
+                "friction_over_critical": self.criticality,
             },
             "values": self.values.iter().cloned().collect::<BTreeMap<_, _>>(),
             "expectations": self.verdicts.iter().map(verdict).collect::<Vec<_>>(),

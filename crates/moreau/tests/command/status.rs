@@ -179,6 +179,53 @@ fn a_contact_that_never_closes_is_told() {
     assert!(out.contains("never closed"), "{out}");
 }
 
+/// Klarbring's triangle, of which the critical friction is 2: told above it, with the node, and not below.
+#[test]
+fn friction_at_its_critical_value_is_told() {
+    let at = directory("klarbring");
+    let mesh = at.join("triangle.msh");
+    // Nodes 1, the tip, to 3; what holds it, what may touch, and the triangle.
+    let triangle = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n\
+        $PhysicalNames\n4\n0 1 \"tip\"\n1 2 \"held\"\n1 3 \"side\"\n2 4 \"body\"\n$EndPhysicalNames\n\
+        $Nodes\n3\n1 0 0 0\n2 0 2 0\n3 -1 1 0\n$EndNodes\n\
+        $Elements\n4\n1 15 2 1 1 1\n2 1 2 2 2 2 3\n3 1 2 3 3 1 2\n4 2 2 4 4 1 2 3\n$EndElements\n";
+    fs::write(&mesh, triangle).expect("a mesh");
+    let deck = |mu: f64| {
+        format!(
+            r#"
+units = "mm-N-MPa"
+analysis = "plane-strain"
+mesh.file = {mesh:?}
+material = [{{ on = "body", young = 2.5, poisson = 0.25 }}]
+tool = [{{ name = "floor", plane = {{ point = [0, 0], normal = [0, 1] }} }}]
+contact = [{{ surface = "side", against = "floor", friction = {mu} }}]
+[[step]]
+name = "press"
+increments = 1
+fix = [{{ on = "held", u = ["x", "y"] }}]
+load = [{{ on = "tip", force = [-3.5, -1] }}]
+"#
+        )
+    };
+    for mu in [1.9, 2.1] {
+        let name = format!("critical-{mu}");
+        let (status, out, err, results) = run(&name, &deck(mu), &[]);
+        assert_eq!(status, 0, "{out}{err}");
+        let json = fs::read_to_string(results.join("run.json")).expect("a summary");
+        let json: serde_json::Value = serde_json::from_str(&json).expect("json");
+        let ratio = json["certificate"]["friction_over_critical"].as_f64();
+        assert!(
+            ratio.is_some_and(|r| (r - mu / 2.0).abs() < 1e-12),
+            "{json}"
+        );
+        let warnings = json["warnings"].as_array().expect("a list");
+        let told =
+            "the friction of \"side\" with \"floor\" is 1.05 times its critical value at node 0";
+        assert_eq!(warnings.len(), usize::from(mu > 2.0), "{warnings:?}");
+        assert_eq!(out.contains(told), mu > 2.0, "{out}");
+    }
+}
+
 /// Who reads may go away, as `head` does: the run goes on to its end, and says so to nobody.
 #[test]
 fn a_reader_that_goes_away_is_no_error() {

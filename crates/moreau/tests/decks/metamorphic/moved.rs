@@ -26,8 +26,8 @@ fn moved(
     (deck, at)
 }
 
-/// A mesh with its nodes elsewhere and numbered anew as text of Gmsh: plane cells that are turned over
-/// are turned by the reader.
+/// A mesh with its nodes elsewhere and numbered anew as text of Gmsh: cells of which it makes mirror
+/// images are turned round by the reader.
 fn text_of<const D: usize>(
     mesh: &Mesh<D>,
     number: impl Fn(usize, usize) -> usize,
@@ -73,7 +73,7 @@ fn text_of<const D: usize>(
 fn tools_moved(deck: &mut Table, change: impl Fn(&str, f64) -> f64) {
     let only = |keys: &str, v: f64| {
         let first = keys.split('.').next().expect("a key");
-        match ["tool", "step"].contains(&first) {
+        match ["tool", "contact", "step"].contains(&first) {
             true => change(keys, v),
             false => v,
         }
@@ -115,22 +115,20 @@ fn a_mirror_and_a_shift_change_nothing() {
             &format!("{name}-base"),
             false,
         );
-        if !is_solid(&deck) {
-            let mirrored = |[x, y, z]: [f64; 3]| [-x, y, z];
-            let (mut mirror, at) = moved(&format!("{name}-mirror"), &deck, |n, _| n, mirrored);
-            let horizontal = |keys: &str, v: f64| {
-                let last = keys.rsplit('.').next().expect("a key");
-                let vectors = ["point", "normal", "center", "traction", "force", "move"];
-                let in_vector = keys.split('.').any(|k| vectors.contains(&k));
-                let first = last == "0" && in_vector;
-                let in_move = keys.contains("move.") && last == "x";
-                if first || in_move { -v } else { v }
-            };
-            tools_moved(&mut mirror, horizontal);
-            let found = history(&mirror, &at, &format!("{name}-mirror"), false);
-            let factor = |column: &str, _: &str| if column.ends_with(".x") { -1.0 } else { 1.0 };
-            same(&base, &found, &format!("{name}, mirrored"), factor);
-        }
+        let mirrored = |[x, y, z]: [f64; 3]| [-x, y, z];
+        let (mut mirror, at) = moved(&format!("{name}-mirror"), &deck, |n, _| n, mirrored);
+        let horizontal = |keys: &str, v: f64| {
+            let last = keys.rsplit('.').next().expect("a key");
+            let vectors = ["point", "normal", "center", "traction", "force", "move"];
+            let in_vector = keys.split('.').any(|k| vectors.contains(&k));
+            let first = last == "0" && in_vector;
+            let in_move = keys.contains("move.") && last == "x";
+            if first || in_move { -v } else { v }
+        };
+        tools_moved(&mut mirror, horizontal);
+        let found = history(&mirror, &at, &format!("{name}-mirror"), false);
+        let factor = |column: &str, _: &str| if column.ends_with(".x") { -1.0 } else { 1.0 };
+        same(&base, &found, &format!("{name}, mirrored"), factor);
 
         let by = match is_solid(&deck) {
             true => [37.5, -12.25, 8.0],
@@ -152,67 +150,78 @@ fn a_mirror_and_a_shift_change_nothing() {
     }
 }
 
-/// Exchanges the axes in turn in whatever stands under the tools, contacts and steps of a deck: x for y, y for
-/// z, z for x.
-fn axes_turned(value: &mut Value) {
-    const NEXT: [(&str, &str); 3] = [("x", "y"), ("y", "z"), ("z", "x")];
-    let next = |name: &str| NEXT.iter().find(|n| n.0 == name).map(|n| n.1);
+/// Exchanges the axes in whatever stands under the tools, contacts and steps of a deck: what is along axis i goes
+/// along `to[i]`.
+fn axes_exchanged(value: &mut Value, to: [usize; 3]) {
+    let other = |name: &str| axis(name).map(|i| AXES[to[i]]);
     match value {
         Value::String(name) => {
-            if let Some(next) = next(name) {
-                *name = next.into();
+            if let Some(other) = other(name) {
+                *name = other.into();
             }
         }
         Value::Array(items) => {
             let is_vector = |v: &Value| v.is_float() || v.is_integer();
             if items.len() == 3 && items.iter().all(is_vector) {
-                items.rotate_right(1);
+                let old = items.clone();
+                (0..3).for_each(|i| items[to[i]] = old[i].clone());
             }
-            items.iter_mut().for_each(axes_turned);
+            items.iter_mut().for_each(|v| axes_exchanged(v, to));
         }
         Value::Table(table) => {
             let entries = std::mem::take(table);
             for (key, mut value) in entries {
-                axes_turned(&mut value);
-                table.insert(next(&key).unwrap_or(&key).into(), value);
+                axes_exchanged(&mut value, to);
+                table.insert(other(&key).unwrap_or(&key).into(), value);
             }
         }
         _ => {}
     }
 }
 
-/// Solids turned about the diagonal of space, with supports along axes and all.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+fn axis(name: &str) -> Option<usize> {
+    AXES.iter().position(|a| *a == name)
+}
+
+/// Solids turned about the diagonal of space, and mirrored at the plane x = y, with supports along axes
+/// and all.
 #[test]
 fn axes_in_space_are_alike() {
     for (name, deck) in examples().into_iter().filter(|(_, deck)| is_solid(deck)) {
         let base = folder("docs/examples");
         let base = history(&deck, &base, &format!("{name}-xyz"), false);
-        let turn = |[x, y, z]: [f64; 3]| [z, x, y];
-        let (mut turned, at) = moved(&format!("{name}-zxy"), &deck, |n, _| n, turn);
-        for key in ["tool", "contact", "step"] {
-            if let Some(value) = turned.get_mut(key) {
-                axes_turned(value);
-            }
-        }
-        let mut found = history(&turned, &at, &format!("{name}-zxy"), false);
-        // What was along x is along y: columns stand where they stood.
-        let place = |column: &String| {
-            let turned = match column.rsplit_once('.') {
-                Some((of, "x")) => format!("{of}.y"),
-                Some((of, "y")) => format!("{of}.z"),
-                Some((of, "z")) => format!("{of}.x"),
-                _ => column.clone(),
+        for (what, to) in [("turned", [1, 2, 0]), ("mirrored", [1, 0, 2])] {
+            let place = |x: [f64; 3]| {
+                let mut out = [0.0; 3];
+                (0..3).for_each(|i| out[to[i]] = x[i]);
+                out
             };
-            let names = &mut found.names.iter();
-            names.position(|n| *n == turned).expect("the column")
-        };
-        let order: Vec<usize> = base.names.iter().map(place).collect();
-        found.rows = found
-            .rows
-            .iter()
-            .map(|row| order.iter().map(|&k| row[k]).collect())
-            .collect();
-        same(&base, &found, &format!("{name}, turned"), |_, _| 1.0);
+            let (mut other, at) = moved(&format!("{name}-{what}"), &deck, |n, _| n, place);
+            for key in ["tool", "contact", "step"] {
+                if let Some(value) = other.get_mut(key) {
+                    axes_exchanged(value, to);
+                }
+            }
+            let mut found = history(&other, &at, &format!("{name}-{what}"), false);
+            // What was along x is along another axis: columns stand where they stood.
+            let place = |column: &String| {
+                let along = column.rsplit_once('.');
+                let along = along.and_then(|(of, name)| Some((of, axis(name)?)));
+                let other = match along {
+                    Some((of, i)) => format!("{of}.{}", AXES[to[i]]),
+                    None => column.clone(),
+                };
+                let names = &mut found.names.iter();
+                names.position(|n| *n == other).expect("the column")
+            };
+            let order: Vec<usize> = base.names.iter().map(place).collect();
+            for row in &mut found.rows {
+                *row = order.iter().map(|&k| row[k]).collect();
+            }
+            same(&base, &found, &format!("{name}, {what}"), |_, _| 1.0);
+        }
     }
 }
 
