@@ -69,7 +69,7 @@ fn text_of<const D: usize>(
     out
 }
 
-/// Moves tools and loads along x and y.
+/// Moves tools, directions of friction and loads.
 fn tools_moved(deck: &mut Table, change: impl Fn(&str, f64) -> f64) {
     let only = |keys: &str, v: f64| {
         let first = keys.split('.').next().expect("a key");
@@ -119,7 +119,9 @@ fn a_mirror_and_a_shift_change_nothing() {
         let (mut mirror, at) = moved(&format!("{name}-mirror"), &deck, |n, _| n, mirrored);
         let horizontal = |keys: &str, v: f64| {
             let last = keys.rsplit('.').next().expect("a key");
-            let vectors = ["point", "normal", "center", "traction", "force", "move"];
+            let vectors = [
+                "point", "normal", "center", "axis", "traction", "force", "move",
+            ];
             let in_vector = keys.split('.').any(|k| vectors.contains(&k));
             let first = last == "0" && in_vector;
             let in_move = keys.contains("move.") && last == "x";
