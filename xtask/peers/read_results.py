@@ -3,7 +3,8 @@
     python3 read_results.py PATH...
 
 A directory of results: every VTU file of it is read by both, which must agree to the bit on points,
-cells and fields, and every cell must have a positive size. Two mesh files, the second made of the
+cells and fields, and every cell must have a positive size. Where there are quadrature points, what the
+cells of the body have must be the means of theirs by volume. Two mesh files, the second made of the
 first by `moreau convert`: points must agree, and cells but for their order. Needs the packages vtk and meshio.
 """
 
@@ -63,6 +64,31 @@ def check_result(path):
     print(f"{path}: {len(other.points)} points, {count} {'/'.join(kinds)}, size {size.sum():.9g}; {', '.join(names)}")
 
 
+def check_points(path):
+    """Quadrature points beside the body of the same increment: volumes, places and means."""
+    body, points = meshio.read(path.with_name(path.name.replace("points", "body"))), meshio.read(path)
+    number = numpy.concatenate(body.cell_data["cell"]).ravel().astype(int)
+    cell, volume = points.point_data["cell"].ravel().astype(int), points.point_data["volume"].ravel()
+    if not (volume > 0).all():
+        raise ValueError("a point has no volume")
+    volumes = numpy.bincount(cell, volume, len(number))
+    corners = [body.points[nodes] for block in body.cells for nodes in block.data]
+    inside = {n: (c.min(axis=0), c.max(axis=0)) for n, c in zip(number, corners)}
+    low, high = (numpy.array([inside[c][k] for c in cell]) for k in (0, 1))
+    if not ((low <= points.points) & (points.points <= high)).all():
+        raise ValueError("a point is not within its cell")
+    worst = 0.0
+    for name in ["stress", "von_mises", "equivalent_plastic_strain"]:
+        raw, mean = points.point_data[name], numpy.concatenate(body.cell_data[name])
+        raw, mean = raw.reshape(len(cell), -1), mean.reshape(len(number), -1)
+        found = [numpy.bincount(cell, volume * column, len(number)) / volumes for column in raw.T]
+        difference = numpy.abs(numpy.array(found).T[number] - mean).max()
+        worst = max(worst, difference / max(numpy.abs(raw).max(), numpy.finfo(float).tiny))
+    if worst > 1e-12:
+        raise ValueError(f"the means of the points are not what the cells have, by {worst:.3g}")
+    print(f"{path}: {len(cell)} points in {len(number)} cells, volume {volume.sum():.9g}; means within {worst:.1g}")
+
+
 def check_pair(first, second):
     one, two = meshio.read(first), meshio.read(second)
     points = numpy.zeros((len(one.points), 3))
@@ -91,6 +117,9 @@ def main(paths):
         for path in paths:
             files = sorted(path.glob("*.vtu")) if path.is_dir() else [path]
             jobs += [(check_result, [file]) for file in files]
+            pairs = [f for f in files if f.name.startswith("points_")]
+            pairs = [f for f in pairs if f.with_name(f.name.replace("points", "body")).exists()]
+            jobs += [(check_points, [file]) for file in pairs]
     for check, arguments in jobs:
         try:
             check(*arguments)

@@ -84,6 +84,8 @@ pub struct Driver<const D: usize> {
     pub(crate) points: Vec<ContactPoint<D>>,
     /// Where the contact points stand in the increment at hand.
     pub(crate) footings: Vec<Footing<D>>,
+    /// Contact points whose multipliers their neighbours have in the increment at hand.
+    handed_over: Vec<usize>,
     pub(crate) settings: Settings<D>,
     pub(crate) state: State<D>,
     pub(crate) system: Option<System>,
@@ -137,6 +139,7 @@ impl<const D: usize> Driver<D> {
             contacts: model.contacts,
             points: model.points,
             footings: Vec::new(),
+            handed_over: Vec::new(),
             settings,
             state,
             system: None,
@@ -153,6 +156,7 @@ impl<const D: usize> Driver<D> {
             None => Footing::default(),
         };
         let mut footings: Vec<Footing<D>> = self.points.iter().map(on_tool).collect();
+        let mut handed_over = Vec::new();
         if self.contacts.iter().any(|c| c.pairing.is_some()) {
             let nodes = self.mesh.nodes();
             let position = |a: usize| self.position(a).into();
@@ -176,10 +180,14 @@ impl<const D: usize> Driver<D> {
                         footings[point] = Footing::on_surface(coupling, &positions);
                     }
                 }
+                let met = at.into_values().filter(|&i| footings[i].area > 0.0);
+                let met: Vec<usize> = met.collect();
                 self.hand_over(&mut footings, (k, surfaces.0), loading);
+                handed_over.extend(met.into_iter().filter(|&i| footings[i].area <= 0.0));
             }
         }
         self.footings = footings;
+        self.handed_over = handed_over;
         Ok(())
     }
 
@@ -252,6 +260,12 @@ impl<const D: usize> Driver<D> {
             surface, opposite, ..
         } = &self.contacts[contact];
         (surface, opposite)
+    }
+
+    /// Contact points, as indices of [`Driver::contacts`], that displacement conditions left no
+    /// multiplier of their own in the last increment: what they transmit is with their neighbours.
+    pub fn handed_over(&self) -> &[usize] {
+        &self.handed_over
     }
 
     /// Energies since the virgin state.

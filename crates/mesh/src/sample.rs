@@ -99,3 +99,33 @@ pub(crate) fn cell_samples<const D: usize>(kind: CellKind) -> CellSamples<D> {
         CellKind::Hex27 => tabulate_cell::<D, 27, 3, Hex27>(Hex27::rule(full)),
     }
 }
+
+impl CellKind {
+    /// Shape functions of the nodes at the points of the rule that has so many, point by point in the
+    /// order of [`Element::rule`]; `None` if neither rule does. The number tells the rule: where both
+    /// have as many points, they are the same.
+    pub fn shapes_at_points(self, count: usize) -> Option<Vec<Vec<f64>>> {
+        fn shapes<const D: usize, const N: usize, E: Element<D, N>>(
+            count: usize,
+        ) -> Option<Vec<Vec<f64>>> {
+            let mut rules = [Integration::Reduced, Integration::Full]
+                .map(E::rule)
+                .into_iter();
+            let rule = rules.find(|r| r.points.len() == count)?;
+            let shape = |p: &Point<D>| E::shape(p.xi).to_vec();
+            Some(rule.points.iter().map(shape).collect())
+        }
+        match self {
+            Self::Tri3 => shapes::<2, 3, Tri3>(count),
+            Self::Tri6 => shapes::<2, 6, Tri6>(count),
+            Self::Quad4 => shapes::<2, 4, Quad4>(count),
+            Self::Quad8 => shapes::<2, 8, Quad8>(count),
+            Self::Quad9 => shapes::<2, 9, Quad9>(count),
+            Self::Tet4 => shapes::<3, 4, Tet4>(count),
+            Self::Tet10 => shapes::<3, 10, Tet10>(count),
+            Self::Hex8 => shapes::<3, 8, Hex8>(count),
+            Self::Hex20 => shapes::<3, 20, Hex20>(count),
+            Self::Hex27 => shapes::<3, 27, Hex27>(count),
+        }
+    }
+}

@@ -13,9 +13,11 @@ mod history;
 mod log;
 mod outcome;
 mod pictures;
+mod points;
 mod report;
 mod surface;
 mod table;
+mod touch;
 mod under_way;
 mod view;
 mod viewer;
@@ -126,6 +128,12 @@ pub fn run<const D: usize>(
 where
     Driver<D>: View,
 {
+    if directory.exists() && !directory.is_dir() {
+        return Err(RunError::Write {
+            path: directory.to_owned(),
+            source: std::io::Error::other("this is a file, results need a directory"),
+        });
+    }
     fs::create_dir_all(directory).map_err(|source| RunError::Write {
         path: directory.to_owned(),
         source,

@@ -223,7 +223,9 @@ fn tail(deck: &Deck, out: &mut String) -> fmt::Result {
     if let Some(directory) = &deck.directory {
         writeln!(out, "directory = {}", text(directory))?;
     }
-    writeln!(out, "vtu = \"{}\"", Vtu::NAMES[deck.vtu as usize])?;
+    for (key, which) in [("vtu", deck.vtu), ("points", deck.points)] {
+        writeln!(out, "{key} = \"{}\"", Vtu::NAMES[which as usize])?;
+    }
     writeln!(out, "checkpoint = {}", deck.checkpoint)?;
     if !deck.expectations.is_empty() {
         writeln!(out, "\n[expect]")?;

@@ -331,7 +331,7 @@ pub struct SolverEntry {
     pub threads: usize,
 }
 
-/// Which increments are written as VTU.
+/// Of which increments something is written as VTU.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Vtu {
     /// All.
@@ -401,8 +401,10 @@ pub struct Deck {
     pub solver: SolverEntry,
     /// Directory of the results, if given.
     pub directory: Option<String>,
-    /// Which VTU files.
+    /// Increments of which bodies and contact surfaces are written as VTU.
     pub vtu: Vtu,
+    /// Increments of which the quadrature points are.
+    pub points: Vtu,
     /// Increments between checkpoints; 0: none.
     pub checkpoint: usize,
     /// Expectations.

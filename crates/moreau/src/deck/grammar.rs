@@ -94,7 +94,7 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
         missing(root, "[[step]]", "name, increments, fix, move and load");
     }
     let solver = solver::read_solver(root);
-    let (directory, vtu, checkpoint) = solver::read_output(root);
+    let (directory, [vtu, points], checkpoint) = solver::read_output(root);
     Deck {
         title: title.map_or_else(String::new, |t| t.value),
         units: units.unwrap_or(Units::MmNMpa),
@@ -112,6 +112,7 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
         solver,
         directory,
         vtu,
+        points,
         checkpoint,
         expectations: solver::read_expectations(root),
     }

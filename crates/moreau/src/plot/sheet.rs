@@ -16,7 +16,10 @@ const TITLE_LINE: f64 = 21.0;
 const LABEL: f64 = 13.0;
 const LABEL_LINE: f64 = 17.0;
 const TICK: f64 = 12.0;
-const TICKS: usize = 5;
+/// Steps of a colour bar, about.
+const STEPS: f64 = 5.0;
+/// Least distance of its labels, in parts of the bar: that they do not touch on the lowest.
+const APART: f64 = 0.11;
 /// Greatest height of the drawing.
 const TALL: f64 = 540.0;
 /// Least width and height of the drawing: room for captions and a colour bar.
@@ -43,7 +46,8 @@ pub(super) struct Bar<'a> {
     pub(super) values: &'a [f64],
     range: [f64; 2],
     label: &'a str,
-    ticks: Vec<String>,
+    /// Values with their labels: both ends, and round ones between.
+    ticks: Vec<(f64, String)>,
 }
 
 impl<'a> Bar<'a> {
@@ -66,16 +70,19 @@ impl<'a> Bar<'a> {
             let margin = if size > 0.0 { 0.1 * size } else { 1.0 };
             (low, high) = (low - margin, high + margin);
         }
-        let step = (high - low) / (TICKS - 1) as f64;
+        let step = nice_step(high - low, STEPS);
         if low >= high || !step.is_finite() {
             return Err(PlotError::NoValues {
                 label: field.label.clone(),
             });
         }
-        let number = Number::new(low.abs().max(high.abs()), step).finer();
-        let ticks = (0..TICKS)
-            .map(|k| number.text(low + k as f64 * step))
-            .collect();
+        let round = Number::new(low.abs().max(high.abs()), step);
+        let first = (low / step).ceil();
+        let inner = (0..2 * STEPS as usize).map(|k| (first + k as f64) * step);
+        let margin = APART * (high - low);
+        let inner = inner.filter(|v| (low + margin..=high - margin).contains(v));
+        let ends = [low, high].map(|v| (v, round.finer().text(v)));
+        let ticks = inner.map(|v| (v, round.text(v))).chain(ends).collect();
         Ok(Self {
             values: &field.values,
             range: [low, high],
@@ -152,7 +159,7 @@ impl Sheet {
         let tick_width = bar.map_or(0.0, |bar| {
             bar.ticks
                 .iter()
-                .map(|tick| width(tick, TICK))
+                .map(|(_, tick)| width(tick, TICK))
                 .fold(0.0, f64::max)
         });
         let beside = |lines: usize| match bar {
@@ -230,8 +237,8 @@ impl Sheet {
             pen.line_to([left + corner[0], top + corner[1]]);
         }
         pen.close();
-        for (k, tick) in bar.ticks.iter().enumerate() {
-            let y = top + height * (1.0 - k as f64 / (TICKS - 1) as f64);
+        for (value, tick) in &bar.ticks {
+            let y = top + height * (1.0 - bar.part(*value));
             pen.move_to([left + BAR, y]);
             pen.line_to([left + BAR + 5.0, y]);
             write_text(svg, [left + BAR + 9.0, y + 4.3], TICK, "start", "", tick);

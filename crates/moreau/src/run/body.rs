@@ -14,7 +14,7 @@ fn components(stress: &Sym2) -> [f64; 6] {
 }
 
 /// Stress, von Mises stress and equivalent plastic strain.
-fn fields(values: &[(Sym2, f64, f64)]) -> Vec<Array> {
+pub(super) fn fields(values: &[(Sym2, f64, f64)]) -> Vec<Array> {
     let scalar = |name: &str, of: &dyn Fn(&(Sym2, f64, f64)) -> f64| Array {
         name: name.to_owned(),
         components: 1,

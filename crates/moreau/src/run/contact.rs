@@ -1,8 +1,9 @@
 //! `contact.csv`: a row for each contact point and converged increment; no sums.
 
+use super::touch::{Touch, touches};
 use super::{number, status_name};
 use crate::deck::Units;
-use crate::driver::{Driver, StepReport};
+use crate::driver::{ContactRecord, Driver, StepReport};
 use crate::mesh::NodeKind;
 
 /// The header.
@@ -20,9 +21,8 @@ pub(super) fn rows<const D: usize>(
     report: &StepReport,
     stage: usize,
 ) -> Vec<String> {
-    let row = |c: &crate::driver::ContactRecord<D>| {
+    let row = |(c, touch): (&ContactRecord<D>, Touch<D>)| {
         let at = |k: usize, v: &[f64]| number(v.get(k).copied().unwrap_or(0.0));
-        let traction = c.traction();
         let kind = match c.kind {
             NodeKind::Corner => "corner",
             NodeKind::Midside => "midside",
@@ -36,11 +36,12 @@ pub(super) fn rows<const D: usize>(
         ];
         fields.extend((0..3).map(|k| at(k, &c.position)));
         fields.push(kind.to_owned());
-        for v in [c.u.as_slice(), c.t.as_slice(), traction.as_slice()] {
-            fields.extend((0..3).map(|k| at(k, v)));
+        for v in [&touch.u, &c.t, &touch.traction] {
+            fields.extend((0..3).map(|k| at(k, v.as_slice())));
         }
-        fields.push(status_name(c.status).to_owned());
+        fields.push(status_name(touch.status).to_owned());
         fields.join(",")
     };
-    driver.contacts().iter().map(row).collect()
+    let records = driver.contacts().iter();
+    records.zip(touches(driver)).map(row).collect()
 }

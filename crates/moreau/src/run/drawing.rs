@@ -6,6 +6,7 @@ use super::table::Table;
 use super::{RunError, View, pictures, report, vtu};
 use crate::deck::{Deck, Setup};
 use crate::driver::Driver;
+use crate::mesh::nearest;
 use std::path::{Path, PathBuf};
 
 /// What to draw of a run.
@@ -74,7 +75,7 @@ where
         }
         Ok(())
     };
-    write("history.svg".into(), pictures::forces(&history, deck))?;
+    write("history.svg".into(), pictures::over_time(&history, deck))?;
     if let Some(mesh) = driver.plane() {
         let contacts = pictures::contact_table(directory, &[number])?;
         let at = drawing.increment.map_or(String::new(), |n| format!("-{n}"));
@@ -99,8 +100,10 @@ where
             let name = field.unwrap_or(pictures::usual_field(deck));
             if pictures::field(&arrays, name).is_none() {
                 let all = pictures::fields(&arrays);
+                let near = nearest(name, all.iter().map(String::as_str));
+                let near = near.map_or(String::new(), |n| format!(" (did you mean {n}?)"));
                 return Err(RunError::Unknown {
-                    what: format!("the field \"{name}\""),
+                    what: format!("the field \"{name}\"{near}"),
                     expected: all.join(", "),
                 });
             }

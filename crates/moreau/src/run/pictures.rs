@@ -1,4 +1,4 @@
-//! The pictures of a run, from the files that it has left: forces over time, tractions along the
+//! The pictures of a run, from the files that it has left: forces or displacements over time, tractions along the
 //! contact, the deformed body with a field.
 
 use super::RunError;
@@ -10,14 +10,32 @@ use crate::plot::{Chart, MeshPicture, Style};
 use std::collections::HashSet;
 use std::path::Path;
 
-/// All forces that are not zero throughout, over time; nothing if there is nothing to draw.
-pub(super) fn forces(history: &Table, deck: &Deck) -> Option<String> {
+/// What happens over time: the forces; where there are none, as under loads alone that nothing but
+/// symmetry holds, the mean displacements. Nothing if there is nothing to draw.
+pub(super) fn over_time(history: &Table, deck: &Deck) -> Option<String> {
+    let force = format!("force [{}]", deck.units.force());
+    let displacement = format!("mean displacement [{}]", deck.units.length());
+    // Sums of forces are known no better than each is balanced.
+    let noise = largest(&history.numbers("out_of_balance"));
+    columns(history, deck, ("force.", force, noise))
+        .or_else(|| columns(history, deck, ("u.", displacement, 0.0)))
+}
+
+fn largest(column: &[f64]) -> f64 {
+    column.iter().fold(0.0, |m, v| m.max(v.abs()))
+}
+
+/// All columns of a kind, by the beginning of their names, that are above a noise and not zero beside
+/// the others.
+fn columns(
+    history: &Table,
+    deck: &Deck,
+    (kind, label, noise): (&str, String, f64),
+) -> Option<String> {
     let time = history.numbers("time");
-    let label = format!("force [{}]", deck.units.force());
     let mut chart = Chart::new(&deck.title, "steps [–]", label);
-    let names = history.names().iter().filter(|n| n.starts_with("force."));
+    let names = history.names().iter().filter(|n| n.starts_with(kind));
     let columns: Vec<_> = names.map(|n| (n, history.numbers(n))).collect();
-    let largest = |c: &[f64]| c.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     let scale = columns.iter().map(|(_, c)| largest(c)).fold(0.0, f64::max);
     // Markers tell increments apart as long as they are not too many.
     let style = match time.len() <= 200 {
@@ -25,12 +43,11 @@ pub(super) fn forces(history: &Table, deck: &Deck) -> Option<String> {
         false => Style::Line,
     };
     for (name, column) in columns {
-        if largest(&column) > 1e-9 * scale {
+        if largest(&column) > noise.max(1e-9 * scale) {
             let start = std::iter::once([0.0, 0.0]);
-            let points = time.iter().zip(&column).map(|(&t, &f)| [t, f]);
+            let points = time.iter().zip(&column).map(|(&t, &v)| [t, v]);
             let points: Vec<_> = start.chain(points).collect();
-            let short = name.trim_start_matches("force.");
-            chart = chart.with(short, style, points);
+            chart = chart.with(name.trim_start_matches(kind), style, points);
         }
     }
     chart.to_svg().ok()

@@ -2,7 +2,7 @@
 
 use super::files::read_text;
 use super::grid::Array;
-use super::pictures::{forces, tractions};
+use super::pictures::{over_time, tractions};
 use super::table::Table;
 use super::viewer::viewer;
 use super::{RunError, pictures, shown};
@@ -38,7 +38,7 @@ pub(super) fn report<const D: usize>(
         warnings => list(&run["warnings"]),
         certificate => certificate(&history, deck),
         deck => resolved,
-        history => forces(&history, deck),
+        history => over_time(&history, deck),
         contact => if D == 2 { tractions(&contacts, increment, deck) } else { None },
         // No name in it may end the script.
         data => viewer(driver, deck, directory, (increment, last))?.to_string().replace("</", "<\\/"),
@@ -68,7 +68,7 @@ fn summary(run: &serde_json::Value, deck: &Deck) -> Vec<[String; 2]> {
     };
     let small = |key: &str| {
         let value = run["certificate"][key].as_f64();
-        value.map_or("–".to_owned(), |v| format!("{v:.2e}"))
+        value.map_or("–".to_owned(), |v| shown(v, 3))
     };
     let units = deck.units;
     let collapse = &run["collapse"];

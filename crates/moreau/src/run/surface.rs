@@ -1,8 +1,9 @@
 //! The contact surfaces with gaps, slips, tractions and statuses as a grid.
 
 use super::grid::{Array, Grid, facet_type, three};
+use super::touch::{Touch, touches};
 use crate::driver::{ContactRecord, Driver};
-use crate::laws::Status;
+use crate::laws::{Local, Status};
 use crate::mesh::Facet;
 use std::collections::BTreeMap;
 
@@ -26,33 +27,40 @@ pub(super) fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
             contact.push(k as f64);
         }
     }
-    let array = |name: &str, value: &dyn Fn(&ContactRecord<D>) -> Vec<f64>| {
-        let values: Vec<Vec<f64>> = records.iter().map(value).collect();
-        Array {
-            name: name.to_owned(),
-            components: values.first().map_or(1, Vec::len),
-            values: values.concat(),
-        }
+    let array = |name: &str, values: Vec<Vec<f64>>| Array {
+        name: name.to_owned(),
+        components: values.first().map_or(1, Vec::len),
+        values: values.concat(),
     };
+    let touches = touches(driver);
+    let nodal = |value: &dyn Fn(&ContactRecord<D>) -> [f64; 3]| {
+        records.iter().map(|c| value(c).to_vec()).collect()
+    };
+    let shown = |value: &dyn Fn(&Touch<D>) -> Vec<f64>| touches.iter().map(value).collect();
+    let tangents = |v: &Local<D>| v.iter().skip(1).copied().collect();
     Some(Grid {
         points: records.iter().map(|c| three(&c.position)).collect(),
         cells,
         point_data: vec![
-            array("displacement", &|c| {
-                three(driver.displacement(c.node).as_slice()).to_vec()
-            }),
-            array("gap", &|c| vec![c.u[0]]),
-            array("slip", &|c| c.u.iter().skip(1).copied().collect()),
-            array("pressure", &|c| vec![c.traction()[0]]),
-            array("shear", &|c| c.traction().iter().skip(1).copied().collect()),
-            array("force", &|c| three(c.force.as_slice()).to_vec()),
-            array("status", &|c| {
-                vec![match c.status {
-                    Status::Open => 0.0,
-                    Status::Stick => 1.0,
-                    Status::Slip => 2.0,
-                }]
-            }),
+            array(
+                "displacement",
+                nodal(&|c| three(driver.displacement(c.node).as_slice())),
+            ),
+            array("gap", shown(&|t| vec![t.u[0]])),
+            array("slip", shown(&|t| tangents(&t.u))),
+            array("pressure", shown(&|t| vec![t.traction[0]])),
+            array("shear", shown(&|t| tangents(&t.traction))),
+            array("force", nodal(&|c| three(c.force.as_slice()))),
+            array(
+                "status",
+                shown(&|t| {
+                    vec![match t.status {
+                        Status::Open => 0.0,
+                        Status::Stick => 1.0,
+                        Status::Slip => 2.0,
+                    }]
+                }),
+            ),
         ],
         cell_data: vec![Array {
             name: "contact".into(),

@@ -168,8 +168,9 @@ where
                 let residual = &self.trace.residual;
                 out.collection.failed(driver, &displacement, residual)?;
             }
-            if self.deck.vtu == Vtu::Last && driver.increments() > 0 {
-                out.collection.add(driver, self.history.time())?;
+            if driver.increments() > 0 {
+                let parts = (self.deck.vtu == Vtu::Last, self.deck.points == Vtu::Last);
+                out.collection.add(driver, self.history.time(), parts)?;
             }
             out.history.flush()?;
             out.contact.flush()?;
@@ -282,10 +283,8 @@ where
             stream.flush()?;
         }
         self.tally.add(driver, report);
-        if self.deck.vtu == Vtu::All {
-            out.collection.add(driver, self.history.time())?;
-        }
-        Ok(())
+        let parts = (self.deck.vtu == Vtu::All, self.deck.points == Vtu::All);
+        out.collection.add(driver, self.history.time(), parts)
     }
 }
 

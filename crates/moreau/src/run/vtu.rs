@@ -1,10 +1,11 @@
-//! The VTK files of a run: bodies and contact surfaces of its increments, and the list of all; not
-//! their format.
+//! The VTK files of a run: bodies, contact surfaces and quadrature points of its increments, and the
+//! list of all; not their format.
 
 use super::RunError;
 use super::body::body;
 use super::files::{Stream, read_text, write_file};
 use super::grid::{Array, attribute, point_data, three};
+use super::points::points;
 use super::surface::surface;
 use super::view::View;
 use crate::driver::Driver;
@@ -43,7 +44,7 @@ impl Collection {
             .flatten()
         {
             let name = entry.file_name().to_string_lossy().into_owned();
-            let ours = ["body_", "contact_", "failed"]
+            let ours = ["body_", "contact_", "points_", "failed"]
                 .iter()
                 .any(|p| name.starts_with(p));
             if ours && name.ends_with(".vtu") && !kept.contains(&format!("\"{name}\"")) {
@@ -63,20 +64,29 @@ impl Collection {
         self.list.as_mut().map_or(Ok(()), Stream::sync)
     }
 
-    /// Writes the state of a driver, and lists it.
+    /// Writes of the state of a driver the body with its contact surfaces, the quadrature points, or
+    /// both, and lists them.
     pub(super) fn add<const D: usize>(
         &mut self,
         driver: &Driver<D>,
         time: f64,
+        (bodies, at_points): (bool, bool),
     ) -> Result<(), RunError>
     where
         Driver<D>: View,
     {
-        let number = driver.increments();
-        let mut files = vec![(0, format!("body_{number:05}.vtu"), body(driver).0)];
-        if let Some(contact) = surface(driver) {
-            files.push((1, format!("contact_{number:05}.vtu"), contact));
+        let mut files = Vec::new();
+        if bodies {
+            files.push((0, "body", body(driver).0));
+            files.extend(surface(driver).map(|grid| (1, "contact", grid)));
         }
+        if at_points {
+            files.push((2, "points", points(driver)));
+        }
+        if files.is_empty() {
+            return Ok(());
+        }
+        let number = driver.increments();
         let mut list = match self.list.take() {
             Some(list) => list,
             None => {
@@ -85,10 +95,11 @@ impl Collection {
                 list
             }
         };
-        for (part, name, file) in files {
-            write_file(&self.directory.join(&name), &file.bytes())?;
+        for (part, name, grid) in files {
+            let file = format!("{name}_{number:05}.vtu");
+            write_file(&self.directory.join(&file), &grid.bytes())?;
             list.line(&format!(
-                "<DataSet timestep=\"{time}\" part=\"{part}\" file=\"{name}\"/>"
+                "<DataSet timestep=\"{time}\" part=\"{part}\" name=\"{name}\" file=\"{file}\"/>"
             ))?;
         }
         list.tail(LIST_TAIL)?;

@@ -1,6 +1,6 @@
 //! The files of a run, of a conversion and of the schema: what is in them.
 
-use super::{directory, examples, moreau, punched, run, text};
+use super::{BALL, directory, examples, moreau, punched, run, text};
 use std::fs;
 
 #[test]
@@ -69,7 +69,7 @@ fn the_history_has_its_columns_and_the_force_of_the_library() {
             .is_some_and(|g| g < 1e-10)
     );
     let pvd = fs::read_to_string(results.join("result.pvd")).expect("a list");
-    assert_eq!(pvd.matches("<DataSet").count(), 40);
+    assert_eq!(pvd.matches("<DataSet").count(), 41);
 }
 
 #[test]
@@ -173,4 +173,27 @@ fn numbers_for_people_have_powers_only_where_they_must() {
     ] {
         assert_eq!(moreau::run::shown(value, digits), text);
     }
+}
+
+/// Quadrature points of the last increment unless the deck says otherwise, as a part of the list.
+#[test]
+fn quadrature_points_are_written_as_asked_for() {
+    let of = |name: &str, output: &str| {
+        let deck = BALL.to_owned() + "[output]\n" + output;
+        let (status, _, err, results) = run(&format!("points-{name}"), &deck, &["--quiet"]);
+        assert_eq!(status, 0, "{err}");
+        let list = fs::read_to_string(results.join("result.pvd")).unwrap_or_default();
+        let parts = |name: &str| list.matches(&format!("name=\"{name}\"")).count();
+        for k in 1..=2 {
+            let file = format!("points_{k:05}.vtu");
+            assert_eq!(list.contains(&file), results.join(&file).exists(), "{file}");
+        }
+        assert!(parts("points") != 1 || list.contains("points_00002.vtu"));
+        [parts("body"), parts("contact"), parts("points")]
+    };
+    assert_eq!(of("default", ""), [2, 2, 1]);
+    assert_eq!(of("all", "points = \"all\""), [2, 2, 2]);
+    assert_eq!(of("none", "points = \"none\""), [2, 2, 0]);
+    assert_eq!(of("alone", "vtu = \"none\"\npoints = \"last\""), [0, 0, 1]);
+    assert_eq!(of("nothing", "vtu = \"none\""), [0, 0, 0]);
 }

@@ -36,7 +36,7 @@ fn a_run_is_drawn_again_from_its_files() {
         assert!(told.contains("feature `png`") && told.contains("--features png"));
     }
     for (key, value, named) in [
-        ("--field", "pres", "von_mises"),
+        ("--field", "vonmises", "did you mean von_mises?"),
         ("--increment", "21", "1 to 20"),
     ] {
         let output = moreau(&["plot", at, key, value]);
@@ -125,5 +125,80 @@ fn a_contact_surface_in_space_is_in_the_report() {
         let [low, high] = shown("status");
         assert!(low == 0.0 && high >= 1.0, "{low} {high}");
         assert!(shown("pressure")[1] > 0.0 && shown("shear")[1] > 0.0);
+    }
+}
+
+/// Under loads alone what holds a body may be nothing but the rounding of forces in balance: what is
+/// drawn is how far it goes.
+#[test]
+fn rounding_is_not_drawn_as_a_force() {
+    let deck = r#"
+units = "mm-N-MPa"
+analysis = "axisymmetric"
+mesh.block = [{ name = "wall", element = "quad8", x = [1, 2], y = [0, 1], cells = [4, 1] }]
+material = [{ on = "wall", young = 1000.0, poisson = 0.3 }]
+step = [{ name = "press", increments = 2, fix = [{ on = "wall", u = ["y"] }], load = LOAD }]
+"#;
+    let drawn = |name: &str, load: &str| {
+        let (status, _, err, results) = run(name, &deck.replace("LOAD", load), &["--quiet"]);
+        assert_eq!(status, 0, "{err}");
+        fs::read_to_string(results.join("history.svg")).expect("a picture")
+    };
+    let pressed = drawn("rounding", "[{ on = \"wall.left\", pressure = 5 }]");
+    assert!(pressed.contains("mean displacement [mm]") && !pressed.contains("force [N]"));
+    let pulled = drawn("force", "[{ on = \"wall\", body-force = [0, 1] }]");
+    assert!(pulled.contains("force [N]") && pulled.contains("wall.y"));
+}
+
+/// The corner of a pad that is held has no multiplier of its own: what is shown there is what its
+/// neighbours carry, not a gap and not zero; the nodal forces are as they are.
+#[test]
+fn a_held_corner_is_no_hole_in_the_pressure() {
+    let deck = r#"
+units = "mm-N-MPa"
+analysis = "plane-strain"
+mesh.block = [
+  { name = "pad", element = "quad4", x = [0, 4], y = [2, 3], cells = [4, 1] },
+  { name = "base", element = "quad4", x = [0, 4], y = [0, 2], cells = [4, 2] },
+]
+material = [
+  { on = "pad", young = 1000.0, poisson = 0.0 },
+  { on = "base", young = 1000.0, poisson = 0.0 },
+]
+contact = [{ surface = "pad.bottom", against = "base.top", friction = 0.3 }]
+[[step]]
+name = "press"
+increments = 1
+fix = [{ on = "base.bottom", u = ["x", "y"] }]
+move = [
+  { on = "pad.top", u = { x = 0, y = -0.03 } },
+  { on = "corner", u = { x = 0, y = -0.02 } },
+]
+[[mesh.group]]
+name = "corner"
+on = "pad.bottom"
+nearest = [0, 2]
+"#;
+    // The corner goes where it would go by itself: pad and base are squeezed alike, 1000 · 0.03 / 3.
+    let (status, _, err, results) = run("held", deck, &["--quiet"]);
+    assert_eq!(status, 0, "{err}");
+    let table = fs::read_to_string(results.join("contact.csv")).expect("contacts");
+    let rows: Vec<Vec<&str>> = table.lines().map(|l| l.split(',').collect()).collect();
+    let at = |name: &str| {
+        rows[0]
+            .iter()
+            .position(|n| n.split(' ').next() == Some(name))
+    };
+    let [gap, pressure, status] = ["gap", "p_n", "status"].map(|n| at(n).expect("a column"));
+    assert_eq!(rows.len(), 1 + 5);
+    let force = at("t_n").expect("a column");
+    assert!(rows[1..].iter().any(|r| r[force] == "0"), "one is held");
+    for row in &rows[1..] {
+        let number = |k: usize| row[k].parse::<f64>().expect("a number");
+        assert!((number(pressure) - 10.0).abs() < 1e-9, "{row:?}");
+        assert!(
+            number(gap).abs() < 1e-12 && row[status] != "open",
+            "{row:?}"
+        );
     }
 }

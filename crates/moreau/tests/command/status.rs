@@ -11,7 +11,9 @@ fn exit_status_tells_what_happened() {
     let (status, _, err, _) = run("wrong", &wrong, &[]);
     assert_eq!(status, 1);
     assert!(
-        err.contains("deck.toml:22:11") && err.contains("Poisson"),
+        err.contains("deck.toml:22:11")
+            && err.contains("Poisson")
+            && err.contains("1 error, 0 warnings"),
         "{err}"
     );
 
@@ -73,7 +75,21 @@ fn exit_status_tells_what_happened() {
             .is_some_and(|s| !s.is_empty())
     );
 
-    assert_eq!(moreau(&["run", "no-such-deck.toml"]).status.code(), Some(1));
+    let told = |arguments: &[&str], words: &[&str]| {
+        let output = moreau(arguments);
+        let err = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{err}");
+        assert!(words.iter().all(|w| err.contains(w)), "{err}");
+    };
+    told(&["run", "no-such-deck.toml"], &["no-such-deck.toml"]);
+    let [deck, file] = ["../deck.toml", "run.json"].map(|f| results.join(f).display().to_string());
+    told(&["run", &deck, "--out", &file], &[&file, "this is a file"]);
+    for command in ["plot", "resume"] {
+        told(
+            &[command, "no-such"],
+            &["no-such is no directory of results"],
+        );
+    }
     assert_eq!(moreau(&["fly"]).status.code(), Some(1));
     assert_eq!(moreau(&["--help"]).status.code(), Some(0));
 }

@@ -42,6 +42,26 @@ fn unknown_keys_and_values_name_the_nearest() {
     );
 }
 
+/// What was given and what holds, not that it is a table; where a surface is, not that nothing is found.
+#[test]
+fn numbers_that_do_not_fit_each_other_are_told() {
+    says(
+        "increments = 20",
+        "increments = { start = 0.5, min = 1.0, max = 0.1 }",
+        "increments =",
+        &[
+            "start with 0.5 of the step, are at least 1 and at most 0.1",
+            "0 < min ≤ start ≤ max ≤ 1",
+        ],
+    );
+    says(
+        "x = [0, 25]",
+        "x = [60, 75]",
+        "[[mesh.group]]",
+        &["no node of \"block.top\"", "x = [0, 50], y = [20, 20]"],
+    );
+}
+
 #[test]
 fn names_that_do_not_exist_name_the_nearest() {
     says(

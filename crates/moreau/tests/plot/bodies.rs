@@ -92,6 +92,20 @@ fn large_meshes_make_small_pictures() {
     texts(&svg);
 }
 
+/// Both ends of a colour bar, and round values between that do not touch them.
+#[test]
+fn colour_bars_have_round_ticks_and_both_ends() {
+    let mesh = block(CellKind::Quad8);
+    let field: Vec<f64> = mesh.nodes().iter().map(|x| 0.3 + 4.54 * x[0]).collect();
+    let picture = MeshPicture::new(&mesh, "").field("s [MPa]", field);
+    let texts = texts(&picture.to_svg().expect("a picture"));
+    let ticks: Vec<&str> = texts.iter().map(String::as_str).collect();
+    for tick in ["0.3", "5", "10", "15", "20", "23.0"] {
+        assert!(ticks.contains(&tick), "{tick} in {ticks:?}");
+    }
+    assert!(!ticks.contains(&"0") && !ticks.contains(&"25"));
+}
+
 #[test]
 fn flattened_bodies_and_constant_fields_are_drawn() {
     let mesh = block(CellKind::Quad8);

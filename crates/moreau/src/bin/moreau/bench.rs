@@ -113,6 +113,7 @@ fn algorithms(deck: &Deck) -> Vec<(String, Deck)> {
         deck.solver.method = method;
         deck.solver.outside = outside;
         deck.vtu = Vtu::None;
+        deck.points = Vtu::None;
         deck.checkpoint = 0;
         deck.directory = None;
         (name, deck)

@@ -185,6 +185,8 @@ fn report(findings: &moreau::deck::Findings, path: &Path, text: &str) {
     if errors + warnings > 0 {
         let shown = findings.render(&path.display().to_string(), text, colour);
         tell!("{}\n", shown.trim_end_matches('\n'));
-        tell!("{}: {errors} errors, {warnings} warnings", path.display());
+        let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+        let (errors, warnings) = (counted(errors, "error"), counted(warnings, "warning"));
+        tell!("{}: {errors}, {warnings}", path.display());
     }
 }

@@ -30,7 +30,7 @@ pub(crate) fn plot(directory: &Path, drawing: &Drawing, png: bool) -> u8 {
         tell!("{NO_RASTER}");
         return INPUT_ERROR;
     }
-    let Some((deck, problem)) = run::problem(&directory.join("deck.resolved.toml")) else {
+    let Some((deck, problem)) = run::results(directory) else {
         return INPUT_ERROR;
     };
     let drawn = match &problem {

@@ -25,7 +25,7 @@ pub(crate) fn run(path: &Path, out: Option<PathBuf>, manner: &Manner) -> u8 {
 
 /// Continues a run; the exit status.
 pub(crate) fn resume(directory: &Path, manner: &Manner) -> u8 {
-    let Some((deck, problem)) = problem(&directory.join("deck.resolved.toml")) else {
+    let Some((deck, problem)) = results(directory) else {
         return INPUT_ERROR;
     };
     let deck = &deck;
@@ -33,6 +33,19 @@ pub(crate) fn resume(directory: &Path, manner: &Manner) -> u8 {
         Problem::Plane(setup) => moreau::run::resume(*setup, deck, directory, watch),
         Problem::Solid(setup) => moreau::run::resume(*setup, deck, directory, watch),
     })
+}
+
+/// The problem of a directory of results; what is wrong with it is printed.
+pub(crate) fn results(directory: &Path) -> Option<(Deck, Problem)> {
+    let path = directory.join("deck.resolved.toml");
+    if !path.exists() {
+        let at = directory.display();
+        tell!(
+            "{at} is no directory of results: it has no deck.resolved.toml, which `moreau run` writes"
+        );
+        return None;
+    }
+    problem(&path)
 }
 
 /// The problem of a deck; findings are printed.

@@ -5,6 +5,7 @@ use crate::deck::entries::{BlockEntry, Deck, GroupEntry, Part};
 use crate::deck::finding::{Class, Findings, did_you_mean};
 use crate::driver::{Analysis, Support};
 use crate::mesh::{CellKind, Facet, Mesh};
+use crate::run::shown;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
@@ -37,6 +38,20 @@ impl<const D: usize> Groups<D> {
             }
         }
         groups
+    }
+
+    /// The box around some nodes, in words.
+    fn extent(&self, nodes: &[usize]) -> String {
+        let axis = |(i, name): (usize, &&str)| {
+            let values = nodes.iter().map(|&n| self.mesh.nodes()[n][i]);
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+                (l.min(v), h.max(v))
+            });
+            format!("{name} = [{}, {}]", shown(low, 6), shown(high, 6))
+        };
+        let axes = ["x", "y", "z"];
+        let all: Vec<String> = axes[..D].iter().enumerate().map(axis).collect();
+        all.join(", ")
     }
 
     fn add(&mut self, entry: &GroupEntry, findings: &mut Findings) -> Option<()> {
@@ -87,12 +102,16 @@ impl<const D: usize> Groups<D> {
                         None => true,
                     })
                 };
+                let extent = self.extent(&candidates);
                 let mut nodes = candidates;
                 nodes.retain(|&node| inside(&self.mesh.nodes()[node]));
                 if nodes.is_empty() {
                     findings.error(
                         &entry.part.span,
-                        format!("the group \"{name}\" is empty: no node of \"{on}\" lies within these limits"),
+                        format!(
+                            "the group \"{name}\" is empty: no node of \"{on}\" lies within these \
+                             limits, it extends over {extent}"
+                        ),
                         "of this group",
                     ).about(Class::Groups);
                     return None;

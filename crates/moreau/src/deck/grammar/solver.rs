@@ -75,26 +75,31 @@ fn method(table: &Table<'_>) -> Option<Method> {
     method
 }
 
-pub(super) fn read_output(root: &Table<'_>) -> (Option<String>, Vtu, usize) {
+/// Directory, the increments of which bodies and points are written, increments between checkpoints.
+pub(super) fn read_output(root: &Table<'_>) -> (Option<String>, [Vtu; 2], usize) {
     let Some(table) = section(root, "output", "[output]") else {
-        return (None, Vtu::All, CHECKPOINT);
+        return (None, [Vtu::All, Vtu::Last], CHECKPOINT);
     };
     let log = table.log();
     let directory = table
         .get("directory")
         .and_then(|v| reader::text(v, "directory", log));
-    let vtu = table.choice_if("vtu", &Vtu::NAMES);
-    let vtu = match vtu.map(|v| v.value) {
+    let which = |key, default| match table.choice_if(key, &Vtu::NAMES).map(|v| v.value) {
+        Some("all") => Vtu::All,
         Some("last") => Vtu::Last,
-        Some("none") => Vtu::None,
-        _ => Vtu::All,
+        Some(_) => Vtu::None,
+        None => default,
     };
+    let vtu = which("vtu", Vtu::All);
+    // The points are several times as many numbers: of all increments only where they are asked for.
+    let few = if vtu == Vtu::None { vtu } else { Vtu::Last };
+    let points = which("points", few);
     let every = table.get("checkpoint");
     let every = every.and_then(|v| reader::integer(v, "checkpoint", 0..=1_000_000, log));
     table.finish();
     (
         directory.map(|d| d.value),
-        vtu,
+        [vtu, points],
         every.map_or(CHECKPOINT, |e| e.value),
     )
 }

@@ -60,8 +60,14 @@ fn increments_of(value: Value<'_>, table: &Table<'_>) -> Option<Increments> {
     inner.finish();
     let (start, min, max) = (start?.value, min?.value, max?.value);
     if !(1.0 / MOST as f64 <= start && 0.0 < min && min <= start && start <= max && max <= 1.0) {
-        let expected = "0 < min ≤ start ≤ max ≤ 1, parts of the step, start at least 1e-5";
-        return reader::wrong(value, "increments", expected, log);
+        log.borrow_mut().error(
+            &value.span(),
+            format!(
+                "increments start with {start} of the step, are at least {min} and at most {max}"
+            ),
+            "expected 0 < min ≤ start ≤ max ≤ 1, and start at least 1e-5",
+        );
+        return None;
     }
     Some(Increments {
         start,

@@ -69,11 +69,11 @@ fn text_of<const D: usize>(
     out
 }
 
-/// Moves tools and loads along x and y.
+/// Moves tools, directions of friction and loads.
 fn tools_moved(deck: &mut Table, change: impl Fn(&str, f64) -> f64) {
     let only = |keys: &str, v: f64| {
         let first = keys.split('.').next().expect("a key");
-        match ["tool", "step"].contains(&first) {
+        match ["tool", "contact", "step"].contains(&first) {
             true => change(keys, v),
             false => v,
         }
@@ -119,7 +119,9 @@ fn a_mirror_and_a_shift_change_nothing() {
         let (mut mirror, at) = moved(&format!("{name}-mirror"), &deck, |n, _| n, mirrored);
         let horizontal = |keys: &str, v: f64| {
             let last = keys.rsplit('.').next().expect("a key");
-            let vectors = ["point", "normal", "center", "traction", "force", "move"];
+            let vectors = [
+                "point", "normal", "center", "axis", "traction", "force", "move",
+            ];
             let in_vector = keys.split('.').any(|k| vectors.contains(&k));
             let first = last == "0" && in_vector;
             let in_move = keys.contains("move.") && last == "x";
@@ -150,7 +152,7 @@ fn a_mirror_and_a_shift_change_nothing() {
     }
 }
 
-/// Exchanges the axes in whatever stands under the tools and steps of a deck: what is along axis i goes
+/// Exchanges the axes in whatever stands under the tools, contacts and steps of a deck: what is along axis i goes
 /// along `to[i]`.
 fn axes_exchanged(value: &mut Value, to: [usize; 3]) {
     let other = |name: &str| axis(name).map(|i| AXES[to[i]]);
@@ -199,7 +201,7 @@ fn axes_in_space_are_alike() {
                 out
             };
             let (mut other, at) = moved(&format!("{name}-{what}"), &deck, |n, _| n, place);
-            for key in ["tool", "step"] {
+            for key in ["tool", "contact", "step"] {
                 if let Some(value) = other.get_mut(key) {
                     axes_exchanged(value, to);
                 }
