@@ -1,6 +1,7 @@
 //! Sparse Cholesky factorisation with kept symbolic work and buffers; the only file that names
 //! the sparse library.
 
+use crate::memory;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
@@ -71,6 +72,15 @@ pub(crate) struct NotPositiveDefinite {
     pub(crate) row: usize,
 }
 
+/// A factor that there is no room for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct NoRoom {
+    /// Entries of the factor.
+    pub(crate) entries: f64,
+    /// Entries that there is room for.
+    pub(crate) room: f64,
+}
+
 /// L Lᵀ = A, in the order in which A is given.
 pub(crate) struct Cholesky {
     /// The pattern, checked once.
@@ -99,27 +109,39 @@ impl fmt::Debug for Cholesky {
 }
 
 impl Cholesky {
-    /// Symbolic factorisation, once for a pattern. `None` if memory or the 32-bit index of the
-    /// factor does not suffice.
-    pub(crate) fn analyse(pattern: Pattern) -> Option<Self> {
-        Self::analyse_for(pattern, |operations| {
+    /// Symbolic factorisation, once for a pattern.
+    ///
+    /// # Errors
+    /// [`NoRoom`] if the factor needs more than the memory that is free, or a 32-bit index.
+    pub(crate) fn analyse(pattern: Pattern) -> Result<Self, NoRoom> {
+        let threads = |operations| {
             if operations > PARALLEL {
                 Par::rayon(0)
             } else {
                 Par::Seq
             }
-        })
+        };
+        Self::analyse_for(pattern, threads, memory::available())
     }
 
-    /// The threads may depend on the number of operations.
-    fn analyse_for(pattern: Pattern, threads: impl Fn(f64) -> Par) -> Option<Self> {
+    /// The threads may depend on the number of operations; so many bytes are free.
+    fn analyse_for(
+        pattern: Pattern,
+        threads: impl Fn(f64) -> Par,
+        free: Option<u64>,
+    ) -> Result<Self, NoRoom> {
         let n = pattern.size();
         let upper = pattern.transposed();
         let request = StackReq::or(
             simplicial::prefactorize_symbolic_cholesky_scratch::<u32>(n, upper.row.len()),
             supernodal::factorize_supernodal_symbolic_cholesky_scratch::<u32>(n),
         );
-        let mut memory = MemBuffer::try_new(request).ok()?;
+        let by_free = free.map_or(f64::INFINITY, |bytes| {
+            bytes as f64 / size_of::<f64>() as f64
+        });
+        let room = by_free.min(f64::from(u32::MAX));
+        let no_room = |entries: f64| NoRoom { entries, room };
+        let mut memory = MemBuffer::try_new(request).map_err(|_| no_room(n as f64))?;
         let (mut tree, mut counts) = (vec![0i32; n], vec![0u32; n]);
         let tree = simplicial::prefactorize_symbolic_cholesky(
             &mut tree,
@@ -127,6 +149,10 @@ impl Cholesky {
             upper.symbolic(),
             MemStack::new(&mut memory),
         );
+        let entries: f64 = counts.iter().map(|&count| f64::from(count)).sum();
+        if entries > room {
+            return Err(no_room(entries));
+        }
         let symbolic = supernodal::factorize_supernodal_symbolic_cholesky(
             upper.symbolic(),
             tree,
@@ -134,7 +160,7 @@ impl Cholesky {
             MemStack::new(&mut memory),
             Default::default(),
         )
-        .ok()?;
+        .map_err(|_| no_room(entries))?;
         let rows = symbolic.col_ptr_for_row_idx().windows(2);
         let below = rows.map(|r| (r[1] - r[0]) as usize);
         let starts = symbolic
@@ -157,9 +183,16 @@ impl Cholesky {
             Default::default(),
         );
         let Pattern { column_start, row } = pattern;
-        Some(Self {
-            factor: vec![0.0; symbolic.len_val()],
-            memory: MemBuffer::try_new(request).ok()?,
+        let entries = symbolic.len_val() as f64;
+        let mut factor = Vec::new();
+        let reserved = factor.try_reserve_exact(symbolic.len_val());
+        if entries > room || reserved.is_err() {
+            return Err(no_room(entries));
+        }
+        factor.resize(symbolic.len_val(), 0.0);
+        Ok(Self {
+            factor,
+            memory: MemBuffer::try_new(request).map_err(|_| no_room(entries))?,
             below: vec![0.0; below],
             operations,
             par,
@@ -471,7 +504,8 @@ mod tests {
     fn the_factor_is_the_same_to_the_bit_on_any_number_of_threads() {
         let (pattern, values) = laplacian(22);
         let factor = |par: Par, threads: usize| {
-            let mut cholesky = Cholesky::analyse_for(pattern.clone(), |_| par).expect("small");
+            let mut cholesky =
+                Cholesky::analyse_for(pattern.clone(), |_| par, None).expect("small");
             assert!(cholesky.operations() > 1e8);
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
             let pool = pool.build().expect("threads");
@@ -483,6 +517,20 @@ mod tests {
         for threads in [1, 2, 3] {
             assert!(one == factor(Par::rayon(0), threads), "{threads} threads");
         }
+    }
+
+    #[test]
+    fn a_factor_larger_than_the_memory_that_is_free_is_refused_before_it_is_made() {
+        let (pattern, _) = laplacian(6);
+        let analysed = |bytes| Cholesky::analyse_for(pattern.clone(), |_| Par::Seq, bytes);
+        let entries = analysed(None).expect("small").entries();
+        // The columns alone, without the zeros that make those of a supernode alike.
+        for bytes in [0, 4 * entries as u64, 8 * entries as u64 - 8] {
+            let no = analysed(Some(bytes)).expect_err("too large");
+            assert!(no.entries > no.room && no.entries <= entries as f64);
+            assert_eq!(no.room, bytes as f64 / 8.0);
+        }
+        assert!(analysed(Some(8 * entries as u64)).is_ok());
     }
 
     #[test]

@@ -396,6 +396,9 @@ impl<const D: usize> Driver<D> {
         for contact in self.contacts.iter().filter(|c| c.pairing.is_some()) {
             interface.extend(self.mesh.node_group(&contact.opposite)?);
         }
+        let before = self.timings();
+        // Two factors at once may not fit.
+        self.system = None;
         let mut system = System::new(
             &self.mesh,
             &self.blocks,
@@ -404,7 +407,7 @@ impl<const D: usize> Driver<D> {
             pivot,
             self.tools.len(),
         )?;
-        system.timings += self.timings();
+        system.timings += before;
         system.learn(&mut self.blocks, self.settings.nesting == Nesting::Inside);
         Ok(system)
     }

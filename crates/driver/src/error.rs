@@ -185,10 +185,17 @@ pub enum ModelError {
         expected: usize,
     },
     /// The factor does not fit into memory or a 32-bit index.
-    #[error("the factorisation of {unknowns} unknowns does not fit into memory")]
+    #[error(
+        "the factor of {unknowns} unknowns takes {needed:.3} GB, and there is room for {room:.3} GB; \
+         larger cells away from the contact, or a plane of symmetry, take less"
+    )]
     TooLarge {
         /// Number of unknowns.
         unknowns: usize,
+        /// Size of the factor \[GB\].
+        needed: f64,
+        /// What there is room for \[GB\]: the memory that is free, or what the index counts.
+        room: f64,
     },
 }
 

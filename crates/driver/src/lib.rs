@@ -48,6 +48,7 @@ mod load;
 mod loading;
 mod loose;
 mod mechanism;
+mod memory;
 mod model;
 mod nested;
 mod norm;

@@ -131,7 +131,12 @@ impl System {
         // One more, for what no unknown sees.
         let values = vec![0.0; pattern.row.len() + 1];
         let unknowns = dofs.len();
-        let cholesky = Cholesky::analyse(pattern).ok_or(ModelError::TooLarge { unknowns })?;
+        let gigabytes = |entries: f64| entries * size_of::<f64>() as f64 / 1e9;
+        let cholesky = Cholesky::analyse(pattern).map_err(|no| ModelError::TooLarge {
+            unknowns,
+            needed: gigabytes(no.entries),
+            room: gigabytes(no.room),
+        })?;
         Ok(Self {
             position,
             dofs,
