@@ -59,57 +59,52 @@ fn punched_block_balances_energy_to_first_order() -> Fallible {
     Ok(())
 }
 
-#[test]
-fn elastic_frictionless_block_balances_energy_exactly() -> Fallible {
-    let punched = Punched {
-        friction: 0.0,
-        yield_stress: ELASTIC,
-        ..Punched::default()
-    };
+/// An elastic block balances its energy to rounding, in any number of increments.
+fn balances(friction: f64, holds: impl Fn(&Energies) -> bool) -> Fallible {
     for steps in [1, 7] {
-        let e = energies(punched, 0.1, steps, Settings::default())?;
-        assert!(e.stored > 0.0 && e.plastic_dissipation == 0.0 && e.friction_dissipation == 0.0);
+        let e = energies(elastic(friction), 0.1, steps, Settings::default())?;
+        assert!(e.external_work > 0.0 && holds(&e), "{e:?}");
         assert!(e.imbalance().abs() < 1e-10 * e.external_work, "{e:?}");
     }
     Ok(())
+}
+
+fn elastic(friction: f64) -> Punched {
+    Punched {
+        friction,
+        yield_stress: ELASTIC,
+        ..Punched::default()
+    }
+}
+
+#[test]
+fn elastic_frictionless_block_balances_energy_exactly() -> Fallible {
+    balances(0.0, |e| {
+        e.stored > 0.0 && e.plastic_dissipation == 0.0 && e.friction_dissipation == 0.0
+    })
 }
 
 /// Friction that never slips does no work.
 #[test]
 fn elastic_sticking_block_balances_energy_exactly() -> Fallible {
-    let punched = Punched {
-        friction: 1e3,
-        yield_stress: ELASTIC,
-        ..Punched::default()
-    };
-    for steps in [1, 7] {
-        let e = energies(punched, 0.1, steps, Settings::default())?;
-        assert!(e.friction_dissipation.abs() < 1e-10 * e.external_work);
-        assert!(e.imbalance().abs() < 1e-10 * e.external_work, "{e:?}");
-    }
-    Ok(())
+    balances(1e3, |e| {
+        e.friction_dissipation.abs() < 1e-10 * e.external_work
+    })
+}
+
+fn springs(k: f64) -> Fallible<Settings<2>> {
+    Ok(Settings {
+        contact: Box::new(Penalty::new(k, k)?),
+        ..Settings::default()
+    })
 }
 
 /// The springs of the penalty method hold what the balance would lack.
 #[test]
 fn penalty_springs_are_in_the_balance() -> Fallible {
-    let punched = Punched {
-        friction: 0.0,
-        yield_stress: ELASTIC,
-        ..Punched::default()
-    };
     for k in [1e5, 1e6, 1e7] {
         for steps in [1, 5] {
-            let contact = Box::new(Penalty::new(k, k)?);
-            let e = energies(
-                punched,
-                0.1,
-                steps,
-                Settings {
-                    contact,
-                    ..Settings::default()
-                },
-            )?;
+            let e = energies(elastic(0.0), 0.1, steps, springs(k)?)?;
             assert!(e.penalty > 1e-10 * e.external_work, "{e:?}");
             assert!(
                 e.imbalance().abs() < 1e-9 * e.external_work,
@@ -121,16 +116,7 @@ fn penalty_springs_are_in_the_balance() -> Fallible {
     let punched = Punched::default();
     let mut imbalances = Vec::new();
     for steps in [40, 80, 160] {
-        let contact = Box::new(Penalty::new(1e6, 1e6)?);
-        let e = energies(
-            punched,
-            0.1,
-            steps,
-            Settings {
-                contact,
-                ..Settings::default()
-            },
-        )?;
+        let e = energies(punched, 0.1, steps, springs(1e6)?)?;
         let imbalance = e.imbalance().abs() / e.external_work;
         imbalances.push(imbalance);
     }
