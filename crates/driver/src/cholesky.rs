@@ -1,7 +1,6 @@
 //! Sparse Cholesky factorisation with kept symbolic work and buffers; the only file that names
 //! the sparse library.
 
-use crate::memory;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
@@ -109,11 +108,11 @@ impl fmt::Debug for Cholesky {
 }
 
 impl Cholesky {
-    /// Symbolic factorisation, once for a pattern.
+    /// Symbolic factorisation, once for a pattern; the factor may take so many bytes.
     ///
     /// # Errors
-    /// [`NoRoom`] if the factor needs more than the memory that is free, or a 32-bit index.
-    pub(crate) fn analyse(pattern: Pattern) -> Result<Self, NoRoom> {
+    /// [`NoRoom`] if it takes more, or more than a 32-bit index counts.
+    pub(crate) fn analyse(pattern: Pattern, memory: Option<u64>) -> Result<Self, NoRoom> {
         let threads = |operations| {
             if operations > PARALLEL {
                 Par::rayon(0)
@@ -121,10 +120,10 @@ impl Cholesky {
                 Par::Seq
             }
         };
-        Self::analyse_for(pattern, threads, memory::available())
+        Self::analyse_for(pattern, threads, memory)
     }
 
-    /// The threads may depend on the number of operations; so many bytes are free.
+    /// The threads may depend on the number of operations.
     fn analyse_for(
         pattern: Pattern,
         threads: impl Fn(f64) -> Par,
@@ -444,7 +443,7 @@ mod tests {
             n in 4usize..40, seed in prop::collection::vec(-1.0..1.0f64, 13), tail in 1usize..4,
         ) {
             let (pattern, values, dense) = sample(n, &seed);
-            let mut cholesky = Cholesky::analyse(pattern).expect("small");
+            let mut cholesky = Cholesky::analyse(pattern, None).expect("small");
             cholesky.factorise(&values).expect("definite");
             let x = DVector::from_fn(n, |i, _| (i as f64).cos());
             let mut b = (&dense * &x).as_slice().to_vec();
@@ -539,7 +538,7 @@ mod tests {
             column_start: vec![0, 2, 3],
             row: vec![0, 1, 1],
         };
-        let mut cholesky = Cholesky::analyse(pattern).expect("small");
+        let mut cholesky = Cholesky::analyse(pattern, None).expect("small");
         assert_eq!(
             cholesky.factorise(&[1.0, 2.0, 1.0]),
             Err(NotPositiveDefinite { row: 1 })

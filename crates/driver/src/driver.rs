@@ -43,6 +43,8 @@ pub struct Settings<const D: usize> {
     pub iterations: usize,
     /// Times an increment may be halved before the step stops.
     pub cuts: usize,
+    /// What the factor of the stiffness, by far the largest, may take \[bytes\]; `None` for anything.
+    pub memory: Option<u64>,
 }
 
 impl<const D: usize> Default for Settings<D> {
@@ -53,6 +55,7 @@ impl<const D: usize> Default for Settings<D> {
             tolerance: 1e-10,
             iterations: 40,
             cuts: 10,
+            memory: None,
         }
     }
 }
@@ -406,6 +409,7 @@ impl<const D: usize> Driver<D> {
             &interface,
             pivot,
             self.tools.len(),
+            self.settings.memory,
         )?;
         system.timings += before;
         system.learn(&mut self.blocks, self.settings.nesting == Nesting::Inside);

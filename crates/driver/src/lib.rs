@@ -48,7 +48,6 @@ mod load;
 mod loading;
 mod loose;
 mod mechanism;
-mod memory;
 mod model;
 mod nested;
 mod norm;

@@ -108,7 +108,7 @@ pub(crate) struct Condensed {
 impl System {
     /// Numbers the free degrees of freedom, orders them and does the symbolic factorisation. The
     /// interface is that of the contact points, the node `pivot` if there is one, and the tools: they
-    /// are nodes after those of the mesh, without stiffness.
+    /// are nodes after those of the mesh, without stiffness. The factor may take `memory` \[bytes\].
     pub(crate) fn new<const D: usize>(
         mesh: &Mesh<D>,
         blocks: &[Box<dyn Block<D>>],
@@ -116,6 +116,7 @@ impl System {
         interface_nodes: &[usize],
         pivot: Option<usize>,
         tools: usize,
+        memory: Option<u64>,
     ) -> Result<Self, ModelError> {
         let clock = Instant::now();
         let Numbering {
@@ -132,7 +133,7 @@ impl System {
         let values = vec![0.0; pattern.row.len() + 1];
         let unknowns = dofs.len();
         let gigabytes = |entries: f64| entries * size_of::<f64>() as f64 / 1e9;
-        let cholesky = Cholesky::analyse(pattern).map_err(|no| ModelError::TooLarge {
+        let cholesky = Cholesky::analyse(pattern, memory).map_err(|no| ModelError::TooLarge {
             unknowns,
             needed: gigabytes(no.entries),
             room: gigabytes(no.room),

@@ -31,6 +31,7 @@
 
 pub mod deck;
 pub mod files;
+mod memory;
 pub mod plot;
 pub mod recovery;
 pub mod run;

@@ -207,6 +207,7 @@ fn settings<const D: usize>(
     };
     let mut settings = Settings {
         contact,
+        memory: crate::memory::available(),
         ..Settings::default()
     };
     if deck.solver.outside {

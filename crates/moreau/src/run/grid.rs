@@ -121,67 +121,117 @@ impl Grid {
             self.points.len(),
             self.cells.len()
         );
-        let mut data = Vec::new();
-        let mut add = |head: &mut String, name: &str, kind: &str, components, bytes: &[u8]| {
-            let offset = data.len();
-            // Writing to a string does not fail.
-            let name = name
-                .replace('&', "&amp;")
-                .replace('<', "&lt;")
-                .replace('"', "&quot;");
-            let _ = writeln!(
-                head,
-                "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
-                 format=\"appended\" offset=\"{offset}\"/>"
-            );
-            data.extend(compressed(bytes));
-        };
-        let floats =
-            |values: &[f64]| -> Vec<u8> { values.iter().flat_map(|v| v.to_le_bytes()).collect() };
-        let integers =
-            |values: Vec<i64>| -> Vec<u8> { values.iter().flat_map(|v| v.to_le_bytes()).collect() };
-        for (tag, arrays) in [
-            ("PointData", &self.point_data),
-            ("CellData", &self.cell_data),
-        ] {
-            head.push_str(&format!("<{tag}>\n"));
-            for array in arrays {
-                let bytes = floats(&array.values);
-                add(&mut head, &array.name, "Float64", array.components, &bytes);
-            }
-            head.push_str(&format!("</{tag}>\n"));
-        }
-        head.push_str("<Points>\n");
-        add(
-            &mut head,
-            "Points",
-            "Float64",
-            3,
-            &floats(&self.points.concat()),
-        );
-        head.push_str("</Points>\n<Cells>\n");
-        let connectivity = self.cells.iter().flat_map(|(nodes, _)| nodes).copied();
-        add(
-            &mut head,
-            "connectivity",
-            "Int64",
-            1,
-            &integers(connectivity.collect()),
-        );
-        let ends = self.cells.iter().scan(0, |end, (nodes, _)| {
+        let connectivity = self.cells.iter().flat_map(|(nodes, _)| nodes.iter());
+        let ends = self.cells.iter().scan(0, |end: &mut i64, (nodes, _)| {
             *end += nodes.len() as i64;
             Some(*end)
         });
-        add(&mut head, "offsets", "Int64", 1, &integers(ends.collect()));
         let types: Vec<u8> = self.cells.iter().map(|(_, kind)| *kind).collect();
-        add(&mut head, "types", "UInt8", 1, &types);
-        head.push_str(
-            "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_",
-        );
+        let given = |arrays: &[Array]| arrays.iter().map(Stored::of).collect::<Vec<_>>();
+        let sections = [
+            ("PointData", given(&self.point_data)),
+            ("CellData", given(&self.cell_data)),
+            (
+                "Points",
+                vec![Stored::new("Points", 3, &self.points.concat())],
+            ),
+            (
+                "Cells",
+                vec![
+                    Stored::new("connectivity", 1, connectivity),
+                    Stored::new("offsets", 1, &ends.collect::<Vec<_>>()),
+                    Stored::new("types", 1, &types),
+                ],
+            ),
+        ];
+        let all = || sections.iter().flat_map(|(_, arrays)| arrays);
+        // The last comes first: meshio 5.3.5 replaces the offsets one after the other by larger ones, and
+        // takes the first array of the file that has the one it looks for.
+        let mut offset: usize = all().map(|array| array.data.len()).sum();
+        for (section, arrays) in &sections {
+            // Writing to a string does not fail.
+            let _ = writeln!(head, "<{section}>");
+            for array in arrays {
+                offset -= array.data.len();
+                let Stored {
+                    name,
+                    kind,
+                    components,
+                    ..
+                } = array;
+                let _ = writeln!(
+                    head,
+                    "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
+                     format=\"appended\" offset=\"{offset}\"/>"
+                );
+            }
+            let _ = writeln!(head, "</{section}>");
+        }
+        head.push_str("</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
         let mut bytes = head.into_bytes();
-        bytes.extend(data);
+        let data: Vec<&Stored> = all().collect();
+        data.iter()
+            .rev()
+            .for_each(|array| bytes.extend(&array.data));
         bytes.extend(b"\n</AppendedData>\n</VTKFile>\n");
         bytes
+    }
+}
+
+/// A number as VTK stores it.
+trait Number {
+    const KIND: &'static str;
+    fn bytes(&self) -> impl IntoIterator<Item = u8>;
+}
+
+impl Number for f64 {
+    const KIND: &'static str = "Float64";
+    fn bytes(&self) -> impl IntoIterator<Item = u8> {
+        self.to_le_bytes()
+    }
+}
+
+impl Number for i64 {
+    const KIND: &'static str = "Int64";
+    fn bytes(&self) -> impl IntoIterator<Item = u8> {
+        self.to_le_bytes()
+    }
+}
+
+impl Number for u8 {
+    const KIND: &'static str = "UInt8";
+    fn bytes(&self) -> impl IntoIterator<Item = u8> {
+        [*self]
+    }
+}
+
+/// An array of the file.
+struct Stored {
+    /// Name, with what has a meaning in XML replaced.
+    name: String,
+    kind: &'static str,
+    components: usize,
+    data: Vec<u8>,
+}
+
+impl Stored {
+    fn new<'a, T: Number + 'a>(
+        name: &str,
+        components: usize,
+        values: impl IntoIterator<Item = &'a T>,
+    ) -> Self {
+        let bytes: Vec<u8> = values.into_iter().flat_map(T::bytes).collect();
+        let name = name.replace('&', "&amp;").replace('<', "&lt;");
+        Self {
+            name: name.replace('"', "&quot;"),
+            kind: T::KIND,
+            components,
+            data: compressed(&bytes),
+        }
+    }
+
+    fn of(array: &Array) -> Self {
+        Self::new(&array.name, array.components, &array.values)
     }
 }
 
@@ -261,6 +311,35 @@ fn decompressed(bytes: &[u8]) -> Option<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn arrays_are_stored_from_the_last_to_the_first_and_read_back() {
+        let array = |name: &str, values: &[f64]| Array {
+            name: name.to_owned(),
+            components: 1,
+            values: values.to_owned(),
+        };
+        let grid = Grid {
+            points: vec![[0.0; 3], [1.0, 2.0, 3.0]],
+            cells: vec![(vec![0], 1), (vec![1], 1)],
+            point_data: vec![array("a", &[1.0, -2.0]), array("b", &[0.0, 0.0])],
+            cell_data: vec![array("b", &[3.0, 4.0])],
+        };
+        let bytes = grid.bytes();
+        let text = String::from_utf8_lossy(&bytes);
+        let tags = text.lines().filter(|l| l.starts_with("<DataArray"));
+        let offset = |tag: &str| {
+            attribute(tag, "offset")
+                .expect("one")
+                .parse()
+                .expect("a number")
+        };
+        let offsets: Vec<usize> = tags.map(offset).collect();
+        assert_eq!(offsets.len(), 7);
+        assert!(offsets.windows(2).all(|o| o[0] > o[1]), "{offsets:?}");
+        assert_eq!(offsets[6], 0);
+        assert_eq!(point_data(&bytes), Some(grid.point_data));
+    }
 
     /// VTK's own lists: the corners of the edge or face that each node after the corners halves.
     #[test]

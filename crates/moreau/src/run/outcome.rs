@@ -10,6 +10,7 @@ use crate::driver::{
     Collapse, Driver, Energies, ModelError, Reader, StepError, StepReport, UpperBound,
 };
 use crate::laws::Status;
+use crate::memory;
 use std::collections::BTreeMap;
 use std::fmt;
 
@@ -341,7 +342,7 @@ impl Outcome {
             "contact_iterations": self.contact_iterations,
             "factorisations": self.factorisations,
             "cuts": self.cuts,
-            "peak_memory_mb": peak_memory(),
+            "peak_memory_mb": memory::peak().map(|bytes| bytes as f64 / f64::from(1 << 20)),
             "dofs": self.dofs,
             "threads": self.threads,
             "certificate": {
@@ -366,14 +367,6 @@ impl Outcome {
         });
         format!("{value:#}\n")
     }
-}
-
-/// Largest memory that the process has held \[MB\], where the system tells.
-fn peak_memory() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
-    let kilobytes: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kilobytes / 1024.0)
 }
 
 impl fmt::Display for Outcome {
