@@ -154,6 +154,29 @@ fn a_body_pulled_off_its_floor_is_an_error_that_changes_nothing() {
 }
 
 #[test]
+fn a_factor_larger_than_the_memory_is_refused_with_both_sizes() {
+    let settings = |memory| Settings {
+        memory: Some(memory),
+        ..Settings::default()
+    };
+    let step = Step::new("press")
+        .fix("block.left", &[Axis::X])
+        .displace("punch", Axis::Y, -0.1);
+    let mut driver = on_floor([8, 4], 0.0, 0.1, settings(4096));
+    match driver.run(&step, 1, |_, _| {}) {
+        Err(StepError::Model(ModelError::TooLarge {
+            unknowns,
+            needed,
+            room,
+        })) => {
+            assert!(unknowns > 100 && needed > 8.0 * unknowns as f64 / 1e9);
+            assert_eq!(room, 4096.0 / 1e9);
+        }
+        other => panic!("expected TooLarge, got {other:?}"),
+    }
+}
+
+#[test]
 fn a_cylinder_pressed_into_the_block_touches_without_penetration() {
     let model = Model::new(mesh([40, 8]), PlaneStrain::default())
         .material("block", steel(), Integration::Reduced)
