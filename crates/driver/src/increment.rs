@@ -59,7 +59,8 @@ pub(crate) struct Start {
 /// displacements with a somewhat smaller α.
 pub(crate) const CONTACT_SLACK: f64 = 10.0;
 
-/// How far an increment may move anything, in sizes of the mesh and of what it prescribes.
+/// How far an increment may move anything, in sizes of the mesh, of what it prescribes and of the
+/// widest gap.
 const FARTHEST: f64 = 10.0;
 
 /// Parts of what flow adds to the stiffness that are tried in turn where the tangent is a mechanism.
@@ -138,7 +139,7 @@ impl<const D: usize> Driver<D> {
             let balance = self.target(system, scale, &now.d_u) + left;
             let balanced = now.part >= 1.0
                 && out_of_balance <= balance
-                && self.is_near(&now.d_u, (start, &end));
+                && self.is_near(system, &now.d_u, (start, &end));
             if balanced
                 && let Some(s) = solution.take_if(|s| self.law_holds(system, &kinematics, s, scale))
             {
@@ -270,12 +271,22 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Whether nothing has gone so far that forces are rounding: what slides away is in balance with
-    /// anything there.
-    fn is_near(&self, d_u: &[f64], (start, end): (&Loading<D>, &Loading<D>)) -> bool {
+    /// anything there. What falls may go as far as to what stops it.
+    fn is_near(
+        &self,
+        system: &System,
+        d_u: &[f64],
+        (start, end): (&Loading<D>, &Loading<D>),
+    ) -> bool {
+        let moved = largest(d_u[..self.mesh_dofs()].iter().copied());
         let prescribed = end.displacement.iter();
         let told = largest(prescribed.map(|(dof, u)| u - start.displacement.get(dof).unwrap_or(u)));
-        let moved = &d_u[..self.mesh_dofs()];
-        largest(moved.iter().copied()) <= FARTHEST * (self.mesh.size() + told)
+        let reach = self.mesh.size() + told;
+        moved <= FARTHEST * reach || {
+            let before = self.kinematics(system, start, &vec![0.0; d_u.len()]);
+            let gap = largest(before.iter().map(|k| k.u[0]));
+            moved <= FARTHEST * (reach + gap)
+        }
     }
 
     /// Factorises the tangent at an iterate. Where that is a mechanism, as a plastic tangent may be
