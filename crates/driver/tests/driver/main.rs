@@ -3,6 +3,8 @@
 mod anisotropic;
 mod block;
 mod collapse;
+mod increments;
 mod klarbring;
+mod refusals;
 mod steps;
 mod tools;

@@ -1,9 +1,9 @@
 //! The driver on small problems whose answers are known: bodies that only contact holds, gaps that
-//! close, tools that roll off, steps that are cut, supports that are released.
+//! close, tools that roll off, supports that are released.
 
-use moreau_contact::{Ball, GaussSeidel, Penalty, Plane};
+use moreau_contact::{Ball, Penalty, Plane};
 use moreau_driver::{
-    Axis, Driver, Increments, Model, ModelError, Nesting, Ramp, Reader, Settings, Step, StepError,
+    Axis, Driver, Increments, Model, ModelError, Nesting, Ramp, Reader, Settings, Step,
 };
 use moreau_laws::{Coulomb, Elastic, Status, VonMises};
 use moreau_mesh::{CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform};
@@ -27,7 +27,7 @@ fn mesh(cells: [usize; 2]) -> Mesh<2> {
 }
 
 /// The block above a floor at height `floor`.
-fn on_floor(cells: [usize; 2], floor: f64, mu: f64, settings: Settings<2>) -> Driver<2> {
+pub(crate) fn on_floor(cells: [usize; 2], floor: f64, mu: f64, settings: Settings<2>) -> Driver<2> {
     let model = Model::new(mesh(cells), PlaneStrain::default())
         .material("block", steel(), Integration::Reduced)
         .and_then(|m| {
@@ -128,59 +128,6 @@ fn an_opened_contact_closes_again_when_its_gap_is_used_up() {
 }
 
 #[test]
-fn a_body_pulled_off_its_floor_is_an_error_that_changes_nothing() {
-    let mut driver = on_floor(
-        [4, 2],
-        0.0,
-        0.0,
-        Settings {
-            cuts: 2,
-            ..Settings::default()
-        },
-    );
-    let step = Step::new("pull")
-        .fix("block.left", &[Axis::X])
-        .pressure("block.top", -1.0);
-    match driver.run(&step, 1, |_, _| {}) {
-        Err(StepError::Stopped { reached, cause, .. }) => {
-            assert_eq!(reached, 0.0);
-            assert!(matches!(*cause, StepError::Contact { .. }), "{cause}");
-        }
-        other => panic!("expected Stopped, got {other:?}"),
-    }
-    assert_eq!(driver.increments(), 0);
-    assert!(
-        driver
-            .contacts()
-            .iter()
-            .all(|c| driver.displacement(c.node).norm() == 0.0)
-    );
-}
-
-#[test]
-fn a_factor_larger_than_the_memory_is_refused_with_both_sizes() {
-    let settings = |memory| Settings {
-        memory: Some(memory),
-        ..Settings::default()
-    };
-    let step = Step::new("press")
-        .fix("block.left", &[Axis::X])
-        .displace("punch", Axis::Y, -0.1);
-    let mut driver = on_floor([8, 4], 0.0, 0.1, settings(4096));
-    match driver.run(&step, 1, |_, _| {}) {
-        Err(StepError::Model(ModelError::TooLarge {
-            unknowns,
-            needed,
-            room,
-        })) => {
-            assert!(unknowns > 100 && needed > 8.0 * unknowns as f64 / 1e9);
-            assert_eq!(room, 4096.0 / 1e9);
-        }
-        other => panic!("expected TooLarge, got {other:?}"),
-    }
-}
-
-#[test]
 fn a_cylinder_pressed_into_the_block_touches_without_penetration() {
     let model = Model::new(mesh([40, 8]), PlaneStrain::default())
         .material("block", steel(), Integration::Reduced)
@@ -216,48 +163,6 @@ fn a_cylinder_pressed_into_the_block_touches_without_penetration() {
         reports.iter().all(|r| r.newton_iterations < 12),
         "curvature costs few iterations"
     );
-}
-
-#[test]
-fn a_step_that_is_too_long_is_cut_and_ends_where_it_should() {
-    let press = |increments, iterations| {
-        let settings = Settings {
-            iterations,
-            ..Settings::default()
-        };
-        let mut driver = on_floor([10, 2], 0.0, 0.1, settings);
-        let step =
-            Step::new("press")
-                .fix("block.left", &[Axis::X])
-                .displace("punch", Axis::Y, -0.2);
-        let reports = driver
-            .run(&step, increments, |_, _| {})
-            .expect("converges when cut");
-        (-driver.reaction("punch").expect("exists")[1], reports)
-    };
-    let (load, reports) = press(4, 4);
-    let cuts: usize = reports.iter().map(|r| r.cuts).sum();
-    assert!(
-        cuts > 0,
-        "four iterations should not do for 0.05 mm at once"
-    );
-    assert_eq!(reports.last().map(|r| r.fraction), Some(1.0));
-    let fractions: Vec<f64> = reports.iter().map(|r| r.fraction).collect();
-    assert!(fractions.windows(2).all(|w| w[0] < w[1]));
-    for whole in [0.25, 0.5, 0.75] {
-        assert!(
-            fractions.contains(&whole),
-            "the ends of whole increments are met: {fractions:?}"
-        );
-    }
-    // Increments grow again: fewer than if all had the shortest length.
-    let shortest = fractions
-        .windows(2)
-        .map(|w| w[1] - w[0])
-        .fold(fractions[0], f64::min);
-    assert!((fractions.len() as f64) < 1.0 / shortest);
-    let (fine, _) = press(40, 40);
-    assert!((load / fine - 1.0).abs() < 1e-3, "{load} against {fine}");
 }
 
 #[test]
@@ -323,26 +228,6 @@ fn the_papers_nesting_ends_where_the_exact_method_ends() {
     for (a, b) in exact.contacts().iter().zip(nested.contacts()) {
         assert!((a.t - b.t).norm() < 1e-6 * largest, "{} {}", a.t, b.t);
     }
-}
-
-#[test]
-fn the_papers_nesting_cannot_hold_a_floating_body() {
-    let nesting = Nesting::Outside {
-        tolerance: 1e-6,
-        iterations: 100,
-    };
-    let mut driver = on_floor(
-        [4, 2],
-        0.0,
-        0.3,
-        Settings {
-            nesting,
-            cuts: 0,
-            ..Settings::default()
-        },
-    );
-    let load = driver.run(&Step::new("load").pressure("block.top", 40.0), 1, |_, _| {});
-    assert!(matches!(load, Err(StepError::Stopped { .. })), "{load:?}");
 }
 
 #[test]
@@ -416,25 +301,6 @@ fn energies_of_the_penalty_add_up_where_all_is_elastic_and_smooth() {
     assert!(energies.imbalance().abs() < 1e-9 * energies.external_work);
 }
 
-#[test]
-fn gauss_seidel_says_that_it_cannot_hold_a_floating_body() {
-    let settings = Settings {
-        contact: Box::new(GaussSeidel::default()),
-        cuts: 0,
-        ..Settings::default()
-    };
-    let mut driver = on_floor([4, 2], 0.0, 0.3, settings);
-    let error = driver
-        .run(&Step::new("load").pressure("block.top", 40.0), 1, |_, _| {})
-        .expect_err("not definite");
-    assert!(
-        error
-            .to_string()
-            .contains("Gauss-Seidel needs bodies held without contact"),
-        "{error}"
-    );
-}
-
 /// Written before each of its increments and read by a virgin driver of the same model, a run goes
 /// on to the bit, with the same work.
 #[test]
@@ -482,90 +348,6 @@ fn a_state_that_is_read_back_goes_on_to_the_bit() {
         assert!(matches!(error, ModelError::Saved { .. }), "{error}");
         let half = &saved[0][..saved[0].len() / 2];
         assert!(virgin().read(&mut Reader::new(half)).is_err());
-    }
-}
-
-/// Every iterate is told, those of attempts that fail too.
-#[test]
-fn iterates_are_told() {
-    let settings = Settings {
-        iterations: 3,
-        ..Settings::default()
-    };
-    let mut driver = on_floor([6, 2], 0.0, 0.3, settings);
-    let press = Step::new("press")
-        .fix("block.left", &[Axis::X])
-        .displace("punch", Axis::Y, -0.1);
-    let mut ramp = driver.begin(&press, 1).expect("valid");
-    let mut seen = Vec::new();
-    let report = driver.proceed(&mut ramp, &mut |i| {
-        assert_eq!(i.d_u.len(), i.residual.len());
-        let largest = i.residual.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
-        assert_eq!(largest, i.out_of_balance);
-        seen.push((i.cuts, i.newton, i.out_of_balance));
-    });
-    let report = report.expect("converges once it is short enough");
-    assert!(report.cuts > 0 && seen[0].0 == 0);
-    let last: Vec<f64> = seen
-        .iter()
-        .filter(|s| s.0 == report.cuts && s.1 > 0)
-        .map(|s| s.2)
-        .collect();
-    assert_eq!(last, report.residuals);
-}
-
-/// Increments that grow: few of them, of at most the greatest length, and the end is met exactly.
-#[test]
-fn easy_increments_grow() {
-    let increments = Increments {
-        start: 0.02,
-        min: None,
-        max: 0.3,
-    };
-    let step = Step::new("load").pressure("block.top", 40.0);
-    let mut equal = on_floor([6, 2], 0.0, 0.3, Settings::default());
-    equal.run(&step, 50, |_, _| {}).expect("held");
-    let mut driver = on_floor([6, 2], 0.0, 0.3, Settings::default());
-    let reports = driver.run(&step, increments, |_, _| {}).expect("held");
-    let ends: Vec<f64> = reports.iter().map(|r| r.fraction).collect();
-    assert!(ends.len() < 20 && ends[0] == 0.02, "{ends:?}");
-    assert_eq!(ends.last(), Some(&1.0));
-    assert!(
-        ends.windows(2)
-            .all(|e| e[1] > e[0] && e[1] - e[0] <= 0.3 + 1e-12)
-    );
-    // Proportional loading of an elastic block: the path does not matter.
-    for node in 0..driver.mesh().nodes().len() {
-        let difference = driver.displacement(node) - equal.displacement(node);
-        assert!(difference.norm() < 1e-10);
-    }
-}
-
-/// Where Newton is given too few iterations, increments are cut down to the least length, and no
-/// further.
-#[test]
-fn increments_are_cut_to_the_least() {
-    let increments = Increments {
-        start: 0.1,
-        min: Some(1e-3),
-        max: 0.2,
-    };
-    let settings = Settings {
-        iterations: 1,
-        ..Settings::default()
-    };
-    let mut driver = on_floor([6, 2], 0.0, 0.3, settings);
-    let step = Step::new("load")
-        .fix("block.left", &[Axis::X])
-        .displace("punch", Axis::Y, -0.2);
-    match driver.run(&step, increments, |_, _| {}) {
-        Err(StepError::Stopped {
-            reached, smallest, ..
-        }) => {
-            assert!(reached < 0.9, "{reached}");
-            assert!((1e-3..2e-3).contains(&smallest), "{smallest}");
-        }
-        other => panic!("{other:?}"),
     }
 }
 

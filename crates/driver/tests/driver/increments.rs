@@ -1,0 +1,130 @@
+//! How steps are divided into increments, and what is told of them.
+
+use crate::steps::on_floor;
+use moreau_driver::{Axis, Increments, Settings, Step, StepError};
+
+#[test]
+fn a_step_that_is_too_long_is_cut_and_ends_where_it_should() {
+    let press = |increments, iterations| {
+        let settings = Settings {
+            iterations,
+            ..Settings::default()
+        };
+        let mut driver = on_floor([10, 2], 0.0, 0.1, settings);
+        let step =
+            Step::new("press")
+                .fix("block.left", &[Axis::X])
+                .displace("punch", Axis::Y, -0.2);
+        let reports = driver
+            .run(&step, increments, |_, _| {})
+            .expect("converges when cut");
+        (-driver.reaction("punch").expect("exists")[1], reports)
+    };
+    let (load, reports) = press(4, 4);
+    let cuts: usize = reports.iter().map(|r| r.cuts).sum();
+    assert!(
+        cuts > 0,
+        "four iterations should not do for 0.05 mm at once"
+    );
+    assert_eq!(reports.last().map(|r| r.fraction), Some(1.0));
+    let fractions: Vec<f64> = reports.iter().map(|r| r.fraction).collect();
+    assert!(fractions.windows(2).all(|w| w[0] < w[1]));
+    for whole in [0.25, 0.5, 0.75] {
+        assert!(
+            fractions.contains(&whole),
+            "the ends of whole increments are met: {fractions:?}"
+        );
+    }
+    // Increments grow again: fewer than if all had the shortest length.
+    let shortest = fractions
+        .windows(2)
+        .map(|w| w[1] - w[0])
+        .fold(fractions[0], f64::min);
+    assert!((fractions.len() as f64) < 1.0 / shortest);
+    let (fine, _) = press(40, 40);
+    assert!((load / fine - 1.0).abs() < 1e-3, "{load} against {fine}");
+}
+
+/// Every iterate is told, those of attempts that fail too.
+#[test]
+fn iterates_are_told() {
+    let settings = Settings {
+        iterations: 3,
+        ..Settings::default()
+    };
+    let mut driver = on_floor([6, 2], 0.0, 0.3, settings);
+    let press = Step::new("press")
+        .fix("block.left", &[Axis::X])
+        .displace("punch", Axis::Y, -0.1);
+    let mut ramp = driver.begin(&press, 1).expect("valid");
+    let mut seen = Vec::new();
+    let report = driver.proceed(&mut ramp, &mut |i| {
+        assert_eq!(i.d_u.len(), i.residual.len());
+        let largest = i.residual.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
+        assert_eq!(largest, i.out_of_balance);
+        seen.push((i.cuts, i.newton, i.out_of_balance));
+    });
+    let report = report.expect("converges once it is short enough");
+    assert!(report.cuts > 0 && seen[0].0 == 0);
+    let last: Vec<f64> = seen
+        .iter()
+        .filter(|s| s.0 == report.cuts && s.1 > 0)
+        .map(|s| s.2)
+        .collect();
+    assert_eq!(last, report.residuals);
+}
+
+/// Increments that grow: few of them, of at most the greatest length, and the end is met exactly.
+#[test]
+fn easy_increments_grow() {
+    let increments = Increments {
+        start: 0.02,
+        min: None,
+        max: 0.3,
+    };
+    let step = Step::new("load").pressure("block.top", 40.0);
+    let mut equal = on_floor([6, 2], 0.0, 0.3, Settings::default());
+    equal.run(&step, 50, |_, _| {}).expect("held");
+    let mut driver = on_floor([6, 2], 0.0, 0.3, Settings::default());
+    let reports = driver.run(&step, increments, |_, _| {}).expect("held");
+    let ends: Vec<f64> = reports.iter().map(|r| r.fraction).collect();
+    assert!(ends.len() < 20 && ends[0] == 0.02, "{ends:?}");
+    assert_eq!(ends.last(), Some(&1.0));
+    assert!(
+        ends.windows(2)
+            .all(|e| e[1] > e[0] && e[1] - e[0] <= 0.3 + 1e-12)
+    );
+    // Proportional loading of an elastic block: the path does not matter.
+    for node in 0..driver.mesh().nodes().len() {
+        let difference = driver.displacement(node) - equal.displacement(node);
+        assert!(difference.norm() < 1e-10);
+    }
+}
+
+/// Where Newton is given too few iterations, increments are cut down to the least length, and no
+/// further.
+#[test]
+fn increments_are_cut_to_the_least() {
+    let increments = Increments {
+        start: 0.1,
+        min: Some(1e-3),
+        max: 0.2,
+    };
+    let settings = Settings {
+        iterations: 1,
+        ..Settings::default()
+    };
+    let mut driver = on_floor([6, 2], 0.0, 0.3, settings);
+    let step = Step::new("load")
+        .fix("block.left", &[Axis::X])
+        .displace("punch", Axis::Y, -0.2);
+    match driver.run(&step, increments, |_, _| {}) {
+        Err(StepError::Stopped {
+            reached, smallest, ..
+        }) => {
+            assert!(reached < 0.9, "{reached}");
+            assert!((1e-3..2e-3).contains(&smallest), "{smallest}");
+        }
+        other => panic!("{other:?}"),
+    }
+}

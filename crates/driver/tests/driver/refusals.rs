@@ -1,0 +1,97 @@
+//! What the driver refuses, and that it changes nothing then.
+
+use crate::steps::on_floor;
+use moreau_contact::GaussSeidel;
+use moreau_driver::{Axis, ModelError, Nesting, Settings, Step, StepError};
+
+#[test]
+fn a_body_pulled_off_its_floor_is_an_error_that_changes_nothing() {
+    let mut driver = on_floor(
+        [4, 2],
+        0.0,
+        0.0,
+        Settings {
+            cuts: 2,
+            ..Settings::default()
+        },
+    );
+    let step = Step::new("pull")
+        .fix("block.left", &[Axis::X])
+        .pressure("block.top", -1.0);
+    match driver.run(&step, 1, |_, _| {}) {
+        Err(StepError::Stopped { reached, cause, .. }) => {
+            assert_eq!(reached, 0.0);
+            assert!(matches!(*cause, StepError::Contact { .. }), "{cause}");
+        }
+        other => panic!("expected Stopped, got {other:?}"),
+    }
+    assert_eq!(driver.increments(), 0);
+    assert!(
+        driver
+            .contacts()
+            .iter()
+            .all(|c| driver.displacement(c.node).norm() == 0.0)
+    );
+}
+
+#[test]
+fn a_factor_larger_than_the_memory_is_refused_with_both_sizes() {
+    let settings = |memory| Settings {
+        memory: Some(memory),
+        ..Settings::default()
+    };
+    let step = Step::new("press")
+        .fix("block.left", &[Axis::X])
+        .displace("punch", Axis::Y, -0.1);
+    let mut driver = on_floor([8, 4], 0.0, 0.1, settings(4096));
+    match driver.run(&step, 1, |_, _| {}) {
+        Err(StepError::Model(ModelError::TooLarge {
+            unknowns,
+            needed,
+            room,
+        })) => {
+            assert!(unknowns > 100 && needed > 8.0 * unknowns as f64 / 1e9);
+            assert_eq!(room, 4096.0 / 1e9);
+        }
+        other => panic!("expected TooLarge, got {other:?}"),
+    }
+}
+
+#[test]
+fn the_papers_nesting_cannot_hold_a_floating_body() {
+    let nesting = Nesting::Outside {
+        tolerance: 1e-6,
+        iterations: 100,
+    };
+    let mut driver = on_floor(
+        [4, 2],
+        0.0,
+        0.3,
+        Settings {
+            nesting,
+            cuts: 0,
+            ..Settings::default()
+        },
+    );
+    let load = driver.run(&Step::new("load").pressure("block.top", 40.0), 1, |_, _| {});
+    assert!(matches!(load, Err(StepError::Stopped { .. })), "{load:?}");
+}
+
+#[test]
+fn gauss_seidel_says_that_it_cannot_hold_a_floating_body() {
+    let settings = Settings {
+        contact: Box::new(GaussSeidel::default()),
+        cuts: 0,
+        ..Settings::default()
+    };
+    let mut driver = on_floor([4, 2], 0.0, 0.3, settings);
+    let error = driver
+        .run(&Step::new("load").pressure("block.top", 40.0), 1, |_, _| {})
+        .expect_err("not definite");
+    assert!(
+        error
+            .to_string()
+            .contains("Gauss-Seidel needs bodies held without contact"),
+        "{error}"
+    );
+}
