@@ -5,62 +5,80 @@ use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::sparse::linalg::cholesky::{simplicial, supernodal};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::{DMatrix, DVector};
 use std::fmt;
 
 /// Lower triangle of a symmetric sparse matrix by columns: pattern without values. The diagonal
 /// is the first entry of every column.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(crate) struct Pattern {
-    pub(crate) column_start: Vec<u32>,
-    pub(crate) row: Vec<u32>,
+    lower: SymbolicSparseColMat<u32>,
 }
 
 impl Pattern {
+    /// From where the columns start and the rows of their entries, ascending.
+    pub(crate) fn new(column_start: Vec<u32>, row: Vec<u32>) -> Self {
+        let n = column_start.len() - 1;
+        Self {
+            lower: SymbolicSparseColMat::new_checked(n, n, column_start, None, row),
+        }
+    }
+
     pub(crate) fn size(&self) -> usize {
-        self.column_start.len() - 1
+        self.lower.nrows()
+    }
+
+    /// Number of entries.
+    pub(crate) fn entries(&self) -> usize {
+        self.lower.row_idx().len()
     }
 
     /// Position of entry (row, column), row ≥ column, among the values.
     pub(crate) fn slot(&self, row: u32, column: u32) -> Option<u32> {
-        let (start, end) = (self.range(column).start, self.range(column).end);
-        self.row[start..end]
+        let range = self.range(column as usize);
+        self.lower.row_idx()[range.clone()]
             .binary_search(&row)
             .ok()
-            .map(|k| (start + k) as u32)
+            .map(|k| (range.start + k) as u32)
     }
 
-    pub(crate) fn range(&self, column: u32) -> std::ops::Range<usize> {
-        let j = column as usize;
-        self.column_start[j] as usize..self.column_start[j + 1] as usize
+    /// Position of a diagonal entry among the values.
+    pub(crate) fn diagonal(&self, row: usize) -> usize {
+        self.lower.col_ptr()[row] as usize
     }
 
-    fn transposed(&self) -> Self {
+    /// Positions of the entries of a column among the values.
+    pub(crate) fn range(&self, column: usize) -> std::ops::Range<usize> {
+        let start = self.lower.col_ptr();
+        start[column] as usize..start[column + 1] as usize
+    }
+
+    /// Rows of the entries of all columns.
+    pub(crate) fn rows(&self) -> &[u32] {
+        self.lower.row_idx()
+    }
+
+    fn transposed(&self) -> SymbolicSparseColMat<u32> {
         let n = self.size();
         let mut column_start = vec![0u32; n + 1];
-        for &i in &self.row {
+        for &i in self.rows() {
             column_start[i as usize + 1] += 1;
         }
         for j in 0..n {
             column_start[j + 1] += column_start[j];
         }
         let mut next = column_start.clone();
-        let mut row = vec![0u32; self.row.len()];
-        for j in 0..n as u32 {
-            for k in self.range(j) {
-                let slot = &mut next[self.row[k] as usize];
-                row[*slot as usize] = j;
+        let mut row = vec![0u32; self.entries()];
+        for j in 0..n {
+            for &i in &self.rows()[self.range(j)] {
+                let slot = &mut next[i as usize];
+                row[*slot as usize] = j as u32;
                 *slot += 1;
             }
         }
-        Self { column_start, row }
-    }
-
-    fn symbolic(&self) -> SymbolicSparseColMatRef<'_, u32> {
-        let n = self.size();
-        SymbolicSparseColMatRef::new_checked(n, n, &self.column_start, None, &self.row)
+        SymbolicSparseColMat::new_checked(n, n, column_start, None, row)
     }
 }
 
@@ -71,9 +89,18 @@ pub(crate) struct NotPositiveDefinite {
     pub(crate) row: usize,
 }
 
-/// A factor that there is no room for.
+/// What a factor may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct NoRoom {
+pub(crate) struct Limits {
+    /// Memory \[bytes\]; `None` for any.
+    pub(crate) memory: Option<u64>,
+    /// Multiplications.
+    pub(crate) operations: f64,
+}
+
+/// A factor that takes more than it may.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TooLarge {
     /// Entries of the factor.
     pub(crate) entries: f64,
     /// Entries that there is room for.
@@ -82,8 +109,7 @@ pub(crate) struct NoRoom {
 
 /// L Lᵀ = A, in the order in which A is given.
 pub(crate) struct Cholesky {
-    /// The pattern, checked once.
-    lower: SymbolicSparseColMat<u32>,
+    size: usize,
     symbolic: supernodal::SymbolicSupernodalCholesky<u32>,
     factor: Vec<f64>,
     memory: MemBuffer,
@@ -101,18 +127,18 @@ const PARALLEL: f64 = 1e11;
 impl fmt::Debug for Cholesky {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Cholesky")
-            .field("size", &self.lower.nrows())
+            .field("size", &self.size)
             .field("entries", &self.factor.len())
             .finish_non_exhaustive()
     }
 }
 
 impl Cholesky {
-    /// Symbolic factorisation, once for a pattern; the factor may take so many bytes.
+    /// Symbolic factorisation, once for a pattern.
     ///
     /// # Errors
-    /// [`NoRoom`] if it takes more, or more than a 32-bit index counts.
-    pub(crate) fn analyse(pattern: Pattern, memory: Option<u64>) -> Result<Self, NoRoom> {
+    /// [`TooLarge`] if the factor takes more than it may, or more than a 32-bit index counts.
+    pub(crate) fn analyse(pattern: &Pattern, limits: Limits) -> Result<Self, TooLarge> {
         let threads = |operations| {
             if operations > PARALLEL {
                 Par::rayon(0)
@@ -120,82 +146,70 @@ impl Cholesky {
                 Par::Seq
             }
         };
-        Self::analyse_for(pattern, threads, memory)
+        Self::analyse_for(pattern, threads, limits)
     }
 
     /// The threads may depend on the number of operations.
     fn analyse_for(
-        pattern: Pattern,
+        pattern: &Pattern,
         threads: impl Fn(f64) -> Par,
-        free: Option<u64>,
-    ) -> Result<Self, NoRoom> {
+        limits: Limits,
+    ) -> Result<Self, TooLarge> {
         let n = pattern.size();
         let upper = pattern.transposed();
         let request = StackReq::or(
-            simplicial::prefactorize_symbolic_cholesky_scratch::<u32>(n, upper.row.len()),
+            simplicial::prefactorize_symbolic_cholesky_scratch::<u32>(n, pattern.entries()),
             supernodal::factorize_supernodal_symbolic_cholesky_scratch::<u32>(n),
         );
-        let by_free = free.map_or(f64::INFINITY, |bytes| {
+        let by_memory = limits.memory.map_or(f64::INFINITY, |bytes| {
             bytes as f64 / size_of::<f64>() as f64
         });
-        let room = by_free.min(f64::from(u32::MAX));
-        let no_room = |entries: f64| NoRoom { entries, room };
-        let mut memory = MemBuffer::try_new(request).map_err(|_| no_room(n as f64))?;
+        let room = by_memory.min(f64::from(u32::MAX));
+        let too_large = |entries: f64| TooLarge { entries, room };
+        let mut memory = MemBuffer::try_new(request).map_err(|_| too_large(n as f64))?;
         let (mut tree, mut counts) = (vec![0i32; n], vec![0u32; n]);
         let tree = simplicial::prefactorize_symbolic_cholesky(
             &mut tree,
             &mut counts,
-            upper.symbolic(),
+            upper.as_ref(),
             MemStack::new(&mut memory),
         );
-        let entries: f64 = counts.iter().map(|&count| f64::from(count)).sum();
-        if entries > room {
-            return Err(no_room(entries));
+        let counted = || counts.iter().map(|&count| f64::from(count));
+        let entries: f64 = counted().sum();
+        let operations: f64 = counted().map(|count| count * count).sum();
+        if entries > room || operations > limits.operations {
+            return Err(too_large(entries));
         }
         let symbolic = supernodal::factorize_supernodal_symbolic_cholesky(
-            upper.symbolic(),
+            upper.as_ref(),
             tree,
             &counts,
             MemStack::new(&mut memory),
             Default::default(),
         )
-        .map_err(|_| no_room(entries))?;
+        .map_err(|_| too_large(entries))?;
         let rows = symbolic.col_ptr_for_row_idx().windows(2);
-        let below = rows.map(|r| (r[1] - r[0]) as usize);
-        let starts = symbolic
-            .supernode_begin()
-            .iter()
-            .zip(symbolic.supernode_end());
-        let operations = starts.zip(below.clone()).map(|((start, end), below)| {
-            let width = (end - start) as usize;
-            // Σ (h − j)² over the columns j of a supernode of height h.
-            (0..width)
-                .map(|j| ((width + below - j) as f64).powi(2))
-                .sum::<f64>()
-        });
-        let operations = operations.sum();
+        let below = rows.map(|r| (r[1] - r[0]) as usize).max().unwrap_or(0);
         let par = threads(operations);
-        let below = below.max().unwrap_or(0);
         let request = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
             &symbolic,
             par,
             Default::default(),
         );
-        let Pattern { column_start, row } = pattern;
         let entries = symbolic.len_val() as f64;
         let mut factor = Vec::new();
         let reserved = factor.try_reserve_exact(symbolic.len_val());
         if entries > room || reserved.is_err() {
-            return Err(no_room(entries));
+            return Err(too_large(entries));
         }
         factor.resize(symbolic.len_val(), 0.0);
         Ok(Self {
+            size: n,
             factor,
-            memory: MemBuffer::try_new(request).map_err(|_| no_room(entries))?,
+            memory: MemBuffer::try_new(request).map_err(|_| too_large(entries))?,
             below: vec![0.0; below],
             operations,
             par,
-            lower: SymbolicSparseColMat::new_checked(n, n, column_start, None, row),
             symbolic,
         })
     }
@@ -210,18 +224,17 @@ impl Cholesky {
         self.operations
     }
 
-    /// Position of a diagonal entry among the values.
-    pub(crate) fn diagonal(&self, row: usize) -> usize {
-        self.lower.col_ptr()[row] as usize
-    }
-
-    /// Factorises the matrix with these values on the pattern.
-    pub(crate) fn factorise(&mut self, values: &[f64]) -> Result<(), NotPositiveDefinite> {
+    /// Factorises the matrix with these values on the pattern that was analysed.
+    pub(crate) fn factorise(
+        &mut self,
+        pattern: &Pattern,
+        values: &[f64],
+    ) -> Result<(), NotPositiveDefinite> {
         // Threads share out the entries of the dense updates, not their sums: the factor is the same
         // to the bit wherever it runs.
         supernodal::factorize_supernodal_numeric_llt(
             &mut self.factor,
-            SparseColMatRef::new(self.lower.as_ref(), values),
+            SparseColMatRef::new(pattern.lower.as_ref(), values),
             Default::default(),
             &self.symbolic,
             self.par,
@@ -230,25 +243,6 @@ impl Cholesky {
         )
         .map(|_| ())
         .map_err(|LltError::NonPositivePivot { index }| NotPositiveDefinite { row: index })
-    }
-
-    /// b − A x for the matrix with these values.
-    pub(crate) fn residual(&self, values: &[f64], x: &[f64], b: &[f64]) -> Vec<f64> {
-        let mut r = b.to_vec();
-        let (start, rows) = (self.lower.col_ptr(), self.lower.row_idx());
-        for j in 0..x.len() {
-            let column = start[j] as usize..start[j + 1] as usize;
-            let mut sum = 0.0;
-            for (&i, a) in rows[column.clone()].iter().zip(&values[column]) {
-                let i = i as usize;
-                sum += a * x[i];
-                if i != j {
-                    r[i] -= a * x[j];
-                }
-            }
-            r[j] -= sum;
-        }
-        r
     }
 
     /// First column, number of columns, rows below and values, column by column, of supernode s.
@@ -311,7 +305,7 @@ impl Cholesky {
     /// counted from their first.
     #[inline]
     fn trailing_entries(&self, size: usize, mut each: impl FnMut(usize, usize, f64)) {
-        let first = self.lower.nrows() - size;
+        let first = self.size - size;
         for s in (0..self.symbolic.n_supernodes()).rev() {
             let (start, width, rows, values) = self.supernode(s);
             if start + width <= first {
@@ -404,6 +398,11 @@ mod tests {
     use nalgebra::DVector;
     use proptest::prelude::*;
 
+    const ANY: Limits = Limits {
+        memory: None,
+        operations: f64::INFINITY,
+    };
+
     /// Arrow matrix plus a random band: sparse rows with a dense tail.
     fn sample(n: usize, seed: &[f64]) -> (Pattern, Vec<f64>, DMatrix<f64>) {
         let mut dense = DMatrix::zeros(n, n);
@@ -434,7 +433,7 @@ mod tests {
             dense[(i, i)] += sum;
             values[column_start[i] as usize] += sum;
         }
-        (Pattern { column_start, row }, values, dense)
+        (Pattern::new(column_start, row), values, dense)
     }
 
     proptest! {
@@ -443,16 +442,13 @@ mod tests {
             n in 4usize..40, seed in prop::collection::vec(-1.0..1.0f64, 13), tail in 1usize..4,
         ) {
             let (pattern, values, dense) = sample(n, &seed);
-            let mut cholesky = Cholesky::analyse(pattern, None).expect("small");
-            cholesky.factorise(&values).expect("definite");
+            let mut cholesky = Cholesky::analyse(&pattern, ANY).expect("small");
+            cholesky.factorise(&pattern, &values).expect("definite");
             let x = DVector::from_fn(n, |i, _| (i as f64).cos());
             let mut b = (&dense * &x).as_slice().to_vec();
             cholesky.forward(&mut b);
             cholesky.backward(&mut b);
             prop_assert!((DVector::from_vec(b) - &x).norm() < 1e-11);
-            let b = DVector::from_fn(n, |i, _| (i as f64).sin());
-            let residual = cholesky.residual(&values, x.as_slice(), b.as_slice());
-            prop_assert!((DVector::from_vec(residual) - (b - &dense * &x)).norm() < 1e-11);
             // L_cc L_ccᵀ is the Schur complement of the trailing block.
             let l = cholesky.trailing(tail);
             let (m, c) = (n - tail, tail);
@@ -496,7 +492,7 @@ mod tests {
             row.extend(below);
             column_start.push(row.len() as u32);
         }
-        (Pattern { column_start, row }, values)
+        (Pattern::new(column_start, row), values)
     }
 
     #[test]
@@ -504,11 +500,11 @@ mod tests {
         let (pattern, values) = laplacian(22);
         let factor = |par: Par, threads: usize| {
             let mut cholesky =
-                Cholesky::analyse_for(pattern.clone(), |_| par, None).expect("small");
+                Cholesky::analyse_for(&pattern, |_| par, ANY).expect("small");
             assert!(cholesky.operations() > 1e8);
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
             let pool = pool.build().expect("threads");
-            pool.install(|| cholesky.factorise(&values))
+            pool.install(|| cholesky.factorise(&pattern, &values))
                 .expect("definite");
             cholesky.factor
         };
@@ -521,7 +517,10 @@ mod tests {
     #[test]
     fn a_factor_larger_than_the_memory_that_is_free_is_refused_before_it_is_made() {
         let (pattern, _) = laplacian(6);
-        let analysed = |bytes| Cholesky::analyse_for(pattern.clone(), |_| Par::Seq, bytes);
+        let analysed = |memory| {
+            let limits = Limits { memory, ..ANY };
+            Cholesky::analyse_for(&pattern, |_| Par::Seq, limits)
+        };
         let entries = analysed(None).expect("small").entries();
         // The columns alone, without the zeros that make those of a supernode alike.
         for bytes in [0, 4 * entries as u64, 8 * entries as u64 - 8] {
@@ -534,15 +533,12 @@ mod tests {
 
     #[test]
     fn an_indefinite_matrix_is_refused_at_its_row() {
-        let pattern = Pattern {
-            column_start: vec![0, 2, 3],
-            row: vec![0, 1, 1],
-        };
-        let mut cholesky = Cholesky::analyse(pattern, None).expect("small");
+        let pattern = Pattern::new(vec![0, 2, 3], vec![0, 1, 1]);
+        let mut cholesky = Cholesky::analyse(&pattern, ANY).expect("small");
         assert_eq!(
-            cholesky.factorise(&[1.0, 2.0, 1.0]),
+            cholesky.factorise(&pattern, &[1.0, 2.0, 1.0]),
             Err(NotPositiveDefinite { row: 1 })
         );
-        cholesky.factorise(&[1.0, 0.5, 1.0]).expect("definite");
+        cholesky.factorise(&pattern, &[1.0, 0.5, 1.0]).expect("definite");
     }
 }

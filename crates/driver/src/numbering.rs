@@ -35,7 +35,9 @@ impl Numbering {
             is_interface[a] = true;
         }
         is_interface[mesh.nodes().len()..].fill(true);
-        let interior: Vec<usize> = (0..nodes).filter(|&a| !is_interface[a]).collect();
+        let free = |a: usize| (D * a..D * a + D).any(|dof| !fixed(dof));
+        let interior = (0..nodes).filter(|&a| !is_interface[a] && free(a));
+        let interior: Vec<usize> = interior.collect();
         let mut order = nested_dissection(&interior, mesh.nodes(), neighbours);
         order.extend((0..nodes).filter(|&a| is_interface[a]));
         let mut position = vec![FIXED; D * nodes];
@@ -69,7 +71,7 @@ impl Numbering {
             position,
             dofs,
             interface,
-            pattern: Pattern { column_start, row },
+            pattern: Pattern::new(column_start, row),
         }
     }
 }

@@ -50,7 +50,7 @@ impl Scatter {
                     let (p, q) = (position[a as usize], position[b as usize]);
                     let free = p != FIXED && q != FIXED;
                     let slot = free.then(|| pattern.slot(p.max(q), p.min(q))).flatten();
-                    slots.push(slot.unwrap_or(pattern.row.len() as u32));
+                    slots.push(slot.unwrap_or(pattern.entries() as u32));
                 }
             }
         }

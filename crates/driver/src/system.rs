@@ -3,7 +3,10 @@
 
 use crate::ModelError;
 use crate::block::{Block, Stiffness};
-use crate::cholesky::{Cholesky, NotPositiveDefinite, square};
+use crate::cholesky::{Cholesky, Limits, NotPositiveDefinite, TooLarge, square};
+use crate::coarse::Coarse;
+use crate::conjugate::Conjugate;
+use crate::matrix::Matrix;
 use crate::norm::largest;
 use crate::numbering::Numbering;
 use crate::scatter::{FIXED, Scatter};
@@ -29,12 +32,13 @@ pub(crate) struct System {
     pub(crate) pivot: Option<usize>,
     /// Where the cells of every block go.
     scatter: Vec<Scatter>,
-    /// The elastic K.
-    elastic: Vec<f64>,
-    /// Its entries between an unknown and a prescribed displacement: their degrees of freedom.
+    /// Entries of the elastic K between an unknown and a prescribed displacement: their degrees of
+    /// freedom.
     couplings: Vec<(u32, u32, f64)>,
     /// K.
-    values: Vec<f64>,
+    matrix: Matrix,
+    /// What is factorised instead where the factor of K is too large.
+    coarse: Option<Coarse>,
     shift: f64,
     stiffest: f64,
     cholesky: Cholesky,
@@ -44,6 +48,8 @@ pub(crate) struct System {
     current: bool,
     /// Factorisations done since the system was set up.
     pub(crate) factorisations: usize,
+    /// Iterations of conjugate gradients since then.
+    pub(crate) conjugate: usize,
     pub(crate) timings: Timings,
 }
 
@@ -66,6 +72,9 @@ const ACCURATE: f64 = 1e-12;
 
 /// Operations of a factorisation in the time in which a step takes up an entry of the factor.
 const OPERATIONS: f64 = 200.0;
+
+/// Operations of a factor from which on conjugate gradients take less time.
+const MOST: f64 = 2e11;
 
 /// A factor that does not solve the system it was made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -124,19 +133,28 @@ impl System {
             dofs,
             interface,
             pattern,
-        } = Numbering::new(mesh, fixed, interface_nodes, pivot, tools);
+        } = Numbering::new(mesh, &fixed, interface_nodes, pivot, tools);
         let scatter = blocks
             .iter()
             .map(|b| Scatter::new(b.as_ref(), &position, &pattern))
             .collect();
-        // One more, for what no unknown sees.
-        let values = vec![0.0; pattern.row.len() + 1];
-        let unknowns = dofs.len();
+        let space = (interface_nodes, pivot, tools);
+        let coarse = Coarse::new(mesh, blocks, &fixed, space, &dofs);
+        let most = std::env::var("MOST").ok().and_then(|m| m.parse().ok()).unwrap_or(MOST);
+        let most = coarse.as_ref().map_or(f64::INFINITY, |_| most);
+        let limits = |operations| Limits { memory, operations };
+        let (cholesky, coarse) = match (Cholesky::analyse(&pattern, limits(most)), coarse) {
+            (Err(_), Some(coarse)) => {
+                let factor = Cholesky::analyse(&coarse.matrix.pattern, limits(f64::INFINITY));
+                (factor, Some(coarse))
+            }
+            (factor, _) => (factor, None),
+        };
         let gigabytes = |entries: f64| entries * size_of::<f64>() as f64 / 1e9;
-        let cholesky = Cholesky::analyse(pattern, memory).map_err(|no| ModelError::TooLarge {
-            unknowns,
-            needed: gigabytes(no.entries),
-            room: gigabytes(no.room),
+        let cholesky = cholesky.map_err(|TooLarge { entries, room }| ModelError::TooLarge {
+            unknowns: dofs.len(),
+            needed: gigabytes(entries),
+            room: gigabytes(room),
         })?;
         Ok(Self {
             position,
@@ -144,15 +162,16 @@ impl System {
             interface,
             pivot,
             scatter,
-            elastic: values.clone(),
             couplings: Vec::new(),
-            values,
+            matrix: Matrix::new(pattern),
+            coarse,
             shift: 0.0,
             stiffest: 0.0,
             cholesky,
             elastic_factor: false,
             current: false,
             factorisations: 0,
+            conjugate: 0,
             timings: Timings {
                 ordering: clock.elapsed(),
                 ..Timings::default()
@@ -209,7 +228,8 @@ impl System {
         let mut flows = false;
         let with_stiffness = stiffness != Stiffness::None;
         if with_stiffness {
-            self.values.copy_from_slice(&self.elastic);
+            self.matrix.reset();
+            self.coarse.iter_mut().for_each(|c| c.matrix.reset());
         }
         let missing = missing.iter().any(|&m| m != 0.0).then_some(missing);
         if let Some(missing) = missing {
@@ -217,10 +237,14 @@ impl System {
                 coupling[unknown as usize] += k * missing[prescribed as usize];
             }
         }
-        let (position, values) = (&self.position, &mut self.values);
-        for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
+        let (position, coarse) = (&self.position, &mut self.coarse);
+        let values = self.matrix.values_mut();
+        for (k, (block, scatter)) in blocks.iter_mut().zip(&self.scatter).enumerate() {
             flows |= block.evaluate(d_u, stiffness, &mut |cell| {
                 scatter.add(&cell, &mut internal, values);
+                if let Some(coarse) = coarse {
+                    coarse.add(k, &cell, false);
+                }
                 if let Some(missing) = missing {
                     scatter.couplings(&cell, position, &mut |unknown, prescribed, k| {
                         coupling[unknown as usize] += k * missing[prescribed as usize];
@@ -250,19 +274,23 @@ impl System {
         let clock = Instant::now();
         let rest = vec![0.0; self.position.len()];
         let mut internal = rest.clone();
-        let (position, elastic, couplings) =
-            (&self.position, &mut self.elastic, &mut self.couplings);
-        for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
+        let (position, couplings) = (&self.position, &mut self.couplings);
+        let (coarse, elastic) = (&mut self.coarse, self.matrix.elastic_mut());
+        for (k, (block, scatter)) in blocks.iter_mut().zip(&self.scatter).enumerate() {
             block.evaluate(&rest, Stiffness::Elastic, &mut |cell| {
                 scatter.add(&cell, &mut internal, elastic);
                 scatter.couplings(&cell, position, &mut |unknown, prescribed, k| {
                     couplings.push((unknown, prescribed, k));
                 });
+                if let Some(coarse) = coarse {
+                    coarse.add(k, &cell, true);
+                }
             });
         }
-        self.values.copy_from_slice(&self.elastic);
+        self.matrix.reset();
+        self.coarse.iter_mut().for_each(|c| c.matrix.reset());
         let first = self.size() - self.interface;
-        let diagonal = |p: usize| self.elastic[self.cholesky.diagonal(p)];
+        let diagonal = |p: usize| self.matrix.elastic_diagonal(p);
         self.stiffest = (0..self.size()).map(diagonal).fold(0.0, f64::max);
         self.shift = if shifted {
             (first..self.size()).map(diagonal).fold(0.0, f64::max)
@@ -297,17 +325,17 @@ impl System {
         if elastic && self.elastic_factor {
             return Ok(());
         }
-        let first = self.size() - self.interface;
-        for p in first..self.size() {
-            self.values[self.cholesky.diagonal(p)] += self.shift;
-        }
+        let (matrix, dofs) = match &mut self.coarse {
+            Some(coarse) => (&mut coarse.matrix, &coarse.dofs),
+            None => (&mut self.matrix, &self.dofs),
+        };
+        matrix.shift(self.interface, self.shift);
         self.elastic_factor = false;
         self.factorisations += 1;
         timed(&mut self.timings.factorisation, || {
-            let (_, values) = self.values.split_last().unwrap_or((&0.0, &[]));
-            self.cholesky.factorise(values)
+            self.cholesky.factorise(&matrix.pattern, matrix.values())
         })
-        .map_err(|NotPositiveDefinite { row }| self.dofs[row])?;
+        .map_err(|NotPositiveDefinite { row }| dofs[row])?;
         self.elastic_factor = elastic;
         self.current = true;
         Ok(())
@@ -316,12 +344,12 @@ impl System {
     /// Condenses the factorised system under a load given at every degree of freedom \[N\].
     pub(crate) fn condense(&mut self, load: &[f64]) -> Condensed {
         let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
-        let mut forward = applied.clone();
+        let mut forward = self.restricted(&applied);
         timed(&mut self.timings.solution, || {
             self.cholesky.forward(&mut forward)
         });
         let clock = Instant::now();
-        let first = self.size() - self.interface;
+        let first = forward.len() - self.interface;
         let mut stiffness = square(&self.cholesky.trailing(self.interface));
         for i in 0..self.interface {
             stiffness[(i, i)] -= self.shift;
@@ -346,11 +374,11 @@ impl System {
         (compliance, missing): (f64, f64),
     ) -> Border {
         let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
-        let mut forward = applied.clone();
+        let mut forward = self.restricted(&applied);
         timed(&mut self.timings.solution, || {
             self.cholesky.forward(&mut forward)
         });
-        let first = self.size() - self.interface;
+        let first = forward.len() - self.interface;
         let interior = |a: &[f64], b: &[f64]| -> f64 {
             let pairs = a[..first].iter().zip(&b[..first]);
             pairs.map(|(a, b)| a * b).sum()
@@ -381,7 +409,7 @@ impl System {
         x: &DVector<f64>,
     ) -> f64 {
         let factor = (border.missing - border.load.dot(x)) / border.compliance;
-        let interior = self.size() - self.interface;
+        let interior = condensed.forward.len() - self.interface;
         let pairs = condensed.forward.iter_mut().zip(&border.forward);
         pairs.take(interior).for_each(|(f, w)| *f += factor * w);
         let pairs = condensed.applied.iter_mut().zip(&border.applied);
@@ -396,10 +424,11 @@ impl System {
     /// [`Inaccurate`] where the factor does not solve the system.
     pub(crate) fn solve(&mut self, load: &[f64], d_u: &mut [f64]) -> Result<(), Inaccurate> {
         let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
-        let mut solution = applied.clone();
+        let mut solution = self.restricted(&applied);
         let clock = Instant::now();
         self.cholesky.forward(&mut solution);
         self.cholesky.backward(&mut solution);
+        let mut solution = self.prolonged(solution);
         let outcome = self.refine(&applied, &mut solution, self.size());
         self.timings.solution += clock.elapsed();
         for (&dof, u) in self.dofs.iter().zip(solution) {
@@ -419,15 +448,17 @@ impl System {
         x: &DVector<f64>,
         d_u: &mut [f64],
     ) -> Result<(), Inaccurate> {
-        let first = self.size() - self.interface;
         let mut solution = condensed.forward;
+        let first = solution.len() - self.interface;
         // (K + σE) u = f + t + σx has L⁻¹ of its right-hand side equal to L_ccᵀ x down here.
         let tail = self.cholesky.trailing_transposed_times(x.as_slice());
         solution[first..].copy_from_slice(tail.as_slice());
         let clock = Instant::now();
         self.cholesky.backward(&mut solution);
+        let mut solution = self.prolonged(solution);
         // Down here x is given, and the forces are those of the contact problem.
-        let outcome = self.refine(&condensed.applied, &mut solution, first);
+        let given = self.size() - self.interface;
+        let outcome = self.refine(&condensed.applied, &mut solution, given);
         self.timings.solution += clock.elapsed();
         for (&dof, u) in self.dofs.iter().zip(solution) {
             d_u[dof] = u;
@@ -435,17 +466,43 @@ impl System {
         outcome
     }
 
+    /// A load on the unknowns that are factorised.
+    fn restricted(&self, load: &[f64]) -> Vec<f64> {
+        let coarse = self.coarse.as_ref();
+        coarse.map_or_else(|| load.to_vec(), |c| c.restrict(load))
+    }
+
+    /// Displacements of all unknowns by those that are factorised.
+    fn prolonged(&self, solution: Vec<f64>) -> Vec<f64> {
+        let Some(coarse) = &self.coarse else {
+            return solution;
+        };
+        let mut all = vec![0.0; self.size()];
+        coarse.prolong(&solution, &mut all);
+        all
+    }
+
     /// Checks the first `rows` rows of K u = f, with the others of u given, and corrects u once
     /// where they do not hold: faults of memory and of kernels corrupt a factor silently. The first
     /// solve with a factor tells; later ones are of another matrix.
     fn refine(&mut self, f: &[f64], u: &mut [f64], rows: usize) -> Result<(), Inaccurate> {
+        if let Some(coarse) = &self.coarse {
+            let mut system = Conjugate {
+                matrix: &self.matrix,
+                coarse,
+                cholesky: &mut self.cholesky,
+                rows,
+                given: self.dofs.len() - rows,
+            };
+            self.conjugate += system.improve(f, u);
+            return Ok(());
+        }
         if !self.current {
             return Ok(());
         }
-        let (_, values) = self.values.split_last().unwrap_or((&0.0, &[]));
         let mut refined = false;
         loop {
-            let mut residual = self.cholesky.residual(values, u, f);
+            let mut residual = self.matrix.residual(u, f);
             residual[rows..].fill(0.0);
             let found = largest(residual.iter().copied());
             let motion = largest(u.iter().copied());

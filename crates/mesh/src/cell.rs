@@ -162,10 +162,27 @@ impl CellKind {
         }
     }
 
+    /// Values at a node of the shape functions of the linear cell with the same corners \[–\]: what a
+    /// linear field has there of every corner.
+    pub fn corner_shape(self, node: usize) -> Vec<f64> {
+        let xi = &self.data().nodes[node * self.dimension()..][..self.dimension()];
+        match self {
+            Self::Tri3 | Self::Tri6 => shape::<2, 3, Tri3>(xi),
+            Self::Quad4 | Self::Quad8 | Self::Quad9 => shape::<2, 4, Quad4>(xi),
+            Self::Tet4 | Self::Tet10 => shape::<3, 4, Tet4>(xi),
+            Self::Hex8 | Self::Hex20 | Self::Hex27 => shape::<3, 8, Hex8>(xi),
+        }
+    }
+
     /// Reference coordinates of the nodes, D each: [`Element::NODES`].
     pub fn reference_nodes(self) -> slice::ChunksExact<'static, f64> {
         self.data().nodes.chunks_exact(self.dimension())
     }
+}
+
+/// Shape functions of an element at a point given by a slice.
+fn shape<const D: usize, const N: usize, E: Element<D, N>>(xi: &[f64]) -> Vec<f64> {
+    E::shape(std::array::from_fn(|i| xi[i])).to_vec()
 }
 
 impl FacetKind {
