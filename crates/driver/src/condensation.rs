@@ -1,11 +1,12 @@
 //! The contact problem condensed from the interface unknowns, and the way back to them; not how
 //! it is solved.
 
+use crate::dense::DenseCholesky;
 use crate::interface::{ContactPoint, Footing, Kinematics};
 use crate::system::System;
 use moreau_contact::{ContactError, ContactProblem};
-use moreau_laws::Local;
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use moreau_laws::{Local, Status};
+use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 
 /// The contact problem of a linearised increment, and the way back to the interface unknowns.
@@ -19,6 +20,8 @@ pub(crate) struct Condensation<const D: usize> {
     transformation: Transformation,
     rest: Rest,
     now: Vec<Local<D>>,
+    /// Components that are not switched off.
+    active: Vec<bool>,
 }
 
 impl<const D: usize> Condensation<D> {
@@ -64,6 +67,10 @@ impl<const D: usize> Condensation<D> {
             transformation,
             rest,
             now,
+            active: kinematics
+                .iter()
+                .flat_map(|k| (0..D).map(|j| k.active[j]))
+                .collect(),
         })
     }
 
@@ -74,8 +81,60 @@ impl<const D: usize> Condensation<D> {
             (0..D).map(move |j| motion[j])
         });
         let motion = DVector::from_iterator(D * u.len(), motion);
-        let y = self.rest.expand(&motion);
+        let y = self.rest.expand(&motion, self.rest.load.clone());
         self.transformation.apply(&motion, &y)
+    }
+
+    /// The interface as it is under these statuses.
+    pub(crate) fn yielding(&self, status: &[Status]) -> Option<Yielding<'_, D>> {
+        let gives = |k: usize| match status[k / D] {
+            Status::Open => true,
+            Status::Slip => k % D > 0,
+            Status::Stick => false,
+        };
+        let free: Vec<usize> = (0..self.active.len())
+            .filter(|&k| self.active[k] && gives(k))
+            .collect();
+        let stiffness = self.problem.stiffness();
+        let own = DMatrix::from_fn(free.len(), free.len(), |i, j| stiffness[(free[i], free[j])]);
+        Some(Yielding {
+            condensation: self,
+            factor: DenseCholesky::new(own)?,
+            free,
+        })
+    }
+}
+
+/// The interface with what touches held to its surface, and what sticks to its place; the forces
+/// of what slips do not change. What is left is as linear as the bodies are.
+pub(crate) struct Yielding<'a, const D: usize> {
+    condensation: &'a Condensation<D>,
+    /// Components that give way.
+    free: Vec<usize>,
+    factor: DenseCholesky,
+}
+
+impl<const D: usize> Yielding<'_, D> {
+    /// Interface displacements x under forces g at its unknowns \[N\], in the stiffness of the
+    /// condensed system.
+    pub(crate) fn displacement(&self, g: &DVector<f64>) -> DVector<f64> {
+        let Condensation {
+            transformation,
+            rest,
+            active,
+            ..
+        } = self.condensation;
+        let g = transformation.transposed(g);
+        let (own, load) = rest.reduce(&g, active.len());
+        let mut x = DVector::from_iterator(self.free.len(), self.free.iter().map(|&k| own[k]));
+        self.factor.forward_one(&mut x);
+        self.factor.backward_one(&mut x);
+        let mut u = DVector::zeros(active.len());
+        for (&k, x) in self.free.iter().zip(x.iter()) {
+            u[k] = *x;
+        }
+        let y = rest.expand(&u, load);
+        transformation.apply(&u, &y)
     }
 }
 
@@ -269,7 +328,7 @@ impl Transformation {
 
 /// The unknowns y that no contact force acts on: y = S_yy⁻¹ (f_y − S_yu u).
 struct Rest {
-    factor: Option<Cholesky<f64, Dyn>>,
+    factor: Option<DenseCholesky>,
     /// L⁻¹ S_yu.
     coupling: DMatrix<f64>,
     /// L⁻¹ f_y.
@@ -287,39 +346,42 @@ impl Rest {
         let mut rest = Self {
             factor: None,
             coupling: s.view((kept, 0), (others, kept)).into_owned(),
-            load: f.rows(kept, others).into_owned(),
+            load: DVector::zeros(0),
         };
         if others == 0 {
             return Ok((s, f, rest));
         }
         let own = s.view((0, 0), (kept, kept)).into_owned();
-        let load = f.rows(0, kept).into_owned();
         let block = s.view((kept, kept), (others, others)).into_owned();
         let stiffest = block.diagonal().amax();
-        let factor = Cholesky::new(block).ok_or(ContactError::Singular)?;
+        let factor = DenseCholesky::new(block).ok_or(ContactError::Singular)?;
         // A pivot at rounding level is a rigid motion, not a stiffness.
-        if factor.l_dirty().diagonal().amin().powi(2) <= 1e-13 * stiffest {
+        if factor.least_pivot().powi(2) <= 1e-13 * stiffest {
             return Err(ContactError::Singular);
         }
-        let l = factor.l_dirty();
-        if !(l.solve_lower_triangular_mut(&mut rest.coupling)
-            && l.solve_lower_triangular_mut(&mut rest.load))
-        {
-            return Err(ContactError::Singular);
-        }
-        let transposed = rest.coupling.transpose();
-        let mut own = own - &transposed * &rest.coupling;
-        own.fill_upper_triangle_with_lower_triangle();
-        let load = load - transposed * &rest.load;
+        factor.forward(&mut rest.coupling);
         rest.factor = Some(factor);
+        let mut own = own - rest.coupling.tr_mul(&rest.coupling);
+        own.fill_upper_triangle_with_lower_triangle();
+        let (load, y) = rest.reduce(&f, kept);
+        rest.load = y;
         Ok((own, load, rest))
     }
 
-    fn expand(&self, u: &DVector<f64>) -> DVector<f64> {
-        let mut y = &self.load - &self.coupling * u;
+    /// A load reduced to the first `kept` unknowns, and L⁻¹ f_y.
+    fn reduce(&self, f: &DVector<f64>, kept: usize) -> (DVector<f64>, DVector<f64>) {
+        let mut y = f.rows(kept, f.len() - kept).into_owned();
         if let Some(factor) = &self.factor {
-            // Lᵀ is regular since L was.
-            factor.l_dirty().tr_solve_lower_triangular_mut(&mut y);
+            factor.forward_one(&mut y);
+        }
+        (f.rows(0, kept) - self.coupling.tr_mul(&y), y)
+    }
+
+    /// y for u and L⁻¹ f_y.
+    fn expand(&self, u: &DVector<f64>, load: DVector<f64>) -> DVector<f64> {
+        let mut y = load - &self.coupling * u;
+        if let Some(factor) = &self.factor {
+            factor.backward_one(&mut y);
         }
         y
     }
@@ -389,7 +451,8 @@ mod tests {
         let x = s.lu().solve(&f).expect("regular");
         let u = own.lu().solve(&load).expect("regular");
         assert!((&u - x.rows(0, 2)).norm() < 1e-10);
-        assert!((rest.expand(&u) - x.rows(2, 3)).norm() < 1e-10);
+        let y = rest.expand(&u, rest.load.clone());
+        assert!((y - x.rows(2, 3)).norm() < 1e-10);
         let floating = DMatrix::from_element(3, 3, 1.0);
         assert!(Rest::condense(floating, DVector::zeros(3), 1).is_err());
     }

@@ -4,6 +4,7 @@
 use crate::block::Stiffness;
 use crate::chord::Chord;
 use crate::condensation::Condensation;
+use crate::conjugate::Interface;
 use crate::control::Control;
 use crate::driver::Driver;
 use crate::error::{Imbalance, ModelError, StepError};
@@ -15,6 +16,7 @@ use crate::norm::largest;
 use crate::report::{Iteration, StepReport};
 use crate::system::System;
 use moreau_contact::{ContactError, ContactSolution};
+use nalgebra::DVector;
 use std::borrow::Cow;
 use std::time::Instant;
 
@@ -204,8 +206,19 @@ impl<const D: usize> Driver<D> {
             let mut step = std::mem::replace(&mut missing, vec![0.0; now.d_u.len()]);
             let x = condensation.interface(&solved.displacement);
             let growth = border.map_or(0.0, |b| system.factor(&b, &mut condensed, &x));
-            system.expand(condensed, &x, &mut step)?;
             let target = self.contact_forces(&kinematics, &solved.force);
+            // A load of unknown factor is found with the interface.
+            let yielding = (!system.is_direct() && control.is_none())
+                .then(|| condensation.yielding(&solved.status))
+                .flatten();
+            let give = yielding
+                .as_ref()
+                .map(|y| |g: &DVector<f64>| y.displacement(g));
+            let interface = match &give {
+                Some(give) => Interface::Yields(give),
+                None => Interface::Held,
+            };
+            system.expand(condensed, &x, (&target, interface), &mut step)?;
             let slack = CONTACT_SLACK * solved.residual;
             solution = Some(solved);
             let elastic = system.holds_elastic_factor() && !now.assembly.flows;

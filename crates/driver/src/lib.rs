@@ -37,6 +37,7 @@ mod commit;
 mod condensation;
 mod conjugate;
 mod control;
+mod dense;
 mod driver;
 mod error;
 mod handover;

@@ -188,6 +188,7 @@ impl<const D: usize> Driver<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::conjugate::Interface;
     use crate::{Axis, Model, Settings, Step};
     use moreau_laws::VonMises;
     use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
@@ -256,7 +257,12 @@ mod tests {
         let condensed = system.condense(&end.force);
         let mut step = none.clone();
         system
-            .expand(condensed, &nalgebra::DVector::zeros(0), &mut step)
+            .expand(
+                condensed,
+                &nalgebra::DVector::zeros(0),
+                (&none, Interface::Held),
+                &mut step,
+            )
             .expect("accurate");
         step.iter_mut().for_each(|u| *u *= 4.0);
         let now = Iterate {

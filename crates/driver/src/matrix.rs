@@ -83,9 +83,9 @@ impl Matrix {
         }
     }
 
-    /// Solves (D + L) x = b on the first `rows`, with D the diagonal and L what is below it: a sweep
-    /// of Gauss and Seidel from nothing. What it leaves of b is −Lᵀ x.
-    pub(crate) fn sweep_down(&self, b: &[f64], rows: usize, x: &mut [f64]) {
+    /// x of (D + L) x = b on the first `rows`, zero on the others, with D the diagonal and L what is
+    /// below it: a sweep of Gauss and Seidel from nothing. Writes to `left` what that leaves of b.
+    pub(crate) fn sweep_down(&self, b: &[f64], rows: usize, x: &mut [f64], left: &mut [f64]) {
         x.copy_from_slice(b);
         for j in 0..rows {
             let (diagonal, below, values) = self.column(j);
@@ -95,17 +95,13 @@ impl Matrix {
                 x[i as usize] -= a * own;
             }
         }
+        left[rows..].copy_from_slice(&x[rows..]);
         x[rows..].fill(0.0);
-    }
-
-    /// −Lᵀ x on the first `rows`.
-    pub(crate) fn left(&self, x: &[f64], rows: usize, r: &mut [f64]) {
-        for (j, r) in r[..rows].iter_mut().enumerate() {
+        for (j, left) in left[..rows].iter_mut().enumerate() {
             let (_, below, values) = self.column(j);
             let pairs = below.iter().zip(values);
-            *r = -pairs.map(|(&i, a)| a * x[i as usize]).sum::<f64>();
+            *left = -pairs.map(|(&i, a)| a * x[i as usize]).sum::<f64>();
         }
-        r[rows..].fill(0.0);
     }
 
     /// A sweep of Gauss and Seidel over the first `rows` of A x = b, from the last to the first;

@@ -3,9 +3,10 @@
 
 use crate::ModelError;
 use crate::block::{Block, Stiffness};
-use crate::cholesky::{Cholesky, Limits, NotPositiveDefinite, TooLarge, square};
+use crate::cholesky::{Cholesky, Limits, NotPositiveDefinite, TooLarge};
 use crate::coarse::Coarse;
-use crate::conjugate::Conjugate;
+use crate::conjugate::{Conjugate, Interface};
+use crate::dense::square;
 use crate::matrix::Matrix;
 use crate::norm::largest;
 use crate::numbering::Numbering;
@@ -429,7 +430,7 @@ impl System {
         self.cholesky.forward(&mut solution);
         self.cholesky.backward(&mut solution);
         let mut solution = self.prolonged(solution);
-        let outcome = self.refine(&applied, &mut solution, self.size());
+        let outcome = self.improve(&applied, &mut solution, Interface::Free);
         self.timings.solution += clock.elapsed();
         for (&dof, u) in self.dofs.iter().zip(solution) {
             d_u[dof] = u;
@@ -438,7 +439,8 @@ impl System {
     }
 
     /// Displacement of all free degrees of freedom for the interface displacements x, written to
-    /// `d_u` at every degree of freedom; prescribed ones are left as they are.
+    /// `d_u` at every degree of freedom; prescribed ones are left as they are. `contact` are the
+    /// contact forces at every degree of freedom \[N\], under which the interface may do what it does.
     ///
     /// # Errors
     /// [`Inaccurate`] where the factor does not solve the system.
@@ -446,6 +448,7 @@ impl System {
         &mut self,
         condensed: Condensed,
         x: &DVector<f64>,
+        (contact, interface): (&[f64], Interface<'_>),
         d_u: &mut [f64],
     ) -> Result<(), Inaccurate> {
         let mut solution = condensed.forward;
@@ -456,9 +459,11 @@ impl System {
         let clock = Instant::now();
         self.cholesky.backward(&mut solution);
         let mut solution = self.prolonged(solution);
-        // Down here x is given, and the forces are those of the contact problem.
-        let given = self.size() - self.interface;
-        let outcome = self.refine(&condensed.applied, &mut solution, given);
+        let mut applied = condensed.applied;
+        for (&dof, f) in self.dofs.iter().zip(&mut applied) {
+            *f += contact[dof];
+        }
+        let outcome = self.improve(&applied, &mut solution, interface);
         self.timings.solution += clock.elapsed();
         for (&dof, u) in self.dofs.iter().zip(solution) {
             d_u[dof] = u;
@@ -482,21 +487,42 @@ impl System {
         all
     }
 
+    /// Whether the factor is one of K itself.
+    pub(crate) fn is_direct(&self) -> bool {
+        self.coarse.is_none()
+    }
+
+    /// Makes u solve K u = f but for what the factor lacks: rounding, or what the coarse space does
+    /// not have.
+    fn improve(
+        &mut self,
+        f: &[f64],
+        u: &mut [f64],
+        interface: Interface<'_>,
+    ) -> Result<(), Inaccurate> {
+        let Some(coarse) = &self.coarse else {
+            let rows = match interface {
+                Interface::Free => self.size(),
+                // Down there x is given, and the forces are those of the contact problem.
+                Interface::Held | Interface::Yields(_) => self.size() - self.interface,
+            };
+            return self.refine(f, u, rows);
+        };
+        let mut system = Conjugate {
+            matrix: &self.matrix,
+            coarse,
+            cholesky: &mut self.cholesky,
+            interface,
+            size: self.interface,
+        };
+        self.conjugate += system.improve(f, u);
+        Ok(())
+    }
+
     /// Checks the first `rows` rows of K u = f, with the others of u given, and corrects u once
     /// where they do not hold: faults of memory and of kernels corrupt a factor silently. The first
     /// solve with a factor tells; later ones are of another matrix.
     fn refine(&mut self, f: &[f64], u: &mut [f64], rows: usize) -> Result<(), Inaccurate> {
-        if let Some(coarse) = &self.coarse {
-            let mut system = Conjugate {
-                matrix: &self.matrix,
-                coarse,
-                cholesky: &mut self.cholesky,
-                rows,
-                given: self.dofs.len() - rows,
-            };
-            self.conjugate += system.improve(f, u);
-            return Ok(());
-        }
         if !self.current {
             return Ok(());
         }

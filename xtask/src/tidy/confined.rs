@@ -5,10 +5,11 @@ use super::lexer::Kind;
 use super::source::Source;
 
 /// Linear algebra: a library to be replaced in one file for each kind of matrix.
-const ALGEBRA: (&str, [&str; 3]) = (
+const ALGEBRA: (&str, [&str; 4]) = (
     "faer",
     [
         "crates/driver/src/cholesky.rs",
+        "crates/driver/src/dense.rs",
         "crates/contact/src/dense.rs",
         "crates/contact/src/sparse.rs",
     ],
