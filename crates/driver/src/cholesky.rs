@@ -88,16 +88,16 @@ pub(crate) struct NotPositiveDefinite {
     pub(crate) row: usize,
 }
 
-/// What a factor may take.
+/// What a factor takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Limits {
-    /// Memory \[bytes\]; `None` for any.
-    pub(crate) memory: Option<u64>,
-    /// Multiplications.
+pub(crate) struct Cost {
+    /// Entries.
+    pub(crate) entries: f64,
+    /// Multiplications of a factorisation.
     pub(crate) operations: f64,
 }
 
-/// A factor that takes more than it may.
+/// A factor that is not made, or that there is no room for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TooLarge {
     /// Entries of the factor.
@@ -133,11 +133,15 @@ impl fmt::Debug for Cholesky {
 }
 
 impl Cholesky {
-    /// Symbolic factorisation, once for a pattern.
+    /// Symbolic factorisation, once for a pattern; the factor may take `memory` \[bytes\].
     ///
     /// # Errors
-    /// [`TooLarge`] if the factor takes more than it may, or more than a 32-bit index counts.
-    pub(crate) fn analyse(pattern: &Pattern, limits: Limits) -> Result<Self, TooLarge> {
+    /// [`TooLarge`] if it takes more, more than a 32-bit index counts, or more than is `accepted`.
+    pub(crate) fn analyse(
+        pattern: &Pattern,
+        memory: Option<u64>,
+        accepted: impl FnOnce(Cost) -> bool,
+    ) -> Result<Self, TooLarge> {
         let threads = |operations| {
             if operations > PARALLEL {
                 Par::rayon(0)
@@ -145,14 +149,14 @@ impl Cholesky {
                 Par::Seq
             }
         };
-        Self::analyse_for(pattern, threads, limits)
+        Self::analyse_for(pattern, threads, (memory, accepted))
     }
 
     /// The threads may depend on the number of operations.
     fn analyse_for(
         pattern: &Pattern,
         threads: impl Fn(f64) -> Par,
-        limits: Limits,
+        (free, accepted): (Option<u64>, impl FnOnce(Cost) -> bool),
     ) -> Result<Self, TooLarge> {
         let n = pattern.size();
         let upper = pattern.transposed();
@@ -160,10 +164,10 @@ impl Cholesky {
             simplicial::prefactorize_symbolic_cholesky_scratch::<u32>(n, pattern.entries()),
             supernodal::factorize_supernodal_symbolic_cholesky_scratch::<u32>(n),
         );
-        let by_memory = limits.memory.map_or(f64::INFINITY, |bytes| {
+        let by_free = free.map_or(f64::INFINITY, |bytes| {
             bytes as f64 / size_of::<f64>() as f64
         });
-        let room = by_memory.min(f64::from(u32::MAX));
+        let room = by_free.min(f64::from(u32::MAX));
         let too_large = |entries: f64| TooLarge { entries, room };
         let mut memory = MemBuffer::try_new(request).map_err(|_| too_large(n as f64))?;
         let (mut tree, mut counts) = (vec![0i32; n], vec![0u32; n]);
@@ -176,7 +180,11 @@ impl Cholesky {
         let counted = || counts.iter().map(|&count| f64::from(count));
         let entries: f64 = counted().sum();
         let operations: f64 = counted().map(|count| count * count).sum();
-        if entries > room || operations > limits.operations {
+        let cost = Cost {
+            entries,
+            operations,
+        };
+        if entries > room || !accepted(cost) {
             return Err(too_large(entries));
         }
         let symbolic = supernodal::factorize_supernodal_symbolic_cholesky(
@@ -377,11 +385,6 @@ mod tests {
     use nalgebra::DVector;
     use proptest::prelude::*;
 
-    const ANY: Limits = Limits {
-        memory: None,
-        operations: f64::INFINITY,
-    };
-
     /// Arrow matrix plus a random band: sparse rows with a dense tail.
     fn sample(n: usize, seed: &[f64]) -> (Pattern, Vec<f64>, DMatrix<f64>) {
         let mut dense = DMatrix::zeros(n, n);
@@ -421,7 +424,7 @@ mod tests {
             n in 4usize..40, seed in prop::collection::vec(-1.0..1.0f64, 13), tail in 1usize..4,
         ) {
             let (pattern, values, dense) = sample(n, &seed);
-            let mut cholesky = Cholesky::analyse(&pattern, ANY).expect("small");
+            let mut cholesky = Cholesky::analyse(&pattern, None, |_| true).expect("small");
             cholesky.factorise(&pattern, &values).expect("definite");
             let x = DVector::from_fn(n, |i, _| (i as f64).cos());
             let mut b = (&dense * &x).as_slice().to_vec();
@@ -478,7 +481,7 @@ mod tests {
         let (pattern, values) = laplacian(22);
         let factor = |par: Par, threads: usize| {
             let mut cholesky =
-                Cholesky::analyse_for(&pattern, |_| par, ANY).expect("small");
+                Cholesky::analyse_for(&pattern, |_| par, (None, |_| true)).expect("small");
             assert!(cholesky.operations() > 1e8);
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
             let pool = pool.build().expect("threads");
@@ -495,10 +498,7 @@ mod tests {
     #[test]
     fn a_factor_larger_than_the_memory_that_is_free_is_refused_before_it_is_made() {
         let (pattern, _) = laplacian(6);
-        let analysed = |memory| {
-            let limits = Limits { memory, ..ANY };
-            Cholesky::analyse_for(&pattern, |_| Par::Seq, limits)
-        };
+        let analysed = |memory| Cholesky::analyse(&pattern, memory, |_| true);
         let entries = analysed(None).expect("small").entries();
         // The columns alone, without the zeros that make those of a supernode alike.
         for bytes in [0, 4 * entries as u64, 8 * entries as u64 - 8] {
@@ -512,7 +512,7 @@ mod tests {
     #[test]
     fn an_indefinite_matrix_is_refused_at_its_row() {
         let pattern = Pattern::new(vec![0, 2, 3], vec![0, 1, 1]);
-        let mut cholesky = Cholesky::analyse(&pattern, ANY).expect("small");
+        let mut cholesky = Cholesky::analyse(&pattern, None, |_| true).expect("small");
         assert_eq!(
             cholesky.factorise(&pattern, &[1.0, 2.0, 1.0]),
             Err(NotPositiveDefinite { row: 1 })

@@ -3,7 +3,7 @@
 
 use crate::ModelError;
 use crate::block::{Block, Stiffness};
-use crate::cholesky::{Cholesky, Limits, NotPositiveDefinite, TooLarge};
+use crate::cholesky::{Cholesky, NotPositiveDefinite, TooLarge};
 use crate::coarse::Coarse;
 use crate::conjugate::{Conjugate, Interface};
 use crate::dense::square;
@@ -74,8 +74,17 @@ const ACCURATE: f64 = 1e-12;
 /// Operations of a factorisation in the time in which a step takes up an entry of the factor.
 const OPERATIONS: f64 = 200.0;
 
-/// Operations of a factor from which on conjugate gradients take less time.
-const MOST: f64 = 2e11;
+/// Operations of a factor that takes so little time that nothing else is looked for.
+const LITTLE: f64 = 1e8;
+
+/// Times that an iteration of conjugate gradients reads the matrix.
+const PASSES: f64 = 5.0;
+
+/// Iterations that a step of Newton's method takes.
+const SOLVES: f64 = 10.0;
+
+/// Operations of a factorisation in the time in which an iteration reads an entry.
+const READ: f64 = 80.0;
 
 /// A factor that does not solve the system it was made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -139,20 +148,31 @@ impl System {
             .iter()
             .map(|b| Scatter::new(b.as_ref(), &position, &pattern))
             .collect();
-        let space = (interface_nodes, pivot, tools);
-        let coarse = Coarse::new(mesh, blocks, &fixed, space, &dofs);
-        let most = std::env::var("MOST").ok().and_then(|m| m.parse().ok()).unwrap_or(MOST);
-        let most = coarse.as_ref().map_or(f64::INFINITY, |_| most);
-        let limits = |operations| Limits { memory, operations };
-        let (cholesky, coarse) = match (Cholesky::analyse(&pattern, limits(most)), coarse) {
-            (Err(_), Some(coarse)) => {
-                let factor = Cholesky::analyse(&coarse.matrix.pattern, limits(f64::INFINITY));
-                (factor, Some(coarse))
+        let coarse = || {
+            let space = (interface_nodes, pivot, tools);
+            let coarse = Coarse::new(mesh, blocks, &fixed, space, &dofs)?;
+            let factor = Cholesky::analyse(&coarse.matrix.pattern, memory, |_| true);
+            Some(factor.map(|factor| (factor, Some(coarse))))
+        };
+        let mut other = None;
+        let own = Cholesky::analyse(&pattern, memory, |cost| {
+            if cost.operations > LITTLE {
+                other = coarse().filter(|other| {
+                    other.as_ref().is_ok_and(|(factor, _)| {
+                        let read = PASSES * pattern.entries() as f64 + 2.0 * factor.entries() as f64;
+                        let read = READ * SOLVES * read;
+                        match std::env::var("FORCE").as_deref() { Ok("cg") => true, Ok(_) => false, _ => factor.operations() + read < cost.operations }
+                    })
+                });
             }
-            (factor, _) => (factor, None),
+            other.is_none()
+        });
+        let chosen = match own {
+            Ok(factor) => Ok((factor, None)),
+            Err(too_large) => other.or_else(coarse).unwrap_or(Err(too_large)),
         };
         let gigabytes = |entries: f64| entries * size_of::<f64>() as f64 / 1e9;
-        let cholesky = cholesky.map_err(|TooLarge { entries, room }| ModelError::TooLarge {
+        let (cholesky, coarse) = chosen.map_err(|TooLarge { entries, room }| ModelError::TooLarge {
             unknowns: dofs.len(),
             needed: gigabytes(entries),
             room: gigabytes(room),
