@@ -1,11 +1,11 @@
 //! Sparse Cholesky factorisation with kept symbolic work and buffers; the only file that names
 //! the sparse library.
 
+use faer::Par;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError;
 use faer::sparse::linalg::cholesky::{simplicial, supernodal};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
-use faer::Par;
 use nalgebra::{DMatrix, DVector};
 use std::fmt;
 
@@ -517,6 +517,8 @@ mod tests {
             cholesky.factorise(&pattern, &[1.0, 2.0, 1.0]),
             Err(NotPositiveDefinite { row: 1 })
         );
-        cholesky.factorise(&pattern, &[1.0, 0.5, 1.0]).expect("definite");
+        cholesky
+            .factorise(&pattern, &[1.0, 0.5, 1.0])
+            .expect("definite");
     }
 }

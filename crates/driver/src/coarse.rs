@@ -74,7 +74,7 @@ impl Coarse {
             start,
             parts,
             dofs: coarse.dofs,
-            matrix: Matrix::new(coarse.pattern),
+            matrix: Matrix::new(coarse.pattern, coarse.interface),
         })
     }
 

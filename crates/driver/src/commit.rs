@@ -132,6 +132,7 @@ impl<const D: usize> Driver<D> {
             nonlinear_solves: counts.solves,
             contact_iterations: counts.contact,
             factorisations: counts.factorisations,
+            linear_iterations: counts.linear,
             shortened_steps: counts.shortened,
             cuts: 0,
             open,

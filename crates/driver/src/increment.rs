@@ -30,6 +30,8 @@ pub(crate) struct Counts {
     pub(crate) last_contact: usize,
     pub(crate) shortened: usize,
     pub(crate) factorisations: usize,
+    /// Iterations of conjugate gradients.
+    pub(crate) linear: usize,
     pub(crate) residuals: Vec<f64>,
     /// [`StepReport::criticality`].
     pub(crate) criticality: Option<(usize, f64)>,
@@ -53,8 +55,8 @@ pub(crate) struct Start {
     /// Prescribed displacements that the first iterate does not have.
     pub(crate) missing: Vec<f64>,
     pub(crate) now: Iterate,
-    /// Factorisations done before.
-    pub(crate) factorisations: usize,
+    /// Factorisations, and iterations of conjugate gradients, done before.
+    pub(crate) done: (usize, usize),
 }
 
 /// What an increment may be off by, over the residual of its contact solution: that weighs
@@ -98,7 +100,7 @@ impl<const D: usize> Driver<D> {
             free,
             mut missing,
             mut now,
-            factorisations,
+            done,
         } = self.first_iterate(system, (start, &end), guess);
         let mut counts = Counts {
             solves: 1,
@@ -145,7 +147,8 @@ impl<const D: usize> Driver<D> {
             if balanced
                 && let Some(s) = solution.take_if(|s| self.law_holds(system, &kinematics, s, scale))
             {
-                counts.factorisations = system.factorisations - factorisations;
+                counts.factorisations = system.factorisations - done.0;
+                counts.linear = system.conjugate - done.1;
                 let candidate = Candidate {
                     d_u: now.d_u,
                     internal: now.assembly.internal,
@@ -269,7 +272,7 @@ impl<const D: usize> Driver<D> {
                 part: 0.0,
             },
             missing,
-            factorisations: system.factorisations,
+            done: (system.factorisations, system.conjugate),
         }
     }
 

@@ -32,7 +32,7 @@ impl<const D: usize> Driver<D> {
             free,
             mut missing,
             mut now,
-            factorisations,
+            done,
         } = self.first_iterate(system, (start, end), self.predictor(start, end));
         let mut counts = Counts::default();
         let kinematics = self.kinematics(system, end, &now.d_u);
@@ -86,7 +86,8 @@ impl<const D: usize> Driver<D> {
                 status: &status,
             });
             if residual <= tolerance * scale {
-                counts.factorisations = system.factorisations - factorisations;
+                counts.factorisations = system.factorisations - done.0;
+                counts.linear = system.conjugate - done.1;
                 let candidate = Candidate {
                     out_of_balance: largest(unbalanced.into_iter()),
                     d_u: now.d_u,

@@ -71,6 +71,8 @@ pub struct StepReport {
     pub contact_iterations: usize,
     /// Sparse factorisations.
     pub factorisations: usize,
+    /// Iterations of conjugate gradients; none where the stiffness itself is factorised.
+    pub linear_iterations: usize,
     /// Newton steps that the line search shortened.
     pub shortened_steps: usize,
     /// Times the increment was halved before it converged.

@@ -3,7 +3,7 @@
 
 use crate::ModelError;
 use crate::block::{Block, Stiffness};
-use crate::cholesky::{Cholesky, NotPositiveDefinite, TooLarge};
+use crate::cholesky::{Cholesky, NotPositiveDefinite, Pattern, TooLarge};
 use crate::coarse::Coarse;
 use crate::conjugate::{Conjugate, Interface};
 use crate::dense::square;
@@ -21,6 +21,10 @@ use std::time::Instant;
 /// K + σE is what is factorised, with E the identity on the interface: it is positive definite as
 /// soon as holding the interface holds the bodies, and the Schur complement of K itself is
 /// L_cc L_ccᵀ − σ 1 exactly, even where only contact holds a body and K is singular.
+///
+/// Where that factor has no room, or would take longer than conjugate gradients, the stiffness of a
+/// coarse space takes its place: S is then that of the coarse space, and so are the condensed loads,
+/// and what they give is brought to the solution of K itself by conjugate gradients.
 #[derive(Debug)]
 pub(crate) struct System {
     /// Position of a degree of freedom in the system, or [`FIXED`].
@@ -74,17 +78,15 @@ const ACCURATE: f64 = 1e-12;
 /// Operations of a factorisation in the time in which a step takes up an entry of the factor.
 const OPERATIONS: f64 = 200.0;
 
-/// Operations of a factor that takes so little time that nothing else is looked for.
+/// Operations of a factorisation that takes so little time that nothing else is looked for.
 const LITTLE: f64 = 1e8;
 
-/// Times that an iteration of conjugate gradients reads the matrix.
-const PASSES: f64 = 5.0;
-
-/// Iterations that a step of Newton's method takes.
-const SOLVES: f64 = 10.0;
-
-/// Operations of a factorisation in the time in which an iteration reads an entry.
-const READ: f64 = 80.0;
+/// Operations of a factorisation in about the time of the conjugate gradients of a Newton step: ten
+/// iterations, each of which reads the matrix five times and the factor of its coarse space twice; an
+/// entry is read in the time of eighty operations.
+fn conjugate_operations(pattern: &Pattern, factor: &Cholesky) -> f64 {
+    10.0 * 80.0 * (5.0 * pattern.entries() as f64 + 2.0 * factor.entries() as f64)
+}
 
 /// A factor that does not solve the system it was made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,6 +130,9 @@ impl System {
     /// Numbers the free degrees of freedom, orders them and does the symbolic factorisation. The
     /// interface is that of the contact points, the node `pivot` if there is one, and the tools: they
     /// are nodes after those of the mesh, without stiffness. The factor may take `memory` \[bytes\].
+    ///
+    /// # Errors
+    /// [`ModelError::TooLarge`] where neither its own factor nor that of a coarse space has room.
     pub(crate) fn new<const D: usize>(
         mesh: &Mesh<D>,
         blocks: &[Box<dyn Block<D>>],
@@ -159,9 +164,8 @@ impl System {
             if cost.operations > LITTLE {
                 other = coarse().filter(|other| {
                     other.as_ref().is_ok_and(|(factor, _)| {
-                        let read = PASSES * pattern.entries() as f64 + 2.0 * factor.entries() as f64;
-                        let read = READ * SOLVES * read;
-                        match std::env::var("FORCE").as_deref() { Ok("cg") => true, Ok(_) => false, _ => factor.operations() + read < cost.operations }
+                        factor.operations() + conjugate_operations(&pattern, factor)
+                            < cost.operations
                     })
                 });
             }
@@ -172,11 +176,12 @@ impl System {
             Err(too_large) => other.or_else(coarse).unwrap_or(Err(too_large)),
         };
         let gigabytes = |entries: f64| entries * size_of::<f64>() as f64 / 1e9;
-        let (cholesky, coarse) = chosen.map_err(|TooLarge { entries, room }| ModelError::TooLarge {
-            unknowns: dofs.len(),
-            needed: gigabytes(entries),
-            room: gigabytes(room),
-        })?;
+        let (cholesky, coarse) =
+            chosen.map_err(|TooLarge { entries, room }| ModelError::TooLarge {
+                unknowns: dofs.len(),
+                needed: gigabytes(entries),
+                room: gigabytes(room),
+            })?;
         Ok(Self {
             position,
             dofs,
@@ -184,7 +189,7 @@ impl System {
             pivot,
             scatter,
             couplings: Vec::new(),
-            matrix: Matrix::new(pattern),
+            matrix: Matrix::new(pattern, interface),
             coarse,
             shift: 0.0,
             stiffest: 0.0,
@@ -327,9 +332,14 @@ impl System {
     }
 
     /// How many steps without a factorisation take about as long as one: operations of the one over
-    /// what the others read of the factor.
+    /// what the others read.
     pub(crate) fn steps_per_factorisation(&self) -> f64 {
-        self.cholesky.operations() / (OPERATIONS * self.cholesky.entries() as f64)
+        let step = OPERATIONS * self.cholesky.entries() as f64;
+        let coarse = self.coarse.as_ref();
+        let conjugate = coarse.map_or(0.0, |_| {
+            conjugate_operations(&self.matrix.pattern, &self.cholesky)
+        });
+        self.cholesky.operations() / (step + conjugate)
     }
 
     /// Largest diagonal of the elastic stiffness \[N/mm\].
@@ -580,7 +590,7 @@ mod tests {
     use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
 
     /// A block held at its left side and pulled at the other, factorised, with its load.
-    fn pulled() -> (System, Vec<f64>) {
+    fn pulled(memory: Option<u64>) -> (System, Vec<f64>) {
         let (x, y) = (uniform(0.0, 10.0, 6), uniform(0.0, 5.0, 3));
         let mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
         let model = Model::new(mesh, PlaneStrain::default())
@@ -590,7 +600,11 @@ mod tests {
                 Integration::Reduced,
             )
             .expect("valid");
-        let mut driver = Driver::new(model, Settings::default()).expect("valid");
+        let settings = Settings {
+            memory,
+            ..Settings::default()
+        };
+        let mut driver = Driver::new(model, settings).expect("valid");
         let step = Step::new("pull")
             .fix("block.left", &[Axis::X, Axis::Y])
             .pressure("block.right", -100.0);
@@ -602,7 +616,7 @@ mod tests {
 
     #[test]
     fn a_factor_that_is_a_little_wrong_is_corrected() {
-        let (mut system, load) = pulled();
+        let (mut system, load) = pulled(None);
         let solve = |system: &mut System| {
             let mut u = vec![0.0; load.len()];
             let outcome = system.solve(&load, &mut u);
@@ -617,10 +631,66 @@ mod tests {
         assert!(largest_error < 1e-11 * largest(right.iter().copied()));
     }
 
+    /// A symmetric matrix from what it does to every unknown.
+    fn dense(matrix: &Matrix) -> DMatrix<f64> {
+        let n = matrix.pattern.size();
+        let column = |k: usize| {
+            let mut unit = vec![0.0; n];
+            unit[k] = -1.0;
+            DVector::from_vec(matrix.residual(&unit, &vec![0.0; n]))
+        };
+        DMatrix::from_columns(&(0..n).map(column).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn the_coarse_stiffness_is_that_of_its_displacements() {
+        let (own, load) = pulled(None);
+        let (mut system, _) = pulled(Some(8 * own.factor_entries() as u64 - 8));
+        let coarse = system.coarse.as_ref().expect("no room");
+        let (fine, m) = (system.size(), coarse.dofs.len());
+        assert!(m < fine);
+        let column = |k: usize| {
+            let (mut unit, mut v) = (vec![0.0; m], vec![0.0; fine]);
+            unit[k] = 1.0;
+            coarse.prolong(&unit, &mut v);
+            DVector::from_vec(v)
+        };
+        let p = DMatrix::from_columns(&(0..m).map(column).collect::<Vec<_>>());
+        let k = dense(&system.matrix);
+        let difference = dense(&coarse.matrix) - p.transpose() * &k * &p;
+        assert!(difference.amax() < 1e-12 * k.amax());
+        let f = DVector::from_fn(fine, |i, _| (i as f64).sin());
+        let restricted = DVector::from_vec(coarse.restrict(f.as_slice()));
+        assert!((restricted - p.transpose() * f).norm() < 1e-12);
+        // Brought to the solution of K itself, though not at once.
+        let mut u = vec![0.0; load.len()];
+        let mut exact = u.clone();
+        let mut own = own;
+        own.solve(&load, &mut exact).expect("accurate");
+        let mut left = load.clone();
+        for _ in 0..5 {
+            let mut more = vec![0.0; load.len()];
+            system.solve(&left, &mut more).expect("accurate");
+            u.iter_mut().zip(more).for_each(|(u, v)| *u += v);
+            let known: Vec<f64> = system.dofs.iter().map(|&dof| u[dof]).collect();
+            let f: Vec<f64> = system.dofs.iter().map(|&dof| load[dof]).collect();
+            let r = system.matrix.residual(&known, &f);
+            system
+                .dofs
+                .iter()
+                .zip(r)
+                .for_each(|(&dof, r)| left[dof] = r);
+        }
+        assert!(system.conjugate > 5);
+        let size = largest(exact.iter().copied());
+        let error = largest(u.iter().zip(&exact).map(|(a, b)| a - b));
+        assert!(error < 1e-8 * size, "{error:e} of {size:e}");
+    }
+
     #[test]
     fn a_corrupt_factor_is_told_and_not_used_again() {
         for by in [1.5, -1.0, f64::NAN, f64::INFINITY] {
-            let (mut system, load) = pulled();
+            let (mut system, load) = pulled(None);
             system.cholesky.corrupt(0, by);
             let mut u = vec![0.0; load.len()];
             let outcome = system.solve(&load, &mut u);

@@ -10,7 +10,7 @@ use moreau_laws::{Coulomb, Elastic, VonMises};
 use moreau_mesh::{Axisymmetric, CellKind, Integration, PlaneStrain, block2, uniform};
 
 /// Ends in collapse, after these reports.
-fn collapse<const D: usize>(
+pub(crate) fn collapse<const D: usize>(
     driver: &mut Driver<D>,
     step: &Step<D>,
     increments: usize,
@@ -27,11 +27,11 @@ fn collapse<const D: usize>(
 }
 
 /// Internal pressure at which a thick cylinder collapses \[MPa\].
-fn limit() -> f64 {
+pub(crate) fn limit() -> f64 {
     480.0 / 3f64.sqrt() * 2f64.ln()
 }
 
-fn cylinder(settings: Settings<2>) -> Driver<2> {
+pub(crate) fn cylinder(settings: Settings<2>) -> Driver<2> {
     let (r, z) = (uniform(100.0, 200.0, 8), uniform(0.0, 10.0, 1));
     let steel = VonMises::new(210e3, 0.3, 240.0).expect("valid");
     let model = block2("body", CellKind::Quad8, &r, &z)
@@ -41,7 +41,7 @@ fn cylinder(settings: Settings<2>) -> Driver<2> {
     Driver::new(model.expect("valid"), settings).expect("valid")
 }
 
-fn pressed(pressure: f64) -> Step<2> {
+pub(crate) fn pressed(pressure: f64) -> Step<2> {
     Step::new("press")
         .fix("body", &[Axis::Y])
         .pressure("body.left", pressure)

@@ -2,6 +2,7 @@
 
 mod anisotropic;
 mod block;
+mod coarse;
 mod collapse;
 mod increments;
 mod klarbring;

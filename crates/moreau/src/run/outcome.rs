@@ -74,6 +74,7 @@ impl Verdict {
 /// What is counted while running.
 pub(super) struct Tally {
     factorisations: usize,
+    linear: usize,
     newton: usize,
     contact: usize,
     cuts: usize,
@@ -92,6 +93,7 @@ impl Tally {
         let contacts = driver.contacts().iter().map(|c| c.contact + 1).max();
         Self {
             factorisations: 0,
+            linear: 0,
             newton: 0,
             contact: 0,
             cuts: 0,
@@ -105,6 +107,7 @@ impl Tally {
 
     pub(super) fn add<const D: usize>(&mut self, driver: &Driver<D>, report: &StepReport) {
         self.factorisations += report.factorisations;
+        self.linear += report.linear_iterations;
         self.newton += report.newton_iterations;
         self.contact += report.contact_iterations;
         self.cuts += report.cuts;
@@ -129,8 +132,9 @@ impl Tally {
 
     /// Appends all that [`Tally::read`] needs.
     pub(super) fn write(&self, out: &mut Vec<f64>) {
-        let counts = [self.factorisations, self.newton, self.contact, self.cuts];
-        out.extend(counts.map(|n| n as f64));
+        let solves = [self.factorisations, self.linear];
+        let counts = [self.newton, self.contact, self.cuts];
+        out.extend(solves.iter().chain(&counts).map(|&n| n as f64));
         let c = &self.certificate;
         out.extend([c.bipotential_gap, c.penetration, c.excess_force]);
         out.push(self.relative_gap);
@@ -153,6 +157,7 @@ impl Tally {
     /// Takes over what [`Tally::write`] left.
     pub(super) fn read(&mut self, from: &mut Reader<'_>) -> Result<(), ModelError> {
         self.factorisations = from.count()?;
+        self.linear = from.count()?;
         self.newton = from.count()?;
         self.contact = from.count()?;
         self.cuts = from.count()?;
@@ -207,6 +212,8 @@ pub struct Outcome {
     pub contact_iterations: usize,
     /// Sparse factorisations of the converged increments.
     pub factorisations: usize,
+    /// Iterations of conjugate gradients in the converged increments.
+    pub linear_iterations: usize,
     /// Times that increments were halved before they converged.
     pub cuts: usize,
     /// Degrees of freedom, prescribed ones included.
@@ -288,6 +295,7 @@ pub(super) fn conclude<const D: usize>(
         newton_iterations: tally.newton,
         contact_iterations: tally.contact,
         factorisations: tally.factorisations,
+        linear_iterations: tally.linear,
         cuts: tally.cuts,
         dofs: D * driver.mesh().nodes().len(),
         threads: rayon::current_num_threads(),
@@ -341,6 +349,7 @@ impl Outcome {
             "newton_iterations": self.newton_iterations,
             "contact_iterations": self.contact_iterations,
             "factorisations": self.factorisations,
+            "linear_iterations": self.linear_iterations,
             "cuts": self.cuts,
             "peak_memory_mb": memory::peak().map(|bytes| bytes as f64 / f64::from(1 << 20)),
             "dofs": self.dofs,
@@ -383,9 +392,13 @@ impl fmt::Display for Outcome {
             RunStatus::Interrupted(increment) => format!("interrupted after increment {increment}"),
         };
         writeln!(f, "  status        {status}")?;
+        let linear = match self.linear_iterations {
+            0 => String::new(),
+            some => format!(" and {some} conjugate gradients"),
+        };
         writeln!(
             f,
-            "  effort        {} increments, {} Newton and {} contact iterations, {} factorisations, {} cuts; \
+            "  effort        {} increments, {} Newton and {} contact iterations, {} factorisations{linear}, {} cuts; \
              {:.2} s on {} threads, {} degrees of freedom",
             self.increments,
             self.newton_iterations,

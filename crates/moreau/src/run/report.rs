@@ -85,6 +85,7 @@ fn summary(run: &serde_json::Value, deck: &Deck) -> Vec<[String; 2]> {
         ("Newton iterations", "newton_iterations"),
         ("contact iterations", "contact_iterations"),
         ("factorisations", "factorisations"),
+        ("conjugate gradients", "linear_iterations"),
         ("cuts", "cuts"),
         ("degrees of freedom", "dofs"),
         ("seconds", "seconds"),
