@@ -44,6 +44,7 @@ pub struct Settings<const D: usize> {
     /// Times an increment may be halved before the step stops.
     pub cuts: usize,
     /// What the factor of the stiffness, by far the largest, may take \[bytes\]; `None` for anything.
+    /// Where it takes more, conjugate gradients with the factor of a coarse space replace it.
     pub memory: Option<u64>,
 }
 

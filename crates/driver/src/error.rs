@@ -184,7 +184,8 @@ pub enum ModelError {
         /// How many there should be.
         expected: usize,
     },
-    /// The factor does not fit into memory or a 32-bit index.
+    /// The factor does not fit into memory or a 32-bit index; where cells have nodes between their
+    /// corners, nor does that of the coarse space.
     #[error(
         "the factor of {unknowns} unknowns takes {needed:.3} GB, and there is room for {room:.3} GB; \
          larger cells away from the contact, or a plane of symmetry, take less"

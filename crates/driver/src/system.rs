@@ -332,14 +332,9 @@ impl System {
     }
 
     /// How many steps without a factorisation take about as long as one: operations of the one over
-    /// what the others read.
+    /// what the others read of the factor.
     pub(crate) fn steps_per_factorisation(&self) -> f64 {
-        let step = OPERATIONS * self.cholesky.entries() as f64;
-        let coarse = self.coarse.as_ref();
-        let conjugate = coarse.map_or(0.0, |_| {
-            conjugate_operations(&self.matrix.pattern, &self.cholesky)
-        });
-        self.cholesky.operations() / (step + conjugate)
+        self.cholesky.operations() / (OPERATIONS * self.cholesky.entries() as f64)
     }
 
     /// Largest diagonal of the elastic stiffness \[N/mm\].
