@@ -67,14 +67,15 @@ impl Coarse {
             parts.extend(unknowns.filter(|&(unknown, _)| unknown != FIXED));
             start.push(parts.len() as u32);
         }
-        let restriction =
-            |b: &Box<dyn Block<D>>| Restriction::new(b.as_ref(), mesh, &kept, &coarse);
         Some(Self {
-            restrictions: blocks.iter().map(restriction).collect(),
+            restrictions: blocks
+                .iter()
+                .map(|b| Restriction::new(b.as_ref(), mesh, &kept, &coarse))
+                .collect(),
             start,
             parts,
             dofs: coarse.dofs,
-            matrix: Matrix::new(coarse.pattern, coarse.interface),
+            matrix: Matrix::new(coarse.pattern),
         })
     }
 
@@ -117,22 +118,24 @@ fn kept<const D: usize>(
     interface: impl Iterator<Item = usize>,
     tools: usize,
 ) -> Vec<bool> {
-    let nodes = mesh.nodes().len();
-    let mut kept = vec![false; nodes + tools];
-    interface.for_each(|a| kept[a] = true);
+    let cells = || (0..mesh.cell_count()).map(|c| (c, mesh.cell_nodes(c)));
+    let mut near = vec![false; mesh.nodes().len() + tools];
+    interface.for_each(|a| near[a] = true);
     for _ in 0..LAYERS {
-        let near = |&c: &usize| mesh.cell_nodes(c).iter().any(|&a| kept[a]);
-        let cells: Vec<usize> = (0..mesh.cell_count()).filter(near).collect();
-        for c in cells {
-            mesh.cell_nodes(c).iter().for_each(|&a| kept[a] = true);
-        }
+        let touching = cells().filter(|(_, nodes)| nodes.iter().any(|&a| near[a]));
+        let touching: Vec<&[usize]> = touching.map(|(_, nodes)| nodes).collect();
+        touching.concat().into_iter().for_each(|a| near[a] = true);
     }
-    for c in 0..mesh.cell_count() {
-        let corners = &mesh.cell_nodes(c)[..mesh.kind(c).corner_count()];
+    // Tools, and nodes of no cell, are between no others.
+    let mut kept = vec![true; near.len()];
+    for (c, nodes) in cells() {
+        let between = &nodes[mesh.kind(c).corner_count()..];
+        between.iter().for_each(|&a| kept[a] = near[a]);
+    }
+    for (c, nodes) in cells() {
+        let corners = &nodes[..mesh.kind(c).corner_count()];
         corners.iter().for_each(|&a| kept[a] = true);
     }
-    // Those of tools, and those of no cell, are between no others.
-    kept[nodes..].fill(true);
     kept
 }
 

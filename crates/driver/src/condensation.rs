@@ -89,7 +89,7 @@ impl<const D: usize> Condensation<D> {
     pub(crate) fn yielding(&self, status: &[Status]) -> Option<Yielding<'_, D>> {
         let gives = |k: usize| match status[k / D] {
             Status::Open => true,
-            Status::Slip => k % D > 0,
+            Status::Slip => !k.is_multiple_of(D),
             Status::Stick => false,
         };
         let free: Vec<usize> = (0..self.active.len())

@@ -50,7 +50,7 @@ impl Conjugate<'_> {
             if iteration == 0 {
                 target = PART * PART * now;
             }
-            if !(now > target) {
+            if now <= target || now.is_nan() {
                 return iteration;
             }
             let beta = now / before;
@@ -64,7 +64,7 @@ impl Conjugate<'_> {
             self.matrix.subtract_product(&p, q);
             let curvature = -dot(&p, q);
             // A direction without stiffness is none to go along; what is found so far leads downhill.
-            if !(curvature > 0.0) {
+            if curvature <= 0.0 || curvature.is_nan() {
                 return iteration;
             }
             let alpha = now / curvature;

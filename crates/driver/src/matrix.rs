@@ -9,76 +9,16 @@ pub(crate) struct Matrix {
     /// One more than there are entries, for what no unknown sees.
     elastic: Vec<f64>,
     values: Vec<f64>,
-    /// First columns of the panels, and one beyond the last.
-    panels: Vec<u32>,
-}
-
-/// Columns next to each other, at most, that are gone through at once: those of a node.
-const WIDEST: usize = 3;
-
-/// W columns next to each other whose rows below them are the same.
-struct Panel<'a, const W: usize> {
-    /// The first of them.
-    first: usize,
-    /// The lower triangle on its diagonal, column by column, in its first places.
-    own: [[f64; W]; W],
-    below: &'a [u32],
-    /// The entries there.
-    values: [&'a [f64]; W],
-}
-
-impl<const W: usize> Panel<'_, W> {
-    /// Σ of the entries below times x, for every column.
-    fn sums(&self, x: &[f64]) -> [f64; W] {
-        let mut sums = [0.0; W];
-        for (t, &i) in self.below.iter().enumerate() {
-            for (sum, values) in sums.iter_mut().zip(&self.values) {
-                *sum += values[t] * x[i as usize];
-            }
-        }
-        sums
-    }
-
-    /// y ← y − the columns below times x.
-    fn subtract(&self, x: [f64; W], y: &mut [f64]) {
-        for (t, &i) in self.below.iter().enumerate() {
-            let pairs = self.values.iter().zip(&x);
-            y[i as usize] -= pairs.map(|(values, x)| values[t] * x).sum::<f64>();
-        }
-    }
-
-    /// The entries of a vector at the columns.
-    fn of(&self, x: &[f64]) -> [f64; W] {
-        std::array::from_fn(|k| x[self.first + k])
-    }
-}
-
-/// What is done with a panel of any width.
-trait Pass {
-    fn panel<const W: usize>(&mut self, panel: &Panel<'_, W>);
 }
 
 impl Matrix {
-    /// All zero. The last unknowns, so many, are gone through apart from the others.
-    pub(crate) fn new(pattern: Pattern, last: usize) -> Self {
+    /// All zero.
+    pub(crate) fn new(pattern: Pattern) -> Self {
         let values = vec![0.0; pattern.entries() + 1];
-        let mut panels = vec![0];
-        let mut start = 0;
-        for j in 1..pattern.size() {
-            let width = j - start;
-            let rows = |j: usize| &pattern.rows()[pattern.range(j)];
-            let alike = rows(start).get(width..) == Some(rows(j));
-            if !alike || width == WIDEST || j + last == pattern.size() {
-                panels.push(j as u32);
-                start = j;
-            }
-        }
-        panels.push(pattern.size() as u32);
         Self {
             pattern,
             elastic: values.clone(),
             values,
-            panels,
         }
     }
 
@@ -115,36 +55,11 @@ impl Matrix {
         }
     }
 
-    /// A panel of which the first column is given.
-    fn panel<const W: usize>(&self, first: usize) -> Panel<'_, W> {
-        let range = |k: usize| self.pattern.range(first + k);
-        let entries = |k: usize| &self.values[range(k)];
-        Panel {
-            first,
-            own: std::array::from_fn(|k| {
-                std::array::from_fn(|l| entries(k).get(l).copied().unwrap_or(0.0))
-            }),
-            below: &self.pattern.rows()[range(0)][W..],
-            values: std::array::from_fn(|k| &entries(k)[W - k..]),
-        }
-    }
-
-    /// Goes through panels, by their numbers.
-    fn go(&self, numbers: impl Iterator<Item = usize>, pass: &mut impl Pass) {
-        for k in numbers {
-            let (first, end) = (self.panels[k] as usize, self.panels[k + 1] as usize);
-            match end - first {
-                1 => pass.panel(&self.panel::<1>(first)),
-                2 => pass.panel(&self.panel::<2>(first)),
-                _ => pass.panel(&self.panel::<WIDEST>(first)),
-            }
-        }
-    }
-
-    /// How many panels the first `rows` columns are.
-    fn panels(&self, rows: usize) -> usize {
-        self.panels
-            .partition_point(|&first| (first as usize) < rows)
+    /// The diagonal and, of those below it, rows and entries of a column.
+    fn column(&self, j: usize) -> (f64, &[u32], &[f64]) {
+        let range = self.pattern.range(j);
+        let (values, rows) = (&self.values[range.clone()], &self.pattern.rows()[range]);
+        (values[0], &rows[1..], &values[1..])
     }
 
     /// b − A x.
@@ -156,106 +71,57 @@ impl Matrix {
 
     /// r ← r − A x.
     pub(crate) fn subtract_product(&self, x: &[f64], r: &mut [f64]) {
-        struct Product<'a> {
-            x: &'a [f64],
-            r: &'a mut [f64],
-        }
-        impl Pass for Product<'_> {
-            fn panel<const W: usize>(&mut self, panel: &Panel<'_, W>) {
-                let own = panel.of(self.x);
-                let mut sums = [0.0; W];
-                for (t, &i) in panel.below.iter().enumerate() {
-                    let (x, mut part) = (self.x[i as usize], 0.0);
-                    for k in 0..W {
-                        sums[k] += panel.values[k][t] * x;
-                        part += panel.values[k][t] * own[k];
-                    }
-                    self.r[i as usize] -= part;
-                }
-                for k in 0..W {
-                    sums[k] += panel.own[k][0] * own[k];
-                    for l in k + 1..W {
-                        sums[k] += panel.own[k][l - k] * own[l];
-                        sums[l] += panel.own[k][l - k] * own[k];
-                    }
-                }
-                for (k, sum) in sums.into_iter().enumerate() {
-                    self.r[panel.first + k] -= sum;
-                }
+        for j in 0..x.len() {
+            let (diagonal, below, values) = self.column(j);
+            let mut sum = diagonal * x[j];
+            for (&i, a) in below.iter().zip(values) {
+                let i = i as usize;
+                sum += a * x[i];
+                r[i] -= a * x[j];
             }
+            r[j] -= sum;
         }
-        self.go(0..self.panels(self.pattern.size()), &mut Product { x, r });
     }
 
     /// x of (D + L) x = b on the first `rows`, zero on the others, with D the diagonal and L what is
     /// below it: a sweep of Gauss and Seidel from nothing. Writes to `left` what that leaves of b.
-    /// The rows are all, or all but the last unknowns.
     pub(crate) fn sweep_down(&self, b: &[f64], rows: usize, x: &mut [f64], left: &mut [f64]) {
-        struct Down<'a>(&'a mut [f64]);
-        impl Pass for Down<'_> {
-            fn panel<const W: usize>(&mut self, panel: &Panel<'_, W>) {
-                let mut own = panel.of(self.0);
-                for k in 0..W {
-                    own[k] /= panel.own[k][0];
-                    for l in k + 1..W {
-                        own[l] -= panel.own[k][l - k] * own[k];
-                    }
-                }
-                self.0[panel.first..panel.first + W].copy_from_slice(&own);
-                panel.subtract(own, self.0);
-            }
-        }
-        struct Left<'a>(&'a [f64], &'a mut [f64]);
-        impl Pass for Left<'_> {
-            fn panel<const W: usize>(&mut self, panel: &Panel<'_, W>) {
-                let (own, mut sums) = (panel.of(self.0), panel.sums(self.0));
-                for k in 0..W {
-                    for l in k + 1..W {
-                        sums[k] += panel.own[k][l - k] * own[l];
-                    }
-                }
-                let left = &mut self.1[panel.first..panel.first + W];
-                left.iter_mut().zip(sums).for_each(|(l, sum)| *l = -sum);
-            }
-        }
         x.copy_from_slice(b);
-        self.go(0..self.panels(rows), &mut Down(x));
+        for j in 0..rows {
+            let (diagonal, below, values) = self.column(j);
+            x[j] /= diagonal;
+            let own = x[j];
+            for (&i, a) in below.iter().zip(values) {
+                x[i as usize] -= a * own;
+            }
+        }
         left[rows..].copy_from_slice(&x[rows..]);
         x[rows..].fill(0.0);
-        self.go(0..self.panels(rows), &mut Left(x, left));
+        for (j, left) in left[..rows].iter_mut().enumerate() {
+            *left = -self.sum_below(j, x);
+        }
     }
 
     /// A sweep of Gauss and Seidel over the first `rows` of A x = b, from the last to the first;
-    /// `b` is overwritten. The rows are all, or all but the last unknowns.
+    /// `b` is overwritten.
     pub(crate) fn sweep_up(&self, b: &mut [f64], rows: usize, x: &mut [f64]) {
-        struct Known<'a>(&'a [f64], &'a mut [f64]);
-        impl Pass for Known<'_> {
-            fn panel<const W: usize>(&mut self, panel: &Panel<'_, W>) {
-                let own = panel.of(self.0);
-                for k in 0..W {
-                    for l in k + 1..W {
-                        self.1[panel.first + l] -= panel.own[k][l - k] * own[k];
-                    }
-                }
-                panel.subtract(own, self.1);
+        for j in 0..rows {
+            let (_, below, values) = self.column(j);
+            let own = x[j];
+            for (&i, a) in below.iter().zip(values) {
+                b[i as usize] -= a * own;
             }
         }
-        struct Up<'a>(&'a [f64], &'a mut [f64]);
-        impl Pass for Up<'_> {
-            fn panel<const W: usize>(&mut self, panel: &Panel<'_, W>) {
-                let (mut own, sums) = (panel.of(self.0), panel.sums(self.1));
-                for k in (0..W).rev() {
-                    own[k] -= sums[k];
-                    for l in k + 1..W {
-                        own[k] -= panel.own[k][l - k] * own[l];
-                    }
-                    own[k] /= panel.own[k][0];
-                }
-                self.1[panel.first..panel.first + W].copy_from_slice(&own);
-            }
+        for j in (0..rows).rev() {
+            x[j] = (b[j] - self.sum_below(j, x)) / self.column(j).0;
         }
-        self.go(0..self.panels(rows), &mut Known(x, b));
-        self.go((0..self.panels(rows)).rev(), &mut Up(b, x));
+    }
+
+    /// Σ of the entries of a column below its diagonal times x.
+    fn sum_below(&self, j: usize, x: &[f64]) -> f64 {
+        let (_, below, values) = self.column(j);
+        let pairs = below.iter().zip(values);
+        pairs.map(|(&i, a)| a * x[i as usize]).sum()
     }
 }
 
@@ -265,7 +131,7 @@ mod tests {
     use nalgebra::{DMatrix, DVector};
 
     /// Nodes of three, two and one unknown, not all of them neighbours, and the same dense.
-    fn sample(last: usize) -> (Matrix, DMatrix<f64>) {
+    fn sample() -> (Matrix, DMatrix<f64>) {
         let nodes = [0..3, 3..5, 5..8, 8..9, 9..12];
         let n = 12;
         let neighbours = |a: usize, b: usize| a == b || (a * b + a + b) % 3 != 1;
@@ -288,15 +154,14 @@ mod tests {
             }
             start.push(rows.len() as u32);
         }
-        let mut matrix = Matrix::new(Pattern::new(start, rows), last);
+        let mut matrix = Matrix::new(Pattern::new(start, rows));
         matrix.values_mut()[..values.len()].copy_from_slice(&values);
         (matrix, dense)
     }
 
     #[test]
     fn a_product_is_that_of_the_dense_matrix() {
-        let (matrix, dense) = sample(0);
-        assert!(matrix.panels.len() < 9, "{:?}", matrix.panels);
+        let (matrix, dense) = sample();
         let x = DVector::from_fn(12, |i, _| (i as f64).cos());
         let b = DVector::from_fn(12, |i, _| (i as f64).sin());
         let r = matrix.residual(x.as_slice(), b.as_slice());
@@ -306,9 +171,8 @@ mod tests {
     #[test]
     fn sweeps_are_those_of_gauss_and_seidel() {
         let b = DVector::from_fn(12, |i, _| 1.0 + (i as f64).sin());
-        for last in [0, 3, 4, 5] {
-            let (matrix, dense) = sample(last);
-            let rows = 12 - last;
+        let (matrix, dense) = sample();
+        for rows in [12, 9, 7] {
             let mut x = vec![0.0; 12];
             let mut left = vec![f64::NAN; 12];
             matrix.sweep_down(b.as_slice(), rows, &mut x, &mut left);

@@ -78,14 +78,11 @@ const ACCURATE: f64 = 1e-12;
 /// Operations of a factorisation in the time in which a step takes up an entry of the factor.
 const OPERATIONS: f64 = 200.0;
 
-/// Operations of a factorisation that takes so little time that nothing else is looked for.
-const LITTLE: f64 = 1e8;
-
 /// Operations of a factorisation in about the time of the conjugate gradients of a Newton step: ten
 /// iterations, each of which reads the matrix five times and the factor of its coarse space twice; an
 /// entry is read in the time of eighty operations.
-fn conjugate_operations(pattern: &Pattern, factor: &Cholesky) -> f64 {
-    10.0 * 80.0 * (5.0 * pattern.entries() as f64 + 2.0 * factor.entries() as f64)
+fn conjugate_operations(pattern: &Pattern, coarse: usize) -> f64 {
+    10.0 * 80.0 * (5.0 * pattern.entries() as f64 + 2.0 * coarse as f64)
 }
 
 /// A factor that does not solve the system it was made of.
@@ -161,11 +158,12 @@ impl System {
         };
         let mut other = None;
         let own = Cholesky::analyse(&pattern, memory, |cost| {
-            if cost.operations > LITTLE {
+            // In the plane a factor is small, and linear cells in plastic flow are a poor coarse space.
+            if D == 3 && conjugate_operations(&pattern, 0) < cost.operations {
                 other = coarse().filter(|other| {
                     other.as_ref().is_ok_and(|(factor, _)| {
-                        factor.operations() + conjugate_operations(&pattern, factor)
-                            < cost.operations
+                        let solution = conjugate_operations(&pattern, factor.entries());
+                        factor.operations() + solution < cost.operations
                     })
                 });
             }
@@ -189,7 +187,7 @@ impl System {
             pivot,
             scatter,
             couplings: Vec::new(),
-            matrix: Matrix::new(pattern, interface),
+            matrix: Matrix::new(pattern),
             coarse,
             shift: 0.0,
             stiffest: 0.0,

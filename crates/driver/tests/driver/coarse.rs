@@ -2,7 +2,7 @@
 
 use crate::collapse::{collapse, cylinder, limit, pressed};
 use moreau_contact::{Penalty, Plane};
-use moreau_driver::{Axis, Driver, Model, Nesting, Settings, Step, StepReport};
+use moreau_driver::{Analysis, Axis, Driver, Model, Nesting, Settings, Step, StepReport};
 use moreau_laws::{Coulomb, Isotropic, VonMises};
 use moreau_mesh::{CellKind, Mesh, PlaneStrain, Solid, block2, block3, uniform};
 
@@ -14,7 +14,7 @@ fn steel() -> VonMises {
 const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
 /// Pressed at a part of its top against a rough floor, from elastic to plastic.
-fn press<H: moreau_driver::Analysis<D>, const D: usize>(
+fn press<H: Analysis<D>, const D: usize>(
     mesh: Mesh<D>,
     hypothesis: H,
     settings: Settings<D>,
@@ -22,7 +22,7 @@ fn press<H: moreau_driver::Analysis<D>, const D: usize>(
     press_by(0.06, mesh, hypothesis, settings)
 }
 
-fn press_by<H: moreau_driver::Analysis<D>, const D: usize>(
+fn press_by<H: Analysis<D>, const D: usize>(
     depth: f64,
     mut mesh: Mesh<D>,
     hypothesis: H,
@@ -57,12 +57,12 @@ fn short<const D: usize>(driver: &Driver<D>) -> Settings<D> {
 }
 
 /// The same with its own factor and without.
-fn compare<H: moreau_driver::Analysis<D> + Clone, const D: usize>(mesh: &Mesh<D>, hypothesis: &H) {
+fn compare<H: Analysis<D>, const D: usize>(mesh: &Mesh<D>, hypothesis: &H) {
     let kind = mesh.kind(0);
-    let (own, reports) = press(mesh.clone(), hypothesis.clone(), Settings::default());
+    let (own, reports) = press(mesh.clone(), *hypothesis, Settings::default());
     assert!(reports.iter().all(|r| r.linear_iterations == 0));
     assert!(reports[2].plastic_fraction > 0.01, "{kind}");
-    let (other, others) = press(mesh.clone(), hypothesis.clone(), short(&own));
+    let (other, others) = press(mesh.clone(), *hypothesis, short(&own));
     assert!(other.factor_entries() < own.factor_entries());
     let nodes = 0..mesh.nodes().len();
     let distance = |a| (own.displacement(a) - other.displacement(a)).norm();
