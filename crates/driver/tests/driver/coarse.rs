@@ -160,6 +160,32 @@ fn other_ways_to_treat_contact_go_the_same_way() {
     }
 }
 
+#[test]
+fn the_answer_is_the_same_to_the_bit_on_any_number_of_threads() {
+    let mesh = block3(
+        "body",
+        CellKind::Hex20,
+        &uniform(0.0, 12.0, 5),
+        &uniform(0.0, 12.0, 5),
+        &uniform(0.0, 24.0, 8),
+    );
+    let mesh = mesh.expect("valid");
+    let (own, _) = press(mesh.clone(), Solid, Settings::default());
+    let run = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let press = || press(mesh.clone(), Solid, short(&own)).0;
+        pool.build().expect("threads").install(press)
+    };
+    let [one, three] = [1, 3].map(run);
+    let nodes = 0..mesh.nodes().len();
+    assert!(
+        nodes
+            .into_iter()
+            .all(|a| one.displacement(a) == three.displacement(a))
+    );
+    assert_eq!(one.contacts(), three.contacts());
+}
+
 /// A load of unknown factor, without any interface.
 #[test]
 fn collapse_is_found_at_the_same_load() {
