@@ -85,7 +85,7 @@ impl<const D: usize> Condensation<D> {
         self.transformation.apply(&motion, &y)
     }
 
-    /// The interface as it is under these statuses.
+    /// The interface as it is under these statuses; `None` if they leave it a rigid motion.
     pub(crate) fn yielding(&self, status: &[Status]) -> Option<Yielding<'_, D>> {
         let gives = |k: usize| match status[k / D] {
             Status::Open => true,
@@ -97,9 +97,11 @@ impl<const D: usize> Condensation<D> {
             .collect();
         let stiffness = self.problem.stiffness();
         let own = DMatrix::from_fn(free.len(), free.len(), |i, j| stiffness[(free[i], free[j])]);
+        let stiffest = own.diagonal().iter().fold(0.0, |m: f64, d| m.max(d.abs()));
+        let factor = DenseCholesky::new(own).filter(|f| f.holds(stiffest))?;
         Some(Yielding {
             condensation: self,
-            factor: DenseCholesky::new(own)?,
+            factor,
             free,
         })
     }
@@ -354,11 +356,8 @@ impl Rest {
         let own = s.view((0, 0), (kept, kept)).into_owned();
         let block = s.view((kept, kept), (others, others)).into_owned();
         let stiffest = block.diagonal().amax();
-        let factor = DenseCholesky::new(block).ok_or(ContactError::Singular)?;
-        // A pivot at rounding level is a rigid motion, not a stiffness.
-        if factor.least_pivot().powi(2) <= 1e-13 * stiffest {
-            return Err(ContactError::Singular);
-        }
+        let factor = DenseCholesky::new(block).filter(|f| f.holds(stiffest));
+        let factor = factor.ok_or(ContactError::Singular)?;
         factor.forward(&mut rest.coupling);
         rest.factor = Some(factor);
         let mut own = own - rest.coupling.tr_mul(&rest.coupling);

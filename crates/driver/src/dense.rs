@@ -32,9 +32,11 @@ impl DenseCholesky {
         Some(Self { factor: a })
     }
 
-    /// The least of the diagonal of L.
-    pub(crate) fn least_pivot(&self) -> f64 {
-        self.factor.diagonal().amin()
+    /// Whether all pivots are stiffnesses beside the largest diagonal of A: one at rounding level is a
+    /// rigid motion.
+    pub(crate) fn holds(&self, stiffest: f64) -> bool {
+        let pivots = self.factor.diagonal();
+        pivots.iter().all(|pivot| pivot.powi(2) > 1e-13 * stiffest)
     }
 
     fn view(&self) -> MatRef<'_, f64> {
@@ -98,7 +100,8 @@ mod tests {
         let a = square(&l);
         assert!((&a - &l * l.transpose()).norm() < 1e-12 * a.norm());
         let cholesky = DenseCholesky::new(a.clone()).expect("definite");
-        assert!((cholesky.least_pivot() - l.diagonal().amin()).abs() < 1e-12);
+        let least = l.diagonal().amin().powi(2);
+        assert!(cholesky.holds(0.9e13 * least) && !cholesky.holds(1.1e13 * least));
         let x = DMatrix::from_fn(70, 3, |i, j| ((i + 5 * j) as f64).sin());
         let mut forward = &l * &x;
         cholesky.forward(&mut forward);
@@ -107,7 +110,8 @@ mod tests {
         cholesky.forward_one(&mut one);
         cholesky.backward_one(&mut one);
         assert!((one - x.column(0)).norm() < 1e-10);
-        assert!(DenseCholesky::new(DMatrix::zeros(0, 0)).is_some());
+        let none = DenseCholesky::new(DMatrix::zeros(0, 0)).expect("nothing to refuse");
+        assert!(none.holds(0.0));
         let mut indefinite = a;
         indefinite[(40, 40)] = -1.0;
         assert!(DenseCholesky::new(indefinite).is_none());
