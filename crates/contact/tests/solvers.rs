@@ -406,6 +406,7 @@ fn newton_treats_a_body_that_only_contact_holds() {
         status: vec![Status::Stick; 2],
         iterations: 0,
         residual: 0.0,
+        exact: true,
     };
     let solution = SemismoothNewton::default()
         .solve(&problem, Some(&touching))
@@ -421,6 +422,35 @@ fn newton_treats_a_body_that_only_contact_holds() {
             ..
         })
     ));
+}
+
+/// Stopped early, a solution is a prefix of the exact one: as good as was asked, with forces the law
+/// admits, and it says that it is not exact.
+#[test]
+fn a_solution_is_as_good_as_was_asked() {
+    let problem = mixed();
+    for (k, solver) in exact().iter().enumerate() {
+        let whole = solver.solve(&problem, None).expect("solvable");
+        assert!(whole.exact);
+        assert_eq!(solver.approach(&problem, None, 0.0).as_ref(), Ok(&whole));
+        let mut iterations = whole.iterations;
+        for enough in [1e-6, 1e-3, 1e-1] {
+            let part = solver.approach(&problem, None, enough).expect("solvable");
+            assert!(part.residual <= enough, "{solver:?}: {}", part.residual);
+            assert!(part.iterations <= iterations, "{solver:?}");
+            iterations = part.iterations;
+            assert!(part.certificate(&problem).excess_force < 1e-15);
+            if part.exact {
+                assert_eq!(part, whole, "{solver:?}");
+            }
+        }
+        // In the plane the last step of Newton's method is the one that arrives.
+        let saved = whole.iterations - iterations;
+        assert!(
+            k == 0 || 2 * saved > whole.iterations,
+            "{solver:?}: {saved}"
+        );
+    }
 }
 
 #[test]

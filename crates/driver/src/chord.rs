@@ -1,4 +1,5 @@
-//! Whether the factor of an earlier tangent serves a step; not the factorisation.
+//! What the steps of an increment are expected to leave: whether the factor of an earlier tangent serves
+//! one, and how exact its contact solution has to be; not the factorisation.
 
 /// What the steps of an increment tell of the factor at hand.
 ///
@@ -23,6 +24,9 @@ const AGEING: f64 = 4.0;
 /// Contraction from which on a factor is of no use.
 const POOR: f64 = 0.5;
 
+/// Part of what a step is expected to leave that its contact solution may keep.
+const FORCING: f64 = 1e-2;
+
 impl Chord {
     /// Takes note of a step that begins at this imbalance \[N\].
     pub(crate) fn begin(&mut self, imbalance: f64, fresh: bool) {
@@ -46,6 +50,16 @@ impl Chord {
     /// tangent there is not needed.
     pub(crate) fn may_serve(&self, target: f64, worth: f64) -> bool {
         self.reaches(self.forecast, target, worth)
+    }
+
+    /// Residual that the contact solution of the step may keep \[N\]: a part of what the step is
+    /// expected to leave, at most of the imbalance at its start; nothing if it may be the last.
+    pub(crate) fn contact_residual(&self, imbalance: f64, target: f64) -> f64 {
+        let expected = self.forecast.min(imbalance);
+        match expected > target {
+            true => FORCING * expected,
+            false => 0.0,
+        }
     }
 
     /// Takes note of the part of the step that was taken.
@@ -102,6 +116,21 @@ mod tests {
         assert!(!after(1e-2, true).serves(1e-3, 1e-10, 13.0));
         assert!(!after(1e-2, false).serves(9e-3, 1e-10, 13.0));
         assert!(!after(1e-2, false).serves(f64::NAN, 1e-10, 13.0));
+    }
+
+    #[test]
+    fn a_contact_solution_is_as_exact_as_the_step_it_belongs_to() {
+        // Before the second step there is no forecast.
+        let mut chord = after(1.0, true);
+        assert_eq!(chord.contact_residual(1.0, 1e-10), FORCING);
+        // A tenth, then a hundredth of that; never more than a part of the imbalance.
+        chord.begin(1e-1, true);
+        assert!((chord.contact_residual(1e-1, 1e-10) - FORCING * 1e-3).abs() < 1e-15);
+        assert!((chord.contact_residual(1e-4, 1e-10) - FORCING * 1e-4).abs() < 1e-15);
+        // The last is exact, and so is one of which nothing is known.
+        assert_eq!(chord.contact_residual(1e-1, 2e-3), 0.0);
+        assert_eq!(chord.contact_residual(0.0, 1e-10), 0.0);
+        assert_eq!(Chord::default().contact_residual(f64::NAN, 1e-10), 0.0);
     }
 
     #[test]

@@ -100,6 +100,7 @@ impl<const D: usize> Driver<D> {
                         status,
                         iterations: counts.contact,
                         residual,
+                        exact: true,
                     },
                     counts,
                 };

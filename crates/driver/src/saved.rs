@@ -225,6 +225,7 @@ impl<const D: usize> Driver<D> {
                 status: from.statuses(points)?,
                 iterations: from.count()?,
                 residual: from.number()?,
+                exact: true,
             }),
         };
         for block in &mut self.blocks {

@@ -1,6 +1,14 @@
 //! Newton's method converges quadratically through plastic flow, friction and lift-off, as long as it
-//! factorises: losing that is a failure; the answers themselves are tested elsewhere.
+//! factorises, and with no more exact contact than it needs on the way: losing that is a failure; the
+//! answers themselves are tested elsewhere.
 
+use moreau::contact::{
+    ContactError, ContactProblem, ContactSolution, ContactSolver, GaussSeidel, SemismoothNewton,
+    Uzawa,
+};
+use moreau::driver::{Driver, Settings, StepReport};
+use moreau::mesh::Integration;
+use verification::paper;
 use verification::problems::Fallible;
 use verification::problems::punched::Punched;
 
@@ -54,4 +62,84 @@ fn punched_block_converges_quadratically() -> Fallible {
         assert!(pairs >= 10, "hardly anything was nonlinear");
     }
     Ok(())
+}
+
+/// A method that solves every contact problem to its own tolerance, whatever is enough.
+#[derive(Debug)]
+struct ToTheEnd<S>(S);
+
+impl<S: ContactSolver<2>> ContactSolver<2> for ToTheEnd<S> {
+    fn approach(
+        &self,
+        problem: &ContactProblem<2>,
+        guess: Option<&ContactSolution<2>>,
+        _enough: f64,
+    ) -> Result<ContactSolution<2>, ContactError> {
+        self.0.solve(problem, guess)
+    }
+}
+
+/// Case B of the paper, some increments of its ten.
+fn pressed(
+    contact: impl ContactSolver<2> + 'static,
+    cells: [usize; 2],
+    increments: usize,
+) -> Fallible<(Driver<2>, Vec<StepReport>)> {
+    let settings = Settings {
+        contact: Box::new(contact),
+        ..Settings::default()
+    };
+    let mut driver = paper::block(cells, 0.1, Integration::Reduced, settings)?;
+    let press = paper::block_step(0.02 * increments as f64);
+    let reports = driver.run(&press, increments, |_, _| {})?;
+    Ok((driver, reports))
+}
+
+/// Contact that is only as exact as the iteration around it needs leads to the same increments in as
+/// many Newton iterations, and takes at most this part of its own.
+fn saves<S>(contact: S, cells: [usize; 2], increments: usize, part: f64) -> Fallible
+where
+    S: ContactSolver<2> + Copy + 'static,
+{
+    let (driver, reports) = pressed(contact, cells, increments)?;
+    let (exact, expected) = pressed(ToTheEnd(contact), cells, increments)?;
+    let nodes = 0..exact.mesh().nodes().len();
+    let moved = nodes
+        .clone()
+        .map(|n| exact.displacement(n).norm())
+        .fold(0.0, f64::max);
+    for n in nodes {
+        let off = (driver.displacement(n) - exact.displacement(n)).norm() / moved;
+        assert!(off <= 1e-9, "{contact:?}, node {n}: {off:.1e}");
+    }
+    let scale = exact
+        .contacts()
+        .iter()
+        .map(|c| c.t.norm())
+        .fold(0.0, f64::max);
+    for (a, b) in driver.contacts().iter().zip(exact.contacts()) {
+        let off = (a.t - b.t).norm() / scale;
+        assert!(off <= 1e-9, "{contact:?}, node {}: {off:.1e}", a.node);
+        assert_eq!(a.status, b.status, "{contact:?}, node {}", a.node);
+    }
+    let count = |reports: &[StepReport], of: fn(&StepReport) -> usize| -> usize {
+        reports.iter().map(of).sum()
+    };
+    let newton = |r: &[StepReport]| count(r, |r| r.newton_iterations);
+    assert!(newton(&reports) <= newton(&expected) + 1, "{contact:?}");
+    let iterations = |r: &[StepReport]| count(r, |r| r.contact_iterations) as f64;
+    let saved = iterations(&reports) / iterations(&expected);
+    assert!(saved <= part, "{contact:?}: {saved}");
+    for report in &reports {
+        let gap = report.relative_gap();
+        assert!(gap.abs() <= 1e-11, "{contact:?}: {gap:.1e}");
+    }
+    Ok(())
+}
+
+#[test]
+fn contact_is_only_as_exact_as_the_iteration_around_it() -> Fallible {
+    saves(SemismoothNewton::default(), [20, 8], 10, 1.0)?;
+    saves(GaussSeidel::default(), [40, 16], 3, 0.5)?;
+    saves(Uzawa::default(), [20, 8], 8, 0.9)
 }

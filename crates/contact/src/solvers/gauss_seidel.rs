@@ -27,14 +27,15 @@ impl Default for GaussSeidel {
 }
 
 impl<const D: usize> ContactSolver<D> for GaussSeidel {
-    fn solve(
+    fn approach(
         &self,
         problem: &ContactProblem<D>,
         guess: Option<&ContactSolution<D>>,
+        enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
         let form = problem.delassus("Gauss-Seidel")?;
         let start = guess.map_or_else(|| DVector::zeros(form.free.len()), |g| stack(&g.force));
-        self.sweeps(problem, &form, start)
+        self.sweeps(problem, &form, start, enough)
     }
 }
 
@@ -45,9 +46,17 @@ impl GaussSeidel {
         problem: &ContactProblem<D>,
         form: &Delassus<D>,
         start: DVector<f64>,
+        enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
         let swept = |t: &DVector<f64>| sweep(problem, form, t);
-        fixed_point("Gauss-Seidel", problem, form, start, self.tolerance, swept)
+        fixed_point(
+            "Gauss-Seidel",
+            problem,
+            form,
+            start,
+            (self.tolerance, enough),
+            swept,
+        )
     }
 }
 

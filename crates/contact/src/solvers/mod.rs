@@ -43,6 +43,8 @@ pub struct ContactSolution<const D: usize> {
     pub iterations: usize,
     /// Largest natural-map residual of a contact \[N\].
     pub residual: f64,
+    /// Whether the method's own tolerance is met, not only the residual that was enough.
+    pub exact: bool,
 }
 
 impl<const D: usize> ContactSolution<D> {
@@ -55,15 +57,29 @@ impl<const D: usize> ContactSolution<D> {
 
 /// A method for contact problems. All solve the same problem and report the same residual.
 pub trait ContactSolver<const D: usize>: std::fmt::Debug + Send + Sync {
-    /// Solves a problem, starting from `guess` if there is one.
+    /// Solves a problem to the method's own tolerance, starting from `guess` if there is one.
     ///
     /// # Errors
-    /// [`ContactError::NotConverged`] with the residual left, [`ContactError::Floating`] where
-    /// the method needs an invertible stiffness, [`ContactError::Singular`].
+    /// As [`ContactSolver::approach`].
     fn solve(
         &self,
         problem: &ContactProblem<D>,
         guess: Option<&ContactSolution<D>>,
+    ) -> Result<ContactSolution<D>, ContactError> {
+        self.approach(problem, guess, 0.0)
+    }
+
+    /// Solves a problem until a residual of `enough` \[N\] is left, or to the method's own tolerance
+    /// where that is larger; at zero as [`ContactSolver::solve`].
+    ///
+    /// # Errors
+    /// [`ContactError::NotConverged`] with the residual left, [`ContactError::Floating`] where
+    /// the method needs an invertible stiffness, [`ContactError::Singular`].
+    fn approach(
+        &self,
+        problem: &ContactProblem<D>,
+        guess: Option<&ContactSolution<D>>,
+        enough: f64,
     ) -> Result<ContactSolution<D>, ContactError>;
 }
 
@@ -73,7 +89,7 @@ fn fixed_point<const D: usize>(
     problem: &ContactProblem<D>,
     form: &Delassus<D>,
     start: DVector<f64>,
-    tolerance: Tolerance,
+    (tolerance, enough): (Tolerance, f64),
     map: impl Fn(&DVector<f64>) -> Vec<Local<D>>,
 ) -> Result<ContactSolution<D>, ContactError> {
     let mut anderson = Anderson::default();
@@ -86,7 +102,7 @@ fn fixed_point<const D: usize>(
         let residual = problem.residual(&u, &image);
         let target = tolerance.relative * problem.force_scale(&image);
         let target = target.max(problem.rounding(&problem.relative(&u)));
-        if residual <= target {
+        if residual <= target.max(enough) {
             let status = problem.statuses(&u, &image);
             return Ok(ContactSolution {
                 irreversible: u.clone(),
@@ -95,6 +111,7 @@ fn fixed_point<const D: usize>(
                 status,
                 iterations,
                 residual,
+                exact: residual <= target,
             });
         }
         if iterations >= tolerance.iterations {

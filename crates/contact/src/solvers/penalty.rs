@@ -46,14 +46,15 @@ impl Penalty {
 }
 
 impl<const D: usize> ContactSolver<D> for Penalty {
-    fn solve(
+    fn approach(
         &self,
         problem: &ContactProblem<D>,
         guess: Option<&ContactSolution<D>>,
+        enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
         let mut compliance = Local::<D>::repeat(1.0 / self.tangent);
         compliance[0] = 1.0 / self.normal;
         let compliance = vec![compliance; problem.contacts()];
-        semismooth::newton(problem, &compliance, guess, self.tolerance)
+        semismooth::newton(problem, &compliance, guess, (self.tolerance, enough))
     }
 }

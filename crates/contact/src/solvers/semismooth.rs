@@ -32,13 +32,14 @@ impl Default for SemismoothNewton {
 }
 
 impl<const D: usize> ContactSolver<D> for SemismoothNewton {
-    fn solve(
+    fn approach(
         &self,
         problem: &ContactProblem<D>,
         guess: Option<&ContactSolution<D>>,
+        enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
         let rigid = vec![Local::zeros(); problem.contacts()];
-        newton(problem, &rigid, guess, self.tolerance)
+        newton(problem, &rigid, guess, (self.tolerance, enough))
     }
 }
 
@@ -70,7 +71,7 @@ pub(super) fn newton<const D: usize>(
     problem: &ContactProblem<D>,
     compliance: &[Local<D>],
     guess: Option<&ContactSolution<D>>,
-    tolerance: Tolerance,
+    (tolerance, enough): (Tolerance, f64),
 ) -> Result<ContactSolution<D>, ContactError> {
     let zero = vec![Local::zeros(); problem.contacts()];
     let mut start = guess.map_or(zero, |g| problem.relative(&g.displacement));
@@ -89,11 +90,13 @@ pub(super) fn newton<const D: usize>(
         for _ in 0..ATTEMPT {
             // The residual grows with α, at most in proportion: this bounds it for the common α.
             let target = newton.part * tolerance.relative * problem.force_scale(&now.t);
-            if now.residual <= target.max(problem.rounding(&now.x)) {
-                return Ok(newton.solution(now, iterations));
+            let target = target.max(problem.rounding(&now.x));
+            if now.residual <= target.max(newton.part * enough) {
+                let exact = now.residual <= target;
+                return Ok(newton.solution(now, iterations, exact));
             }
             if iterations >= tolerance.iterations {
-                let solution = newton.solution(now, iterations);
+                let solution = newton.solution(now, iterations, false);
                 return Err(ContactError::NotConverged {
                     solver: "semismooth Newton",
                     iterations,
@@ -204,8 +207,8 @@ impl<const D: usize> Newton<'_, D> {
         // the methods for the discrete problem arrive where neither does.
         let (seidel, uzawa) = (GaussSeidel { tolerance }, Uzawa { tolerance });
         let swept = seidel
-            .sweeps(p, &form, stack(t))
-            .or_else(|_| uzawa.corrections(p, &form, stack(t)));
+            .sweeps(p, &form, stack(t), 0.0)
+            .or_else(|_| uzawa.corrections(p, &form, stack(t), 0.0));
         let (force, displacement) = match swept {
             Ok(swept) => (swept.force, swept.displacement),
             Err(error) => discrete(p.friction(), &form, t).ok_or(error)?,
@@ -248,7 +251,7 @@ impl<const D: usize> Newton<'_, D> {
         linearised::solve(self.problem, laws.map(row).collect())
     }
 
-    fn solution(&self, now: Iterate<D>, iterations: usize) -> ContactSolution<D> {
+    fn solution(&self, now: Iterate<D>, iterations: usize, exact: bool) -> ContactSolution<D> {
         let p = self.problem;
         // The projection of the last iterate lies in the cone exactly; it differs from t by less
         // than the residual.
@@ -265,6 +268,7 @@ impl<const D: usize> Newton<'_, D> {
             force,
             status,
             iterations,
+            exact,
         }
     }
 }

@@ -30,14 +30,15 @@ impl Default for Uzawa {
 }
 
 impl<const D: usize> ContactSolver<D> for Uzawa {
-    fn solve(
+    fn approach(
         &self,
         problem: &ContactProblem<D>,
         guess: Option<&ContactSolution<D>>,
+        enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
         let form = problem.delassus("Uzawa")?;
         let start = guess.map_or_else(|| DVector::zeros(form.free.len()), |g| stack(&g.force));
-        self.corrections(problem, &form, start)
+        self.corrections(problem, &form, start, enough)
     }
 }
 
@@ -48,6 +49,7 @@ impl Uzawa {
         problem: &ContactProblem<D>,
         form: &Delassus<D>,
         start: DVector<f64>,
+        enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
         let alpha = steps::<D>(problem, &form.operator);
         let correct = |t: &DVector<f64>| -> Vec<Local<D>> {
@@ -59,7 +61,14 @@ impl Uzawa {
             };
             (0..t.len()).map(corrected).collect()
         };
-        fixed_point("Uzawa", problem, form, start, self.tolerance, correct)
+        fixed_point(
+            "Uzawa",
+            problem,
+            form,
+            start,
+            (self.tolerance, enough),
+            correct,
+        )
     }
 }
 
