@@ -53,7 +53,8 @@ impl Chord {
     }
 
     /// Residual that the contact solution of the step may keep \[N\]: a part of what the step is
-    /// expected to leave, at most of the imbalance at its start; nothing if it may be the last.
+    /// expected to leave, at most of the imbalance at its start; nothing if it may be the last (the
+    /// second choice of S. C. Eisenstat and H. F. Walker, SIAM J. Sci. Comput. 17, 1996).
     pub(crate) fn contact_residual(&self, imbalance: f64, target: f64) -> f64 {
         let expected = self.forecast.min(imbalance);
         match expected > target {
@@ -127,7 +128,7 @@ mod tests {
         chord.begin(1e-1, true);
         assert!((chord.contact_residual(1e-1, 1e-10) - FORCING * 1e-3).abs() < 1e-15);
         assert!((chord.contact_residual(1e-4, 1e-10) - FORCING * 1e-4).abs() < 1e-15);
-        // The last is exact, and so is one of which nothing is known.
+        // The last is exact, and so is one before which there was none.
         assert_eq!(chord.contact_residual(1e-1, 2e-3), 0.0);
         assert_eq!(chord.contact_residual(0.0, 1e-10), 0.0);
         assert_eq!(Chord::default().contact_residual(f64::NAN, 1e-10), 0.0);
