@@ -23,6 +23,8 @@ pub enum Stiffness {
 pub struct CellResult<'a> {
     /// Index of the cell in its block.
     pub cell: usize,
+    /// Its nodes.
+    pub nodes: &'a [usize],
     /// ∫ Bᵀ σ₁ dΩ, node by node \[N\].
     pub force: &'a [f64],
     /// The upper triangle of the stiffness asked for \[N/mm\], row by row without the lower one;
@@ -254,6 +256,7 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
                 let entries = if given { entries } else { 0 };
                 sink(CellResult {
                     cell: start + k,
+                    nodes: self.cells.nodes(start + k),
                     force: &self.force[k * size..(k + 1) * size],
                     stiffness: &self.stiffness[k * room..][..entries],
                 });

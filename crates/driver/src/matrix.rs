@@ -6,7 +6,6 @@ use crate::cholesky::Pattern;
 #[derive(Debug)]
 pub(crate) struct Matrix {
     pub(crate) pattern: Pattern,
-    /// One more than there are entries, for what no unknown sees.
     elastic: Vec<f64>,
     values: Vec<f64>,
 }
@@ -14,7 +13,7 @@ pub(crate) struct Matrix {
 impl Matrix {
     /// All zero.
     pub(crate) fn new(pattern: Pattern) -> Self {
-        let values = vec![0.0; pattern.entries() + 1];
+        let values = vec![0.0; pattern.entries()];
         Self {
             pattern,
             elastic: values.clone(),
@@ -23,13 +22,13 @@ impl Matrix {
     }
 
     /// Where the elastic stiffness is added up.
-    pub(crate) fn elastic_mut(&mut self) -> &mut [f64] {
-        &mut self.elastic
+    pub(crate) fn elastic_mut(&mut self) -> (&Pattern, &mut [f64]) {
+        (&self.pattern, &mut self.elastic)
     }
 
     /// Where what flow adds to it is added up.
-    pub(crate) fn values_mut(&mut self) -> &mut [f64] {
-        &mut self.values
+    pub(crate) fn values_mut(&mut self) -> (&Pattern, &mut [f64]) {
+        (&self.pattern, &mut self.values)
     }
 
     /// Makes it the elastic stiffness.
@@ -39,7 +38,7 @@ impl Matrix {
 
     /// The entries, in the order of the pattern.
     pub(crate) fn values(&self) -> &[f64] {
-        &self.values[..self.pattern.entries()]
+        &self.values
     }
 
     /// Diagonal of the elastic stiffness.
@@ -155,7 +154,7 @@ mod tests {
             start.push(rows.len() as u32);
         }
         let mut matrix = Matrix::new(Pattern::new(start, rows));
-        matrix.values_mut()[..values.len()].copy_from_slice(&values);
+        matrix.values_mut().1.copy_from_slice(&values);
         (matrix, dense)
     }
 

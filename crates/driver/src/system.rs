@@ -10,7 +10,7 @@ use crate::dense::square;
 use crate::matrix::Matrix;
 use crate::norm::largest;
 use crate::numbering::Numbering;
-use crate::scatter::{FIXED, Scatter};
+use crate::scatter::{FIXED, Scatter, couplings};
 use crate::timings::{Timings, timed};
 use moreau_mesh::Mesh;
 use nalgebra::{DMatrix, DVector};
@@ -39,7 +39,7 @@ pub(crate) struct System {
     scatter: Vec<Scatter>,
     /// Entries of the elastic K between an unknown and a prescribed displacement: their degrees of
     /// freedom.
-    couplings: Vec<(u32, u32, f64)>,
+    couplings: Vec<(usize, usize, f64)>,
     /// K.
     matrix: Matrix,
     /// What is factorised instead where the factor of K is too large.
@@ -258,20 +258,24 @@ impl System {
         let missing = missing.iter().any(|&m| m != 0.0).then_some(missing);
         if let Some(missing) = missing {
             for &(unknown, prescribed, k) in &self.couplings {
-                coupling[unknown as usize] += k * missing[prescribed as usize];
+                coupling[unknown] += k * missing[prescribed];
             }
         }
         let (position, coarse) = (&self.position, &mut self.coarse);
-        let values = self.matrix.values_mut();
+        let (pattern, values) = self.matrix.values_mut();
         for (k, (block, scatter)) in blocks.iter_mut().zip(&self.scatter).enumerate() {
             flows |= block.evaluate(d_u, stiffness, &mut |cell| {
-                scatter.add(&cell, &mut internal, values);
+                for (&a, force) in cell.nodes.iter().zip(cell.force.chunks_exact(D)) {
+                    let at = internal[D * a..D * a + D].iter_mut();
+                    at.zip(force).for_each(|(sum, f)| *sum += f);
+                }
+                scatter.add::<D>(&cell, position, pattern, values);
                 if let Some(coarse) = coarse {
                     coarse.add(k, &cell, false);
                 }
                 if let Some(missing) = missing {
-                    scatter.couplings(&cell, position, &mut |unknown, prescribed, k| {
-                        coupling[unknown as usize] += k * missing[prescribed as usize];
+                    couplings::<D>(&cell, position, &mut |unknown, prescribed, k| {
+                        coupling[unknown] += k * missing[prescribed];
                     });
                 }
             });
@@ -297,14 +301,13 @@ impl System {
     ) {
         let clock = Instant::now();
         let rest = vec![0.0; self.position.len()];
-        let mut internal = rest.clone();
-        let (position, couplings) = (&self.position, &mut self.couplings);
-        let (coarse, elastic) = (&mut self.coarse, self.matrix.elastic_mut());
+        let (position, all) = (&self.position, &mut self.couplings);
+        let (coarse, (pattern, elastic)) = (&mut self.coarse, self.matrix.elastic_mut());
         for (k, (block, scatter)) in blocks.iter_mut().zip(&self.scatter).enumerate() {
             block.evaluate(&rest, Stiffness::Elastic, &mut |cell| {
-                scatter.add(&cell, &mut internal, elastic);
-                scatter.couplings(&cell, position, &mut |unknown, prescribed, k| {
-                    couplings.push((unknown, prescribed, k));
+                scatter.add::<D>(&cell, position, pattern, elastic);
+                couplings::<D>(&cell, position, &mut |unknown, prescribed, k| {
+                    all.push((unknown, prescribed, k));
                 });
                 if let Some(coarse) = coarse {
                     coarse.add(k, &cell, true);
