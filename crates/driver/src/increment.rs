@@ -14,6 +14,7 @@ use crate::line_search::Line;
 use crate::load::{Loading, axis_letter};
 use crate::norm::largest;
 use crate::report::{Iteration, StepReport};
+use crate::sparse::Sparse;
 use crate::system::System;
 use moreau_contact::{ContactError, ContactSolution};
 use nalgebra::DVector;
@@ -50,10 +51,10 @@ pub(crate) struct Candidate<const D: usize> {
 
 /// Where an increment begins.
 pub(crate) struct Start {
-    /// The free degrees of freedom.
-    pub(crate) free: Vec<usize>,
+    /// The degrees of freedom that are prescribed.
+    pub(crate) held: Vec<usize>,
     /// Prescribed displacements that the first iterate does not have.
-    pub(crate) missing: Vec<f64>,
+    pub(crate) missing: Sparse,
     pub(crate) now: Iterate,
     /// Factorisations, and iterations of conjugate gradients, done before.
     pub(crate) done: (usize, usize),
@@ -97,7 +98,7 @@ impl<const D: usize> Driver<D> {
     ) -> Result<Candidate<D>, StepError> {
         let mut end = Cow::Borrowed(end);
         let Start {
-            free,
+            held,
             mut missing,
             mut now,
             done,
@@ -110,15 +111,21 @@ impl<const D: usize> Driver<D> {
         let mut chord = Chord::default();
         loop {
             // The step to come makes up for what is missing.
-            let reached: Vec<f64> = now.d_u.iter().zip(&missing).map(|(u, m)| u + m).collect();
-            let kinematics = self.kinematics(system, &end, &reached);
+            let arrived = missing.is_zero();
+            let kinematics = if arrived {
+                self.kinematics(system, &end, &now.d_u)
+            } else {
+                let mut reached = now.d_u.clone();
+                missing.add_to(&mut reached, 1.0);
+                self.kinematics(system, &end, &reached)
+            };
             if now.part >= 1.0
                 && let Some(s) = &solution
             {
                 // The normals may have turned with the step.
                 now.contact = self.contact_forces(&kinematics, &s.force);
             }
-            let residual = now.imbalance(&end, &free);
+            let residual = now.imbalance(&end, &held);
             let out_of_balance = largest(residual.iter().copied());
             let scale = self.force_scale(&now.assembly, &end, &now.contact);
             if counts.newton > 0 {
@@ -162,19 +169,16 @@ impl<const D: usize> Driver<D> {
             if counts.newton >= self.settings.iterations || !out_of_balance.is_finite() {
                 return Err(self.not_converged(&residual, counts.newton, balance));
             }
+            drop(residual);
             counts.newton += 1;
 
-            let arrived = missing.iter().all(|&m| m == 0.0);
             let worth = system.steps_per_factorisation();
             let fresh = !(arrived && chord.serves(out_of_balance, balance, worth));
             if fresh {
                 self.factorise(system, &mut now, &missing)?;
             }
             chord.begin(out_of_balance, fresh);
-            let load =
-                |d: usize| end.force[d] - now.assembly.internal[d] - now.assembly.coupling[d];
-            let load: Vec<f64> = (0..now.d_u.len()).map(load).collect();
-            let mut condensed = system.condense(&load);
+            let mut condensed = system.condense(&now.assembly.load(&[&end.force]));
             // What a tool has moved is missing in the first iterate as well.
             let tools = self.mesh_dofs()..;
             let moved = counts.newton == 1
@@ -206,7 +210,8 @@ impl<const D: usize> Driver<D> {
                 .is_none()
                 .then(|| condensation.problem.criticality(&solved.status))
                 .flatten();
-            let mut step = std::mem::replace(&mut missing, vec![0.0; now.d_u.len()]);
+            let mut step = vec![0.0; now.d_u.len()];
+            std::mem::take(&mut missing).add_to(&mut step, 1.0);
             let x = condensation.interface(&solved.displacement);
             let growth = border.map_or(0.0, |b| system.factor(&b, &mut condensed, &x));
             let target = self.contact_forces(&kinematics, &solved.force);
@@ -224,12 +229,13 @@ impl<const D: usize> Driver<D> {
             system.expand(condensed, &x, (&target, interface), &mut step)?;
             let slack = CONTACT_SLACK * solved.residual;
             solution = Some(solved);
+            drop(condensation);
             let elastic = system.holds_elastic_factor() && !now.assembly.flows;
             let line = Line {
                 tangent: !(elastic || chord.may_serve(balance, worth)),
                 end: &end,
-                growth: control.as_ref().map_or_else(Vec::new, |c| c.scaled(growth)),
-                free: &free,
+                growth: control.as_ref().map_or_else(Sparse::default, |c| c.load.scaled(growth)),
+                held: &held,
                 step: &step,
                 target: &target,
                 complete,
@@ -259,7 +265,7 @@ impl<const D: usize> Driver<D> {
         }
         let missing = self.missing(start, end, &d_u);
         Start {
-            free: system.free_dofs(),
+            held: system.held_dofs(),
             now: Iterate {
                 assembly: system.assemble(
                     &mut self.blocks,
@@ -312,7 +318,7 @@ impl<const D: usize> Driver<D> {
         &mut self,
         system: &mut System,
         now: &mut Iterate,
-        missing: &[f64],
+        missing: &Sparse,
     ) -> Result<(), StepError> {
         let elastic = !now.assembly.flows;
         if !(now.assembly.stiffness || elastic && system.holds_elastic_factor()) {
@@ -358,12 +364,12 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// Prescribed displacement increments that `d_u` does not have yet, at every degree of freedom.
-    pub(crate) fn missing(&self, start: &Loading<D>, end: &Loading<D>, d_u: &[f64]) -> Vec<f64> {
-        let mut missing = vec![0.0; d_u.len()];
+    /// Prescribed displacement increments that `d_u` does not have yet \[mm\].
+    pub(crate) fn missing(&self, start: &Loading<D>, end: &Loading<D>, d_u: &[f64]) -> Sparse {
+        let mut missing = Sparse::default();
         for (&dof, &u) in &end.displacement {
             let increment = u - start.displacement.get(&dof).copied().unwrap_or(u);
-            missing[dof] = increment - d_u[dof];
+            missing.add(dof, increment - d_u[dof]);
         }
         missing
     }

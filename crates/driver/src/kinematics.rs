@@ -5,6 +5,7 @@ use crate::increment::CONTACT_SLACK;
 use crate::interface::{ContactPoint, Footing, Kinematics};
 use crate::load::Loading;
 use crate::norm::largest;
+use crate::sparse::Sparse;
 use crate::system::System;
 use moreau_contact::ContactSolution;
 use moreau_laws::Local;
@@ -61,14 +62,14 @@ impl<const D: usize> Driver<D> {
         pairs.map(|(k, c)| k.local_force(&c.force)).collect()
     }
 
-    /// Contact forces at every degree of freedom \[N\].
-    pub(crate) fn contact_forces(&self, kinematics: &[Kinematics<D>], t: &[Local<D>]) -> Vec<f64> {
-        let mut forces = vec![0.0; self.state.displacement.len()];
+    /// Contact forces at the degrees of freedom \[N\].
+    pub(crate) fn contact_forces(&self, kinematics: &[Kinematics<D>], t: &[Local<D>]) -> Sparse {
+        let mut forces = Sparse::default();
         for ((footing, k), t) in self.footings.iter().zip(kinematics).zip(t) {
             let f = k.force(t);
             for (a, w) in footing.weights() {
                 for i in 0..D {
-                    forces[D * a + i] += w * f[i];
+                    forces.add(D * a + i, w * f[i]);
                 }
             }
         }

@@ -7,10 +7,12 @@ use crate::cholesky::{Cholesky, NotPositiveDefinite, Pattern, TooLarge};
 use crate::coarse::Coarse;
 use crate::conjugate::{Conjugate, Interface};
 use crate::dense::square;
+use crate::iterate::imbalance;
 use crate::matrix::Matrix;
 use crate::norm::largest;
 use crate::numbering::Numbering;
 use crate::scatter::{FIXED, Scatter, couplings};
+use crate::sparse::Sparse;
 use crate::timings::{Timings, timed};
 use moreau_mesh::Mesh;
 use nalgebra::{DMatrix, DVector};
@@ -63,12 +65,22 @@ pub(crate) struct System {
 pub(crate) struct Assembly {
     /// ∫ Bᵀσ dΩ at every degree of freedom \[N\].
     pub(crate) internal: Vec<f64>,
-    /// K times the prescribed displacements that are still missing \[N\].
+    /// K times the prescribed displacements that are still missing \[N\]; empty if none are.
     pub(crate) coupling: Vec<f64>,
     /// Whether plastic strain grows anywhere.
     pub(crate) flows: bool,
     /// Whether the system has the stiffness that belongs to these forces.
     pub(crate) stiffness: bool,
+}
+
+impl Assembly {
+    /// The load of a Newton step under forces, at every degree of freedom \[N\].
+    pub(crate) fn load(&self, forces: &[&Sparse]) -> Vec<f64> {
+        let mut load = imbalance(&self.internal, forces, &[]);
+        let pairs = load.iter_mut().zip(&self.coupling);
+        pairs.for_each(|(f, coupling)| *f -= coupling);
+        load
+    }
 }
 
 /// Residual of a solve with the factor, over the size of the terms that it is a difference of, up
@@ -225,10 +237,10 @@ impl System {
             .then(|| self.position[dof] as usize - first)
     }
 
-    /// The free degrees of freedom, ascending.
-    pub(crate) fn free_dofs(&self) -> Vec<usize> {
+    /// The degrees of freedom that are prescribed, ascending.
+    pub(crate) fn held_dofs(&self) -> Vec<usize> {
         (0..self.position.len())
-            .filter(|&dof| self.is_free(dof))
+            .filter(|&dof| !self.is_free(dof))
             .collect()
     }
 
@@ -238,27 +250,28 @@ impl System {
     }
 
     /// Internal forces under the displacement increments `d_u`, and the stiffness if asked for.
-    /// `missing` are the prescribed increments still to come, at every degree of freedom.
+    /// `missing` are the prescribed increments still to come.
     pub(crate) fn assemble<const D: usize>(
         &mut self,
         blocks: &mut [Box<dyn Block<D>>],
         d_u: &[f64],
-        missing: &[f64],
+        missing: &Sparse,
         stiffness: Stiffness,
     ) -> Assembly {
         let clock = Instant::now();
         let mut internal = vec![0.0; d_u.len()];
-        let mut coupling = vec![0.0; d_u.len()];
         let mut flows = false;
         let with_stiffness = stiffness != Stiffness::None;
         if with_stiffness {
             self.matrix.reset();
             self.coarse.iter_mut().for_each(|c| c.matrix.reset());
         }
-        let missing = missing.iter().any(|&m| m != 0.0).then_some(missing);
+        let mut coupling = Vec::new();
+        let missing = (!missing.is_zero()).then_some(missing);
         if let Some(missing) = missing {
+            coupling.resize(d_u.len(), 0.0);
             for &(unknown, prescribed, k) in &self.couplings {
-                coupling[unknown] += k * missing[prescribed];
+                coupling[unknown] += k * missing.at(prescribed);
             }
         }
         let (position, coarse) = (&self.position, &mut self.coarse);
@@ -275,7 +288,7 @@ impl System {
                 }
                 if let Some(missing) = missing {
                     couplings::<D>(&cell, position, &mut |unknown, prescribed, k| {
-                        coupling[unknown] += k * missing[prescribed];
+                        coupling[unknown] += k * missing.at(prescribed);
                     });
                 }
             });
@@ -397,10 +410,10 @@ impl System {
     pub(crate) fn border(
         &mut self,
         condensed: &mut Condensed,
-        load: &[f64],
+        load: &Sparse,
         (compliance, missing): (f64, f64),
     ) -> Border {
-        let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
+        let applied: Vec<f64> = self.dofs.iter().map(|&dof| load.at(dof)).collect();
         let mut forward = self.restricted(&applied);
         timed(&mut self.timings.solution, || {
             self.cholesky.forward(&mut forward)
@@ -466,7 +479,7 @@ impl System {
 
     /// Displacement of all free degrees of freedom for the interface displacements x, written to
     /// `d_u` at every degree of freedom; prescribed ones are left as they are. `contact` are the
-    /// contact forces at every degree of freedom \[N\], under which the interface may do what it does.
+    /// contact forces \[N\], under which the interface may do what it does.
     ///
     /// # Errors
     /// [`Inaccurate`] where the factor does not solve the system.
@@ -474,7 +487,7 @@ impl System {
         &mut self,
         condensed: Condensed,
         x: &DVector<f64>,
-        (contact, interface): (&[f64], Interface<'_>),
+        (contact, interface): (&Sparse, Interface<'_>),
         d_u: &mut [f64],
     ) -> Result<(), Inaccurate> {
         let mut solution = condensed.forward;
@@ -486,8 +499,8 @@ impl System {
         self.cholesky.backward(&mut solution);
         let mut solution = self.prolonged(solution);
         let mut applied = condensed.applied;
-        for (&dof, f) in self.dofs.iter().zip(&mut applied) {
-            *f += contact[dof];
+        for (dof, f) in contact.iter().filter(|&(dof, _)| self.is_free(dof)) {
+            applied[self.position[dof] as usize] += f;
         }
         let outcome = self.improve(&applied, &mut solution, interface);
         self.timings.solution += clock.elapsed();
@@ -607,7 +620,9 @@ mod tests {
         let end = driver.loading(&step).expect("valid");
         let mut system = driver.prepare(&end, None).expect("held");
         system.factorise(true).expect("definite");
-        (system, end.force)
+        let mut load = vec![0.0; 2 * driver.mesh.nodes().len()];
+        end.force.add_to(&mut load, 1.0);
+        (system, load)
     }
 
     #[test]
