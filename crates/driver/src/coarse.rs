@@ -102,13 +102,9 @@ impl Coarse {
         }
     }
 
-    /// Adds the stiffness of a cell, to the elastic one or to what it is now.
-    pub(crate) fn add(&mut self, block: usize, cell: &CellResult<'_>, elastic: bool) {
-        let to = match elastic {
-            true => self.matrix.elastic_mut(),
-            false => self.matrix.values_mut(),
-        }
-        .1;
+    /// Adds the stiffness of a cell.
+    pub(crate) fn add(&mut self, block: usize, cell: &CellResult<'_>) {
+        let (_, to) = self.matrix.values_mut();
         self.restrictions[block].add(cell, to);
     }
 }

@@ -234,7 +234,9 @@ impl<const D: usize> Driver<D> {
             let line = Line {
                 tangent: !(elastic || chord.may_serve(balance, worth)),
                 end: &end,
-                growth: control.as_ref().map_or_else(Sparse::default, |c| c.load.scaled(growth)),
+                growth: control
+                    .as_ref()
+                    .map_or_else(Sparse::default, |c| c.load.scaled(growth)),
                 held: &held,
                 step: &step,
                 target: &target,

@@ -145,7 +145,9 @@ impl<const D: usize> Ramp<D> {
 impl<const D: usize> Ramp<D> {
     /// The loads of the whole step \[N\].
     fn load(&self) -> Sparse {
-        self.end.force.with(&self.start.force, |end, start| end - start)
+        self.end
+            .force
+            .with(&self.start.force, |end, start| end - start)
     }
 
     /// Takes note of an increment from λ = `before`, and of the work that the loads of the whole step

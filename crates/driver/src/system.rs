@@ -39,9 +39,11 @@ pub(crate) struct System {
     pub(crate) pivot: Option<usize>,
     /// Where the cells of every block go.
     scatter: Vec<Scatter>,
-    /// Entries of the elastic K between an unknown and a prescribed displacement: their degrees of
-    /// freedom.
+    /// Entries of the elastic K that is kept between an unknown and a prescribed displacement: their
+    /// degrees of freedom.
     couplings: Vec<(usize, usize, f64)>,
+    /// Whether the elastic stiffness is kept, so that only what flow adds to it is assembled anew.
+    keeps_elastic: bool,
     /// K.
     matrix: Matrix,
     /// What is factorised instead where the factor of K is too large.
@@ -86,6 +88,10 @@ impl Assembly {
 /// Residual of a solve with the factor, over the size of the terms that it is a difference of, up
 /// to which the factor is right: a thousand times what rounding leaves.
 const ACCURATE: f64 = 1e-12;
+
+/// Entries of an elastic stiffness that is kept: 16 MB. A larger one would add a tenth to the memory
+/// of the factor, which takes so long that to assemble it anew is little.
+const KEPT: usize = 1 << 21;
 
 /// Operations of a factorisation in the time in which a step takes up an entry of the factor.
 const OPERATIONS: f64 = 200.0;
@@ -199,6 +205,7 @@ impl System {
             pivot,
             scatter,
             couplings: Vec::new(),
+            keeps_elastic: pattern.entries() <= KEPT,
             matrix: Matrix::new(pattern),
             coarse,
             shift: 0.0,
@@ -259,6 +266,10 @@ impl System {
         stiffness: Stiffness,
     ) -> Assembly {
         let clock = Instant::now();
+        let stiffness = match stiffness {
+            Stiffness::Plastic(part) if !self.keeps_elastic => Stiffness::Total(part),
+            other => other,
+        };
         let mut internal = vec![0.0; d_u.len()];
         let mut flows = false;
         let with_stiffness = stiffness != Stiffness::None;
@@ -284,7 +295,7 @@ impl System {
                 }
                 scatter.add::<D>(&cell, position, pattern, values);
                 if let Some(coarse) = coarse {
-                    coarse.add(k, &cell, false);
+                    coarse.add(k, &cell);
                 }
                 if let Some(missing) = missing {
                     couplings::<D>(&cell, position, &mut |unknown, prescribed, k| {
@@ -314,23 +325,28 @@ impl System {
     ) {
         let clock = Instant::now();
         let rest = vec![0.0; self.position.len()];
+        let keeps = self.keeps_elastic;
         let (position, all) = (&self.position, &mut self.couplings);
-        let (coarse, (pattern, elastic)) = (&mut self.coarse, self.matrix.elastic_mut());
+        let (coarse, (pattern, values)) = (&mut self.coarse, self.matrix.values_mut());
         for (k, (block, scatter)) in blocks.iter_mut().zip(&self.scatter).enumerate() {
-            block.evaluate(&rest, Stiffness::Elastic, &mut |cell| {
-                scatter.add::<D>(&cell, position, pattern, elastic);
-                couplings::<D>(&cell, position, &mut |unknown, prescribed, k| {
-                    all.push((unknown, prescribed, k));
-                });
+            block.evaluate(&rest, Stiffness::Total(0.0), &mut |cell| {
+                scatter.add::<D>(&cell, position, pattern, values);
+                if keeps {
+                    couplings::<D>(&cell, position, &mut |unknown, prescribed, k| {
+                        all.push((unknown, prescribed, k));
+                    });
+                }
                 if let Some(coarse) = coarse {
-                    coarse.add(k, &cell, true);
+                    coarse.add(k, &cell);
                 }
             });
         }
-        self.matrix.reset();
-        self.coarse.iter_mut().for_each(|c| c.matrix.reset());
+        if keeps {
+            self.matrix.keep();
+            self.coarse.iter_mut().for_each(|c| c.matrix.keep());
+        }
         let first = self.size() - self.interface;
-        let diagonal = |p: usize| self.matrix.elastic_diagonal(p);
+        let diagonal = |p: usize| self.matrix.diagonal(p);
         self.stiffest = (0..self.size()).map(diagonal).fold(0.0, f64::max);
         self.shift = if shifted {
             (first..self.size()).map(diagonal).fold(0.0, f64::max)
@@ -595,7 +611,7 @@ impl System {
 mod tests {
     use super::*;
     use crate::{Axis, Driver, Model, Settings, Step};
-    use moreau_laws::Elastic;
+    use moreau_laws::{Elastic, VonMises};
     use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
 
     /// A block held at its left side and pulled at the other, factorised, with its load.
@@ -696,6 +712,49 @@ mod tests {
         let size = largest(exact.iter().copied());
         let error = largest(u.iter().zip(&exact).map(|(a, b)| a - b));
         assert!(error < 1e-8 * size, "{error:e} of {size:e}");
+    }
+
+    /// Whether the elastic stiffness is kept or assembled anew.
+    #[test]
+    fn the_stiffness_is_the_same_whatever_is_kept() {
+        let steel = VonMises::new(210e3, 0.3, 300.0).expect("valid");
+        let (x, y) = (uniform(0.0, 10.0, 6), uniform(0.0, 5.0, 3));
+        let mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
+        let model = Model::new(mesh, PlaneStrain::default())
+            .material("block", steel, Integration::Reduced)
+            .expect("valid");
+        let mut driver = Driver::new(model, Settings::default()).expect("valid");
+        let step = Step::new("pull")
+            .fix("block.left", &[Axis::X, Axis::Y])
+            .displace("block.right", Axis::X, 0.05);
+        let end = driver.loading(&step).expect("valid");
+        let mut system = driver.prepare(&end, None).expect("held");
+        let nodes = driver.mesh.nodes().iter();
+        let stretched = |x: &[f64; 2]| [1e-3 * x[0] * x[1], -1e-3 * x[1]];
+        let d_u: Vec<f64> = nodes.flat_map(stretched).collect();
+        let missing = end.displacement.iter().map(|(&dof, &u)| (dof, u)).collect();
+        let mut assembled = |system: &mut System, part: f64| {
+            let stiffness = Stiffness::Plastic(part);
+            let assembly = system.assemble(&mut driver.blocks, &d_u, &missing, stiffness);
+            assert!(assembly.flows);
+            (system.matrix.values().to_vec(), assembly)
+        };
+        assert!(system.keeps_elastic);
+        let kept = [1.0, 0.3].map(|part| assembled(&mut system, part));
+        system.keeps_elastic = false;
+        system.couplings.clear();
+        system.matrix = Matrix::new(system.matrix.pattern.clone());
+        for ((values, assembly), part) in kept.into_iter().zip([1.0, 0.3]) {
+            let (again, other) = assembled(&mut system, part);
+            assert_eq!(assembly.internal, other.internal);
+            let close = |a: &[f64], b: &[f64]| {
+                let size = largest(a.iter().copied());
+                assert!(size > 0.0);
+                assert!(largest(a.iter().zip(b).map(|(a, b)| a - b)) < 1e-14 * size);
+            };
+            close(&values, &again);
+            close(&assembly.coupling, &other.coupling);
+        }
     }
 
     #[test]
