@@ -11,11 +11,22 @@ use rayon::prelude::*;
 pub enum Stiffness {
     /// None: forces only.
     None,
-    /// The elastic one, ∫ Bᵀ C B dΩ.
-    Elastic,
+    /// The elastic one, ∫ Bᵀ C B dΩ, and this part, in [0, 1], of what flow adds to it.
+    Total(f64),
     /// This part, in [0, 1], of what flow adds to the elastic one: ∫ Bᵀ (∂σ₁/∂Δε − C) B dΩ, of the
     /// cells in which plastic strain grows.
     Plastic(f64),
+}
+
+impl Stiffness {
+    /// Whether a cell has any, in which plastic strain grows or not.
+    fn is_given(self, flows: bool) -> bool {
+        match self {
+            Self::None => false,
+            Self::Total(_) => true,
+            Self::Plastic(_) => flows,
+        }
+    }
 }
 
 /// Forces of a cell and, if asked for, its stiffness.
@@ -23,6 +34,8 @@ pub enum Stiffness {
 pub struct CellResult<'a> {
     /// Index of the cell in its block.
     pub cell: usize,
+    /// Its nodes.
+    pub nodes: &'a [usize],
     /// ∫ Bᵀ σ₁ dΩ, node by node \[N\].
     pub force: &'a [f64],
     /// The upper triangle of the stiffness asked for \[N/mm\], row by row without the lower one;
@@ -175,12 +188,13 @@ impl<L: BulkLaw, const D: usize> Panel<'_, L, D> {
                 stress[g] = response.stress;
                 tangent[g] = match self.kind {
                     Stiffness::None => continue,
-                    Stiffness::Elastic => elastic,
+                    Stiffness::Total(0.0) => elastic,
+                    Stiffness::Total(part) => elastic + (response.tangent - elastic) * part,
                     Stiffness::Plastic(part) => (response.tangent - elastic) * part,
                 };
             }
             self.cells.force(cell, &stress[..count], force);
-            if self.kind == Stiffness::Elastic || self.kind != Stiffness::None && flows[k] {
+            if self.kind.is_given(flows[k]) {
                 let matrix = &mut matrices[k * entries..(k + 1) * entries];
                 self.cells.stiffness(cell, &tangent[..count], matrix);
             }
@@ -211,7 +225,7 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
         let per_cell = self.cells.points_per_cell();
         let entries = match stiffness {
             Stiffness::None => 0,
-            Stiffness::Elastic | Stiffness::Plastic(_) => size * (size + 1) / 2,
+            Stiffness::Total(_) | Stiffness::Plastic(_) => size * (size + 1) / 2,
         };
         // One entry a cell at least, so that the parallel chunks below stay aligned.
         let room = entries.max(1);
@@ -250,10 +264,13 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
                     });
             }
             for (k, &flows) in self.flows[..count].iter().enumerate() {
-                let given = stiffness == Stiffness::Elastic || flows;
-                let entries = if given { entries } else { 0 };
+                let entries = match stiffness.is_given(flows) {
+                    true => entries,
+                    false => 0,
+                };
                 sink(CellResult {
                     cell: start + k,
+                    nodes: self.cells.nodes(start + k),
                     force: &self.force[k * size..(k + 1) * size],
                     stiffness: &self.stiffness[k * room..][..entries],
                 });

@@ -102,12 +102,9 @@ impl Coarse {
         }
     }
 
-    /// Adds the stiffness of a cell, to the elastic one or to what it is now.
-    pub(crate) fn add(&mut self, block: usize, cell: &CellResult<'_>, elastic: bool) {
-        let to = match elastic {
-            true => self.matrix.elastic_mut(),
-            false => self.matrix.values_mut(),
-        };
+    /// Adds the stiffness of a cell.
+    pub(crate) fn add(&mut self, block: usize, cell: &CellResult<'_>) {
+        let (_, to) = self.matrix.values_mut();
         self.restrictions[block].add(cell, to);
     }
 }
@@ -150,7 +147,8 @@ struct Restriction {
     way: Vec<u32>,
     /// Where the slots of every cell begin.
     start: Vec<usize>,
-    /// Slots of the upper triangles among the values of the coarse matrix.
+    /// Slots of the upper triangles among the values of the coarse matrix; [`FIXED`] of what no
+    /// unknown sees.
     slots: Vec<u32>,
     /// Rᵀ U R of the cell at hand, and a row of U R.
     product: Vec<f64>,
@@ -212,8 +210,7 @@ impl Restriction {
                 for &q in &unknowns[i..] {
                     let free = p != FIXED && q != FIXED;
                     let slot = free.then(|| coarse.pattern.slot(p.max(q), p.min(q)));
-                    let none = coarse.pattern.entries() as u32;
-                    all.slots.push(slot.flatten().unwrap_or(none));
+                    all.slots.push(slot.flatten().unwrap_or(FIXED));
                 }
             }
         }
@@ -252,7 +249,9 @@ impl Restriction {
         for i in 0..kept {
             for j in i..kept {
                 let Some(&slot) = slots.next() else { return };
-                to[slot as usize] += product[i * kept + j] + product[j * kept + i];
+                if slot != FIXED {
+                    to[slot as usize] += product[i * kept + j] + product[j * kept + i];
+                }
             }
         }
     }

@@ -5,6 +5,7 @@ use crate::driver::{Driver, State};
 use crate::increment::Candidate;
 use crate::load::Loading;
 use crate::report::{ContactRecord, StepReport};
+use crate::sparse::Sparse;
 use moreau_contact::Certificate;
 use moreau_laws::{Local, Status};
 
@@ -154,16 +155,14 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
         d_u: &[f64],
         internal: &[f64],
-        contact: &[f64],
+        contact: &Sparse,
     ) -> f64 {
         let state = &self.state;
-        let mut work = 0.0;
-        for (dof, du) in d_u.iter().enumerate() {
-            work += 0.5 * (start.force[dof] + end.force[dof]) * du;
-        }
+        let mean = start.force.with(&end.force, |a, b| 0.5 * (a + b));
+        let mut work = mean.dot(d_u);
         for &dof in end.displacement.keys() {
-            let before = state.internal[dof] - start.force[dof] - state.contact[dof];
-            let after = internal[dof] - end.force[dof] - contact[dof];
+            let before = state.internal[dof] - start.force.at(dof) - state.contact.at(dof);
+            let after = internal[dof] - end.force.at(dof) - contact.at(dof);
             work += 0.5 * (before + after) * d_u[dof];
         }
         work

@@ -5,6 +5,7 @@ use crate::error::StepError;
 use crate::load::Loading;
 use crate::norm::largest;
 use crate::report::{Iteration, StepReport};
+use crate::sparse::Sparse;
 
 /// An increment along the path of equilibria under F₀ + λ q, with λ unknown and
 ///
@@ -20,8 +21,8 @@ use crate::report::{Iteration, StepReport};
 pub(crate) struct Control<'a> {
     /// λ, at the end of the increment once that has converged.
     pub(crate) factor: f64,
-    /// q at every degree of freedom \[N\].
-    pub(crate) load: &'a [f64],
+    /// q \[N\].
+    pub(crate) load: &'a Sparse,
     /// λ at the start of the increment.
     pub(crate) start: f64,
     /// Δλ of the increment before.
@@ -35,12 +36,7 @@ pub(crate) struct Control<'a> {
 impl Control<'_> {
     /// Work of the loads at λ = 1 on a displacement, q·u \[N·mm\].
     pub(crate) fn work(&self, u: &[f64]) -> f64 {
-        self.load.iter().zip(u).map(|(q, u)| q * u).sum()
-    }
-
-    /// The loads at a factor \[N\].
-    pub(crate) fn scaled(&self, factor: f64) -> Vec<f64> {
-        self.load.iter().map(|q| factor * q).collect()
+        self.load.dot(u)
     }
 
     /// What of s a displacement increment and λ leave undone \[N·mm\].
@@ -55,11 +51,11 @@ impl Control<'_> {
 
     /// The loading at λ, from that at the start.
     pub(crate) fn loading<const D: usize>(&self, start: &Loading<D>) -> Loading<D> {
-        let mut loading = start.clone();
-        for (f, q) in loading.force.iter_mut().zip(self.load) {
-            *f += (self.factor - self.start) * q;
+        let grown = |f, q| f + (self.factor - self.start) * q;
+        Loading {
+            displacement: start.displacement.clone(),
+            force: start.force.with(self.load, grown),
         }
-        loading
     }
 }
 

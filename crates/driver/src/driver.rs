@@ -6,6 +6,7 @@ use crate::interface::{ContactPoint, Footing, Tool, tool_index};
 use crate::load::Loading;
 use crate::model::{Analysis, Contact, Measure, Model};
 use crate::report::{ContactRecord, Energies, Iteration, StepReport};
+use crate::sparse::Sparse;
 use crate::system::System;
 use crate::timings::Timings;
 use moreau_contact::{ContactSolution, ContactSolver, SemismoothNewton};
@@ -74,8 +75,8 @@ pub(crate) struct State<const D: usize> {
     pub(crate) loading: Loading<D>,
     pub(crate) energies: Energies,
     pub(crate) contacts: Vec<ContactRecord<D>>,
-    /// Contact force at every degree of freedom \[N\].
-    pub(crate) contact: Vec<f64>,
+    /// Contact forces \[N\].
+    pub(crate) contact: Sparse,
     /// Last solution of the contact problem, to start the next from.
     pub(crate) solution: Option<ContactSolution<D>>,
 }
@@ -127,10 +128,10 @@ impl<const D: usize> Driver<D> {
             displacement: vec![0.0; dofs],
             last: None,
             internal: vec![0.0; dofs],
-            loading: Loading::none(dofs),
+            loading: Loading::default(),
             energies: Energies::default(),
             contacts: model.points.iter().map(rest).collect(),
-            contact: vec![0.0; dofs],
+            contact: Sparse::default(),
             solution: None,
         };
         let mut driver = Self {
@@ -148,7 +149,7 @@ impl<const D: usize> Driver<D> {
             state,
             system: None,
         };
-        driver.pair(&Loading::none(dofs))?;
+        driver.pair(&Loading::default())?;
         Ok(driver)
     }
 
@@ -301,7 +302,7 @@ impl<const D: usize> Driver<D> {
         SVector::from_fn(|i, _| {
             let dof = D * node + i;
             match state.loading.displacement.contains_key(&dof) {
-                true => state.internal[dof] - state.loading.force[dof] - state.contact[dof],
+                true => state.internal[dof] - state.loading.force.at(dof) - state.contact.at(dof),
                 false => 0.0,
             }
         })
@@ -335,7 +336,7 @@ impl<const D: usize> Driver<D> {
     pub fn contact_force(&self, group: &str) -> Result<SVector<f64, D>, ModelError> {
         let mut sum = SVector::zeros();
         for node in self.mesh.node_group(group)? {
-            sum += SVector::<f64, D>::from_column_slice(&self.state.contact[D * node..][..D]);
+            sum += SVector::from(self.state.contact.at_node::<D>(node));
         }
         Ok(sum)
     }
@@ -354,7 +355,7 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
         watch: &mut dyn FnMut(&Iteration<'_>),
     ) -> Result<StepReport, StepError> {
-        end.check(self.mesh.nodes().len())?;
+        end.check(self.mesh.nodes().len(), self.state.displacement.len())?;
         self.pair(end)?;
         self.check_pushes(end)?;
         let mut system = self.prepare(end, None)?;
@@ -421,7 +422,7 @@ impl<const D: usize> Driver<D> {
     fn check_pushes(&self, end: &Loading<D>) -> Result<(), ModelError> {
         for (k, tool) in self.tools.iter().enumerate() {
             let node = self.tool_node(k);
-            let force = SVector::<f64, D>::from_column_slice(&end.force[D * node..][..D]);
+            let force = SVector::from(end.force.at_node::<D>(node));
             // The most work that a contact force of unit pressure can do against the tool's force.
             let most = |p: &ContactPoint<D>| {
                 let x = self.position(p.node);

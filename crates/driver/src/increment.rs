@@ -9,11 +9,12 @@ use crate::control::Control;
 use crate::driver::Driver;
 use crate::error::{Imbalance, ModelError, StepError};
 use crate::interface::Kinematics;
-use crate::iterate::Iterate;
+use crate::iterate::{Iterate, slack};
 use crate::line_search::Line;
 use crate::load::{Loading, axis_letter};
 use crate::norm::largest;
 use crate::report::{Iteration, StepReport};
+use crate::sparse::Sparse;
 use crate::system::System;
 use moreau_contact::{ContactError, ContactSolution};
 use nalgebra::DVector;
@@ -48,28 +49,16 @@ pub(crate) struct Candidate<const D: usize> {
     pub(crate) counts: Counts,
 }
 
-/// What an increment may be off by for its contact solution \[N\]. One that is not exact excuses nothing.
-fn slack<const D: usize>(solution: &ContactSolution<D>) -> f64 {
-    match solution.exact {
-        true => CONTACT_SLACK * solution.residual,
-        false => 0.0,
-    }
-}
-
 /// Where an increment begins.
 pub(crate) struct Start {
-    /// The free degrees of freedom.
-    pub(crate) free: Vec<usize>,
+    /// The degrees of freedom that are prescribed.
+    pub(crate) held: Vec<usize>,
     /// Prescribed displacements that the first iterate does not have.
-    pub(crate) missing: Vec<f64>,
+    pub(crate) missing: Sparse,
     pub(crate) now: Iterate,
     /// Factorisations, and iterations of conjugate gradients, done before.
     pub(crate) done: (usize, usize),
 }
-
-/// What an increment may be off by, over the residual of its contact solution: that weighs
-/// displacements with a somewhat smaller α.
-pub(crate) const CONTACT_SLACK: f64 = 10.0;
 
 /// How far an increment may move anything, in sizes of the mesh, of what it prescribes and of the
 /// widest gap.
@@ -105,7 +94,7 @@ impl<const D: usize> Driver<D> {
     ) -> Result<Candidate<D>, StepError> {
         let mut end = Cow::Borrowed(end);
         let Start {
-            free,
+            held,
             mut missing,
             mut now,
             done,
@@ -118,15 +107,21 @@ impl<const D: usize> Driver<D> {
         let mut chord = Chord::default();
         loop {
             // The step to come makes up for what is missing.
-            let reached: Vec<f64> = now.d_u.iter().zip(&missing).map(|(u, m)| u + m).collect();
-            let kinematics = self.kinematics(system, &end, &reached);
+            let arrived = missing.is_zero();
+            let kinematics = if arrived {
+                self.kinematics(system, &end, &now.d_u)
+            } else {
+                let mut reached = now.d_u.clone();
+                missing.add_to(&mut reached, 1.0);
+                self.kinematics(system, &end, &reached)
+            };
             if now.part >= 1.0
                 && let Some(s) = &solution
             {
                 // The normals may have turned with the step.
                 now.contact = self.contact_forces(&kinematics, &s.force);
             }
-            let residual = now.imbalance(&end, &free);
+            let residual = now.imbalance(&end, &held);
             let out_of_balance = largest(residual.iter().copied());
             let scale = self.force_scale(&now.assembly, &end, &now.contact);
             if counts.newton > 0 {
@@ -151,8 +146,7 @@ impl<const D: usize> Driver<D> {
                 && out_of_balance <= balance
                 && self.is_near(system, &now.d_u, (start, &end));
             if balanced
-                && let Some(s) =
-                    solution.take_if(|s| s.exact && self.law_holds(system, &kinematics, s, scale))
+                && let Some(s) = solution.take_if(|s| self.law_holds(system, &kinematics, s, scale))
             {
                 counts.factorisations = system.factorisations - done.0;
                 counts.linear = system.conjugate - done.1;
@@ -169,21 +163,24 @@ impl<const D: usize> Driver<D> {
             if counts.newton >= self.settings.iterations || !out_of_balance.is_finite() {
                 return Err(self.not_converged(&residual, counts.newton, balance));
             }
+            let imbalance = match arrived {
+                true => out_of_balance,
+                // With the forces of the tangent on what is missing.
+                false => {
+                    let pairs = residual.iter().zip(&now.assembly.coupling);
+                    largest(pairs.map(|(force, coupling)| force - coupling))
+                }
+            };
+            drop(residual);
             counts.newton += 1;
 
-            let arrived = missing.iter().all(|&m| m == 0.0);
             let worth = system.steps_per_factorisation();
             let fresh = !(arrived && chord.serves(out_of_balance, balance, worth));
             if fresh {
                 self.factorise(system, &mut now, &missing)?;
             }
             chord.begin(out_of_balance, fresh);
-            let load =
-                |d: usize| end.force[d] - now.assembly.internal[d] - now.assembly.coupling[d];
-            let load: Vec<f64> = (0..now.d_u.len()).map(load).collect();
-            // With what is missing, as far as that is linear.
-            let imbalance = largest(free.iter().map(|&d| load[d] + now.contact[d]));
-            let mut condensed = system.condense(&load);
+            let mut condensed = system.condense(&now.assembly.load(&[&end.force]));
             // What a tool has moved is missing in the first iterate as well.
             let tools = self.mesh_dofs()..;
             let moved = counts.newton == 1
@@ -221,7 +218,8 @@ impl<const D: usize> Driver<D> {
                 .is_none()
                 .then(|| condensation.problem.criticality(&solved.status))
                 .flatten();
-            let mut step = std::mem::replace(&mut missing, vec![0.0; now.d_u.len()]);
+            let mut step = vec![0.0; now.d_u.len()];
+            std::mem::take(&mut missing).add_to(&mut step, 1.0);
             let x = condensation.interface(&solved.displacement);
             let growth = border.map_or(0.0, |b| system.factor(&b, &mut condensed, &x));
             let target = self.contact_forces(&kinematics, &solved.force);
@@ -239,12 +237,15 @@ impl<const D: usize> Driver<D> {
             system.expand(condensed, &x, (&target, interface), &mut step)?;
             let slack = slack(&solved);
             solution = Some(solved);
+            drop(condensation);
             let elastic = system.holds_elastic_factor() && !now.assembly.flows;
             let line = Line {
                 tangent: !(elastic || chord.may_serve(balance, worth)),
                 end: &end,
-                growth: control.as_ref().map_or_else(Vec::new, |c| c.scaled(growth)),
-                free: &free,
+                growth: control
+                    .as_ref()
+                    .map_or_else(Sparse::default, |c| c.load.scaled(growth)),
+                held: &held,
                 step: &step,
                 target: &target,
                 complete,
@@ -274,7 +275,7 @@ impl<const D: usize> Driver<D> {
         }
         let missing = self.missing(start, end, &d_u);
         Start {
-            free: system.free_dofs(),
+            held: system.held_dofs(),
             now: Iterate {
                 assembly: system.assemble(
                     &mut self.blocks,
@@ -327,7 +328,7 @@ impl<const D: usize> Driver<D> {
         &mut self,
         system: &mut System,
         now: &mut Iterate,
-        missing: &[f64],
+        missing: &Sparse,
     ) -> Result<(), StepError> {
         let elastic = !now.assembly.flows;
         if !(now.assembly.stiffness || elastic && system.holds_elastic_factor()) {
@@ -373,12 +374,12 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// Prescribed displacement increments that `d_u` does not have yet, at every degree of freedom.
-    pub(crate) fn missing(&self, start: &Loading<D>, end: &Loading<D>, d_u: &[f64]) -> Vec<f64> {
-        let mut missing = vec![0.0; d_u.len()];
+    /// Prescribed displacement increments that `d_u` does not have yet \[mm\].
+    pub(crate) fn missing(&self, start: &Loading<D>, end: &Loading<D>, d_u: &[f64]) -> Sparse {
+        let mut missing = Sparse::default();
         for (&dof, &u) in &end.displacement {
             let increment = u - start.displacement.get(&dof).copied().unwrap_or(u);
-            missing[dof] = increment - d_u[dof];
+            missing.add(dof, increment - d_u[dof]);
         }
         missing
     }

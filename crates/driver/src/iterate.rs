@@ -4,27 +4,46 @@
 use crate::driver::Driver;
 use crate::load::Loading;
 use crate::norm::largest;
+use crate::sparse::Sparse;
 use crate::system::Assembly;
+use moreau_contact::ContactSolution;
 
 /// Where Newton's iteration stands.
 pub(crate) struct Iterate {
     /// Displacement increments of the step.
     pub(crate) d_u: Vec<f64>,
     pub(crate) assembly: Assembly,
-    /// Contact forces at every degree of freedom \[N\].
-    pub(crate) contact: Vec<f64>,
+    /// Contact forces \[N\].
+    pub(crate) contact: Sparse,
     /// Part of the last Newton step that was taken: of a full one, which obeys the contact law, 1.
     pub(crate) part: f64,
 }
 
 impl Iterate {
-    /// Force that nothing balances, at every degree of freedom \[N\]; zero at those not free.
-    pub(crate) fn imbalance<const D: usize>(&self, end: &Loading<D>, free: &[usize]) -> Vec<f64> {
-        let mut residual = vec![0.0; self.d_u.len()];
-        for &d in free {
-            residual[d] = end.force[d] + self.contact[d] - self.assembly.internal[d];
-        }
-        residual
+    /// Force that nothing balances, at every degree of freedom \[N\]; zero at those held.
+    pub(crate) fn imbalance<const D: usize>(&self, end: &Loading<D>, held: &[usize]) -> Vec<f64> {
+        imbalance(&self.assembly.internal, &[&end.force, &self.contact], held)
+    }
+}
+
+/// Forces less the internal ones, at every degree of freedom \[N\]; zero at those held.
+pub(crate) fn imbalance(internal: &[f64], forces: &[&Sparse], held: &[usize]) -> Vec<f64> {
+    let mut left: Vec<f64> = internal.iter().map(|f| -f).collect();
+    forces.iter().for_each(|f| f.add_to(&mut left, 1.0));
+    held.iter().for_each(|&d| left[d] = 0.0);
+    left
+}
+
+/// What an increment may be off by, over the residual of its contact solution: that weighs
+/// displacements with a somewhat smaller α.
+const CONTACT_SLACK: f64 = 10.0;
+
+/// What an increment may be off by for its contact solution \[N\]. One that is not exact excuses
+/// nothing.
+pub(crate) fn slack<const D: usize>(solution: &ContactSolution<D>) -> f64 {
+    match solution.exact {
+        true => CONTACT_SLACK * solution.residual,
+        false => 0.0,
     }
 }
 
@@ -35,10 +54,12 @@ impl<const D: usize> Driver<D> {
         &self,
         assembly: &Assembly,
         end: &Loading<D>,
-        contact: &[f64],
+        contact: &Sparse,
     ) -> f64 {
-        let nodal = |forces: &[f64]| largest(forces[..self.mesh_dofs()].iter().copied());
-        let scale = nodal(&assembly.internal).max(nodal(&end.force));
-        scale.max(nodal(contact)).max(f64::MIN_POSITIVE)
+        let nodes = self.mesh_dofs();
+        let given = end.force.iter().chain(contact.iter());
+        let given = given.filter(|&(dof, _)| dof < nodes).map(|(_, f)| f);
+        let internal = assembly.internal[..nodes].iter().copied();
+        largest(given.chain(internal)).max(f64::MIN_POSITIVE)
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::block::Stiffness;
 use crate::driver::Driver;
-use crate::iterate::Iterate;
+use crate::iterate::{Iterate, imbalance};
 use crate::load::Loading;
 use crate::norm::largest;
+use crate::sparse::Sparse;
 use crate::system::System;
 
 /// Step lengths that are tried before the last is taken.
@@ -16,14 +17,14 @@ const ACCEPTED_SLOPE: f64 = 0.5;
 /// A Newton step from an iterate.
 pub(crate) struct Line<'a, const D: usize> {
     pub(crate) end: &'a Loading<D>,
-    /// What the step adds to the applied forces, at every degree of freedom; empty if nothing.
-    pub(crate) growth: Vec<f64>,
-    /// The free degrees of freedom.
-    pub(crate) free: &'a [usize],
+    /// What the step adds to the applied forces \[N\].
+    pub(crate) growth: Sparse,
+    /// The degrees of freedom that are prescribed.
+    pub(crate) held: &'a [usize],
     /// Displacements of the step, at every degree of freedom.
     pub(crate) step: &'a [f64],
-    /// Contact forces at its end, at every degree of freedom.
-    pub(crate) target: &'a [f64],
+    /// Contact forces at its end \[N\].
+    pub(crate) target: &'a Sparse,
     /// Whether the iterate has all prescribed displacements and the motions of tools already.
     pub(crate) complete: bool,
     /// Imbalance left by the contact solver \[N\].
@@ -42,41 +43,26 @@ impl<const D: usize> Line<'_, D> {
     }
 
     /// Contact forces between those of both ends.
-    fn contact(&self, now: &Iterate, s: f64) -> Vec<f64> {
-        now.contact
-            .iter()
-            .zip(self.target)
-            .map(|(a, b)| a + s * (b - a))
-            .collect()
+    fn contact(&self, now: &Iterate, s: f64) -> Sparse {
+        now.contact.with(self.target, |a, b| a + s * (b - a))
     }
 
-    /// Internal minus applied and contact forces on the free degrees of freedom, at the part s of
-    /// the step.
-    fn imbalance<'a>(
-        &'a self,
-        internal: &'a [f64],
-        contact: &'a [f64],
-        s: f64,
-    ) -> impl Iterator<Item = (usize, f64)> + 'a {
-        let growth = move |d: usize| self.growth.get(d).map_or(0.0, |g| s * g);
-        let at = move |&d: &usize| (d, internal[d] - self.end.force[d] - growth(d) - contact[d]);
-        self.free.iter().map(at)
+    /// Force that nothing balances at the part s of the step, at every degree of freedom; zero at
+    /// those held.
+    fn imbalance(&self, internal: &[f64], contact: &Sparse, s: f64) -> Vec<f64> {
+        let growth = self.growth.scaled(s);
+        imbalance(internal, &[&self.end.force, &growth, contact], self.held)
     }
 
-    /// Slope of ΔΦ along the step.
-    fn slope(&self, internal: &[f64], contact: &[f64], s: f64) -> f64 {
-        self.imbalance(internal, contact, s)
-            .map(|(d, r)| self.step[d] * r)
-            .sum()
+    /// Slope of ΔΦ along the step, where the imbalance is this.
+    fn slope(&self, imbalance: &[f64]) -> f64 {
+        let pairs = self.step.iter().zip(imbalance);
+        -pairs.map(|(v, r)| v * r).sum::<f64>()
     }
+}
 
-    /// Norm of the imbalance.
-    fn norm(&self, internal: &[f64], contact: &[f64], s: f64) -> f64 {
-        self.imbalance(internal, contact, s)
-            .map(|(_, r)| r * r)
-            .sum::<f64>()
-            .sqrt()
-    }
+fn norm(v: &[f64]) -> f64 {
+    v.iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
 impl<const D: usize> Driver<D> {
@@ -89,38 +75,37 @@ impl<const D: usize> Driver<D> {
         line: &Line<'_, D>,
         now: Iterate,
     ) -> Iterate {
-        let none = vec![0.0; line.step.len()];
+        let none = Sparse::default();
         let d_u = line.displacement(&now, 1.0);
         let stiffness = match line.tangent {
             true => Stiffness::Plastic(1.0),
             false => Stiffness::None,
         };
         let assembly = system.assemble(&mut self.blocks, &d_u, &none, stiffness);
-        let internal = &assembly.internal;
         let scale = self.force_scale(&assembly, line.end, line.target);
-        let left = largest(line.imbalance(internal, line.target, 1.0).map(|(_, r)| r));
-        let at_start = line.slope(&now.assembly.internal, &now.contact, 0.0);
-        let at_end = line.slope(internal, line.target, 1.0);
-        let overshoots = if at_start < 0.0 {
-            at_end > ACCEPTED_SLOPE * at_start.abs()
-        } else {
-            let before = line.norm(&now.assembly.internal, &now.contact, 0.0);
-            line.norm(internal, line.target, 1.0) > before
+        let before = line.imbalance(&now.assembly.internal, &now.contact, 0.0);
+        let (at_start, before) = (line.slope(&before), norm(&before));
+        let after = line.imbalance(&assembly.internal, line.target, 1.0);
+        let (at_end, left) = (line.slope(&after), largest(after.iter().copied()));
+        let overshoots = match at_start < 0.0 {
+            true => at_end > ACCEPTED_SLOPE * at_start.abs(),
+            false => norm(&after) > before,
         };
+        drop(after);
         // While prescribed displacements or motions are missing, ΔΦ is not what the step minimises; in balance
         // its slope is rounding.
         if !line.complete || !overshoots || left <= self.target(system, scale, &d_u) + line.slack {
             return Iterate {
                 d_u,
                 assembly,
-                contact: line.target.to_vec(),
+                contact: line.target.clone(),
                 part: 1.0,
             };
         }
         let s = if at_start < 0.0 {
             self.minimise(system, line, &now, at_start, at_end)
         } else {
-            self.backtrack(system, line, &now)
+            self.backtrack(system, line, &now, before)
         };
         let d_u = line.displacement(&now, s);
         Iterate {
@@ -141,7 +126,7 @@ impl<const D: usize> Driver<D> {
         at_start: f64,
         at_end: f64,
     ) -> f64 {
-        let none = vec![0.0; line.step.len()];
+        let none = Sparse::default();
         let (mut low, mut high) = ((0.0, at_start), (1.0, at_end));
         let mut last_side = 0.0;
         let mut s = 1.0;
@@ -151,7 +136,7 @@ impl<const D: usize> Driver<D> {
             s = s.clamp(low.0 + margin, high.0 - margin);
             let trial = line.displacement(now, s);
             let at = system.assemble(&mut self.blocks, &trial, &none, Stiffness::None);
-            let slope = line.slope(&at.internal, &line.contact(now, s), s);
+            let slope = line.slope(&line.imbalance(&at.internal, &line.contact(now, s), s));
             if slope.abs() <= ACCEPTED_SLOPE * at_start.abs() {
                 break;
             }
@@ -168,16 +153,21 @@ impl<const D: usize> Driver<D> {
         s
     }
 
-    /// Step length at which the norm of the imbalance has decreased.
-    fn backtrack(&mut self, system: &mut System, line: &Line<'_, D>, now: &Iterate) -> f64 {
-        let none = vec![0.0; line.step.len()];
-        let before = line.norm(&now.assembly.internal, &now.contact, 0.0);
+    /// Step length at which the norm of the imbalance has decreased from what it was before.
+    fn backtrack(
+        &mut self,
+        system: &mut System,
+        line: &Line<'_, D>,
+        now: &Iterate,
+        before: f64,
+    ) -> f64 {
+        let none = Sparse::default();
         let mut s = 1.0;
         for _ in 0..TRIALS {
             s *= 0.5;
             let trial = line.displacement(now, s);
             let at = system.assemble(&mut self.blocks, &trial, &none, Stiffness::None);
-            if line.norm(&at.internal, &line.contact(now, s), s) < before {
+            if norm(&line.imbalance(&at.internal, &line.contact(now, s), s)) < before {
                 break;
             }
         }
@@ -218,7 +208,7 @@ mod tests {
     fn potential(driver: &Driver<2>, end: &Loading<2>, d_u: &[f64]) -> f64 {
         let potentials = driver.blocks.iter().map(|b| b.potential(d_u));
         let stored: f64 = potentials.sum::<Option<f64>>().expect("a potential");
-        stored - end.force.iter().zip(d_u).map(|(f, u)| f * u).sum::<f64>()
+        stored - end.force.dot(d_u)
     }
 
     /// Close to collapse in one increment: the imbalance rises on the way, ΔΦ never does.
@@ -227,7 +217,7 @@ mod tests {
         let mut driver = strip();
         let end = pull(&driver, 258.0);
         let mut start = end.clone();
-        start.force.fill(0.0);
+        start.force = Sparse::default();
         let mut system = driver.prepare(&end, None).expect("held");
         let mut potentials = Vec::new();
         let report = driver
@@ -251,11 +241,13 @@ mod tests {
         let mut driver = strip();
         let end = pull(&driver, 200.0);
         let mut system = driver.prepare(&end, None).expect("held");
-        let none = vec![0.0; end.force.len()];
-        let assembly = system.assemble(&mut driver.blocks, &none, &none, Stiffness::Plastic(1.0));
+        let rest = vec![0.0; 2 * driver.mesh.nodes().len()];
+        let none = Sparse::default();
+        let assembly = system.assemble(&mut driver.blocks, &rest, &none, Stiffness::Plastic(1.0));
         system.factorise(true).expect("elastic");
-        let condensed = system.condense(&end.force);
-        let mut step = none.clone();
+        let (mut load, mut step) = (rest.clone(), rest.clone());
+        end.force.add_to(&mut load, 1.0);
+        let condensed = system.condense(&load);
         system
             .expand(
                 condensed,
@@ -266,16 +258,16 @@ mod tests {
             .expect("accurate");
         step.iter_mut().for_each(|u| *u *= 4.0);
         let now = Iterate {
-            d_u: none.clone(),
+            d_u: rest,
             assembly,
-            contact: none.clone(),
+            contact: Sparse::default(),
             part: 0.0,
         };
-        let free = system.free_dofs();
+        let held = system.held_dofs();
         let line = Line {
             end: &end,
-            growth: Vec::new(),
-            free: &free,
+            growth: Sparse::default(),
+            held: &held,
             step: &step,
             target: &none,
             complete: true,

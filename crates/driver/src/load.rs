@@ -1,6 +1,7 @@
 //! Steps as an engineer writes them, and the loading they amount to; not how it is applied.
 
 use crate::ModelError;
+use crate::sparse::Sparse;
 use std::collections::BTreeMap;
 
 /// A coordinate direction.
@@ -158,23 +159,15 @@ impl<const D: usize> Step<D> {
 
 /// All that acts on the model at an instant: totals, not increments. A tool is a body of one node,
 /// after those of the mesh.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Loading<const D: usize> {
     /// Prescribed displacements by degree of freedom, `D·node + axis` \[mm\].
     pub displacement: BTreeMap<usize, f64>,
-    /// Applied force at every degree of freedom \[N\].
-    pub force: Vec<f64>,
+    /// Applied forces \[N\].
+    pub force: Sparse,
 }
 
 impl<const D: usize> Loading<D> {
-    /// No load on a model of that many degrees of freedom.
-    pub fn none(dofs: usize) -> Self {
-        Self {
-            displacement: BTreeMap::new(),
-            force: vec![0.0; dofs],
-        }
-    }
-
     /// The loading at the part s of the way from `self` to `end`, both with the same prescribed
     /// degrees of freedom. At s = 1 it is `end` exactly.
     pub fn towards(&self, end: &Self, s: f64) -> Self {
@@ -193,17 +186,13 @@ impl<const D: usize> Loading<D> {
                     )
                 })
                 .collect(),
-            force: self
-                .force
-                .iter()
-                .zip(&end.force)
-                .map(|(&a, &b)| mix(a, b))
-                .collect(),
+            force: self.force.with(&end.force, mix),
         }
     }
 
-    /// The first number that is not finite; nodes from `tools` on are tools.
-    pub(crate) fn check(&self, tools: usize) -> Result<(), ModelError> {
+    /// The first number that is not finite, or that is of none of so many degrees of freedom; nodes
+    /// from `tools` on are tools.
+    pub(crate) fn check(&self, tools: usize, dofs: usize) -> Result<(), ModelError> {
         let place = |node: usize| match node.checked_sub(tools) {
             Some(tool) => format!("tool {tool}"),
             None => format!("node {node}"),
@@ -213,13 +202,21 @@ impl<const D: usize> Loading<D> {
             value,
             expected: "a finite number",
         };
+        let last = self.displacement.last_key_value().map(|(&dof, _)| dof);
+        if let Some(dof) = last.max(self.force.last()).filter(|&dof| dof >= dofs) {
+            return Err(ModelError::OutOfRange {
+                what: "degree of freedom of a load".into(),
+                value: dof as f64,
+                expected: "one of the model",
+            });
+        }
         for (&dof, &u) in &self.displacement {
             if !u.is_finite() {
                 let (node, axis) = (dof / D, axis_letter(dof % D));
                 return Err(error(format!("prescribed u_{axis} of {}", place(node)), u));
             }
         }
-        for (dof, &f) in self.force.iter().enumerate() {
+        for (dof, f) in self.force.iter() {
             if !f.is_finite() {
                 let (node, axis) = (dof / D, axis_letter(dof % D));
                 return Err(error(format!("force f_{axis} on {}", place(node)), f));
@@ -238,9 +235,9 @@ impl<const D: usize> Loading<D> {
         if moved > 0.0 {
             return dot(&new, &old) / moved;
         }
-        let loaded = dot(&previous.force, &previous.force);
+        let loaded = previous.force.inner(&previous.force);
         if loaded > 0.0 {
-            dot(&self.force, &previous.force) / loaded
+            self.force.inner(&previous.force) / loaded
         } else {
             0.0
         }
@@ -254,12 +251,7 @@ impl<const D: usize> Loading<D> {
                 .iter()
                 .map(|(d, &u)| (*d, u - start.displacement.get(d).copied().unwrap_or(u)))
                 .collect(),
-            force: self
-                .force
-                .iter()
-                .zip(&start.force)
-                .map(|(b, a)| b - a)
-                .collect(),
+            force: self.force.with(&start.force, |b, a| b - a),
         }
     }
 }

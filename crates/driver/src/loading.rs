@@ -14,10 +14,10 @@ impl<const D: usize> Driver<D> {
     /// Unknown groups and tools, displacements prescribed twice, numbers that are not finite.
     pub fn loading(&self, step: &Step<D>) -> Result<Loading<D>, ModelError> {
         let mesh = &self.mesh;
-        let mut loading = Loading::none(self.state.displacement.len());
+        let mut loading = Loading::default();
         let mut add = |node: usize, share: f64, vector: &[f64; D]| {
             for i in 0..D {
-                loading.force[D * node + i] += share * vector[i];
+                loading.force.add(D * node + i, share * vector[i]);
             }
         };
         let mut moved: BTreeMap<usize, f64> = BTreeMap::new();
@@ -95,11 +95,11 @@ impl<const D: usize> Driver<D> {
                     });
                 }
                 moved.remove(&(D * node + axis.index()));
-                loading.force[D * node + axis.index()] += force;
+                loading.force.add(D * node + axis.index(), *force);
             }
         }
         loading.displacement = moved;
-        loading.check(self.mesh.nodes().len())?;
+        loading.check(self.mesh.nodes().len(), self.state.displacement.len())?;
         Ok(loading)
     }
 
@@ -110,7 +110,8 @@ impl<const D: usize> Driver<D> {
         let mut start = state.loading.clone();
         for dof in state.loading.displacement.keys() {
             if !end.displacement.contains_key(dof) {
-                start.force[*dof] += self.nodal_reaction(dof / D)[dof % D];
+                let reaction = self.nodal_reaction(dof / D)[dof % D];
+                start.force.add(*dof, reaction);
             }
         }
         start.displacement = end

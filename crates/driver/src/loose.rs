@@ -103,8 +103,7 @@ impl<const D: usize> Driver<D> {
     pub(crate) fn loose_tool(&self, end: &Loading<D>) -> Option<ModelError> {
         let size = self.mesh.size();
         (0..self.tools.len()).find_map(|tool| {
-            let first = D * self.tool_node(tool);
-            let force = SVector::<f64, D>::from_column_slice(&end.force[first..first + D]);
+            let force = SVector::from(end.force.at_node::<D>(self.tool_node(tool)));
             let (gap, nearest) = self.tool_gap(tool, &SVector::zeros())?;
             if force.norm() == 0.0 || gap <= TOUCHING * size {
                 return None;

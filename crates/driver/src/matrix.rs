@@ -2,49 +2,49 @@
 
 use crate::cholesky::Pattern;
 
-/// A stiffness: the elastic one, and what it is now.
+/// A stiffness, and what it goes back to.
 #[derive(Debug)]
 pub(crate) struct Matrix {
     pub(crate) pattern: Pattern,
-    /// One more than there are entries, for what no unknown sees.
-    elastic: Vec<f64>,
     values: Vec<f64>,
+    kept: Option<Vec<f64>>,
 }
 
 impl Matrix {
     /// All zero.
     pub(crate) fn new(pattern: Pattern) -> Self {
-        let values = vec![0.0; pattern.entries() + 1];
         Self {
+            values: vec![0.0; pattern.entries()],
             pattern,
-            elastic: values.clone(),
-            values,
+            kept: None,
         }
     }
 
-    /// Where the elastic stiffness is added up.
-    pub(crate) fn elastic_mut(&mut self) -> &mut [f64] {
-        &mut self.elastic
+    /// Where it is added up.
+    pub(crate) fn values_mut(&mut self) -> (&Pattern, &mut [f64]) {
+        (&self.pattern, &mut self.values)
     }
 
-    /// Where what flow adds to it is added up.
-    pub(crate) fn values_mut(&mut self) -> &mut [f64] {
-        &mut self.values
+    /// Keeps it as it is now, to go back to.
+    pub(crate) fn keep(&mut self) {
+        self.kept = Some(self.values.clone());
     }
 
-    /// Makes it the elastic stiffness.
+    /// Goes back to what was kept, or to zero.
     pub(crate) fn reset(&mut self) {
-        self.values.copy_from_slice(&self.elastic);
+        match &self.kept {
+            Some(kept) => self.values.copy_from_slice(kept),
+            None => self.values.fill(0.0),
+        }
     }
 
     /// The entries, in the order of the pattern.
     pub(crate) fn values(&self) -> &[f64] {
-        &self.values[..self.pattern.entries()]
+        &self.values
     }
 
-    /// Diagonal of the elastic stiffness.
-    pub(crate) fn elastic_diagonal(&self, row: usize) -> f64 {
-        self.elastic[self.pattern.diagonal(row)]
+    pub(crate) fn diagonal(&self, row: usize) -> f64 {
+        self.values[self.pattern.diagonal(row)]
     }
 
     /// Adds to the last diagonals, so many.
@@ -155,7 +155,7 @@ mod tests {
             start.push(rows.len() as u32);
         }
         let mut matrix = Matrix::new(Pattern::new(start, rows));
-        matrix.values_mut()[..values.len()].copy_from_slice(&values);
+        matrix.values_mut().1.copy_from_slice(&values);
         (matrix, dense)
     }
 

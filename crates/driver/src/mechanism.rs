@@ -4,15 +4,16 @@
 use crate::collapse::UpperBound;
 use crate::driver::Driver;
 use crate::report::ContactRecord;
+use crate::sparse::Sparse;
 use moreau_laws::{FlowPower, Status};
 
 impl<const D: usize> Driver<D> {
     /// The kinematic bound from the last increment, for the loads λ q with this λ at its end.
-    pub(crate) fn upper_bound(&self, load: &[f64], factor: f64) -> Option<UpperBound> {
+    pub(crate) fn upper_bound(&self, load: &Sparse, factor: f64) -> Option<UpperBound> {
         let (v, _) = self.state.last.as_ref()?;
-        let power = |f: &dyn Fn(usize) -> f64| -> f64 { (0..v.len()).map(|d| f(d) * v[d]).sum() };
-        let proportional = power(&|d| load[d]);
-        let dead = power(&|d| self.state.loading.force[d] - factor * load[d]);
+        let proportional = load.dot(v);
+        let dead = |all, own| all - factor * own;
+        let dead = self.state.loading.force.with(load, dead).dot(v);
         let mut flow = FlowPower::default();
         for block in &self.blocks {
             flow = flow.with(1.0, block.flow_power(v)?);

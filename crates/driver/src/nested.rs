@@ -10,6 +10,7 @@ use crate::line_search::Line;
 use crate::load::Loading;
 use crate::norm::largest;
 use crate::report::{Iteration, StepReport};
+use crate::sparse::Sparse;
 use crate::system::System;
 use moreau_contact::{ContactError, ContactSolution, uzawa_steps};
 use moreau_laws::{Local, Status};
@@ -29,7 +30,7 @@ impl<const D: usize> Driver<D> {
         watch: &mut dyn FnMut(&Iteration<'_>),
     ) -> Result<StepReport, StepError> {
         let Start {
-            free,
+            held,
             mut missing,
             mut now,
             done,
@@ -56,7 +57,7 @@ impl<const D: usize> Driver<D> {
         for _ in 0..iterations {
             let kinematics = self.kinematics(system, end, &now.d_u);
             now.contact = self.contact_forces(&kinematics, &t);
-            now = self.solve_bulk(system, end, &free, now, &mut missing, &mut counts)?;
+            now = self.solve_bulk(system, end, &held, now, &mut missing, &mut counts)?;
             counts.solves += 1;
             let kinematics = self.kinematics(system, end, &now.d_u);
             let u: Vec<Local<D>> = kinematics
@@ -73,7 +74,7 @@ impl<const D: usize> Driver<D> {
             let status: Vec<Status> = (0..t.len())
                 .map(|i| law(i).status(&u[i], &t[i], common[i]))
                 .collect();
-            let unbalanced = now.imbalance(end, &free);
+            let unbalanced = now.imbalance(end, &held);
             watch(&Iteration {
                 increment: self.state.increment + 1,
                 cuts: 0,
@@ -139,15 +140,15 @@ impl<const D: usize> Driver<D> {
         &mut self,
         system: &mut System,
         end: &Loading<D>,
-        free: &[usize],
+        held: &[usize],
         mut now: Iterate,
-        missing: &mut Vec<f64>,
+        missing: &mut Sparse,
         counts: &mut Counts,
     ) -> Result<Iterate, StepError> {
         for _ in 0..self.settings.iterations {
-            let residual = now.imbalance(end, free);
+            let residual = now.imbalance(end, held);
             let scale = self.force_scale(&now.assembly, end, &now.contact);
-            let complete = missing.iter().all(|&m| m == 0.0);
+            let complete = missing.is_zero();
             let worst = largest(residual.iter().copied());
             if complete && worst <= self.target(system, scale, &now.d_u) {
                 return Ok(now);
@@ -157,19 +158,16 @@ impl<const D: usize> Driver<D> {
             }
             counts.newton += 1;
             self.factorise(system, &mut now, missing)?;
-            let load = |d: usize| {
-                end.force[d] + now.contact[d] - now.assembly.internal[d] - now.assembly.coupling[d]
-            };
-            let load: Vec<f64> = (0..now.d_u.len()).map(load).collect();
-            let none = vec![0.0; load.len()];
-            let mut step = std::mem::replace(missing, none);
+            let load = now.assembly.load(&[&end.force, &now.contact]);
+            let mut step = vec![0.0; load.len()];
+            std::mem::take(missing).add_to(&mut step, 1.0);
             system.solve(&load, &mut step)?;
             let target = now.contact.clone();
             let line = Line {
                 tangent: true,
                 end,
-                growth: Vec::new(),
-                free,
+                growth: Sparse::default(),
+                held,
                 step: &step,
                 target: &target,
                 complete,
@@ -177,7 +175,7 @@ impl<const D: usize> Driver<D> {
             };
             now = self.search(system, &line, now);
         }
-        let residual = now.imbalance(end, free);
+        let residual = now.imbalance(end, held);
         let target = self.target(
             system,
             self.force_scale(&now.assembly, end, &now.contact),

@@ -10,6 +10,7 @@ use crate::load::{Loading, Step};
 use crate::norm::largest;
 use crate::report::{Iteration, StepReport};
 use crate::saved::{Reader, write_loading};
+use crate::sparse::Sparse;
 
 /// A step under way: the loadings at both of its ends, and how far it has come.
 #[derive(Debug, Clone, PartialEq)]
@@ -142,10 +143,11 @@ impl<const D: usize> Ramp<D> {
 }
 
 impl<const D: usize> Ramp<D> {
-    /// The loads of the whole step, at every degree of freedom \[N\].
-    fn load(&self) -> Vec<f64> {
-        let pairs = self.end.force.iter().zip(&self.start.force);
-        pairs.map(|(end, start)| end - start).collect()
+    /// The loads of the whole step \[N\].
+    fn load(&self) -> Sparse {
+        self.end
+            .force
+            .with(&self.start.force, |end, start| end - start)
     }
 
     /// Takes note of an increment from λ = `before`, and of the work that the loads of the whole step
@@ -197,10 +199,6 @@ impl<const D: usize> Ramp<D> {
             cause: Box::new(cause),
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl<const D: usize> Driver<D> {
@@ -302,16 +300,16 @@ impl<const D: usize> Driver<D> {
         let moves = ramp.start.displacement != ramp.end.displacement;
         let (last, before) = self.state.last.as_ref()?;
         let load = ramp.load();
-        let square = dot(&load, &load);
+        let square = load.inner(&load);
         if moves
             || self.settings.nesting != Nesting::Inside
             || !(ramp.done > 0.0 && square > 0.0 && ramp.work > 0.0)
         {
             return None;
         }
-        let factor = dot(&before.force, &load) / square;
+        let factor = before.force.inner(&load) / square;
         let compliance = SPRING * ramp.work / ramp.done;
-        let length = dot(&load, last) + compliance * factor;
+        let length = load.dot(last) + compliance * factor;
         (length > 0.0).then_some(Path {
             compliance,
             length,
@@ -400,11 +398,11 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Work of loads on the displacements of the last increment \[N·mm\].
-    fn last_work(&self, load: &[f64]) -> f64 {
+    fn last_work(&self, load: &Sparse) -> f64 {
         self.state
             .last
             .as_ref()
-            .map_or(0.0, |(d_u, _)| dot(load, d_u))
+            .map_or(0.0, |(d_u, _)| load.dot(d_u))
     }
 
     /// Applies a step in a number of equal increments or in [`Increments`] to its end, as [`Driver::proceed`] does. `observe` sees

@@ -3,6 +3,7 @@
 use crate::ModelError;
 use crate::driver::{Driver, State};
 use crate::load::Loading;
+use crate::sparse::Sparse;
 use moreau_contact::ContactSolution;
 use moreau_laws::{Local, Status};
 use nalgebra::{SVector, Vector};
@@ -90,18 +91,27 @@ impl<'a> Reader<'a> {
     pub(crate) fn loading<const D: usize>(&mut self) -> Result<Loading<D>, ModelError> {
         let prescribed = self.count()?;
         let pairs = self.take(prescribed.saturating_mul(2))?;
-        let forces = self.count()?;
-        let force = self.take(forces)?.to_vec();
         Ok(Loading {
             displacement: pairs.chunks(2).map(|p| (p[0] as usize, p[1])).collect(),
-            force,
+            force: self.sparse()?,
         })
+    }
+
+    fn sparse(&mut self) -> Result<Sparse, ModelError> {
+        let count = self.count()?;
+        let pairs = self.take(count.saturating_mul(2))?;
+        Ok(pairs.chunks(2).map(|p| (p[0] as usize, p[1])).collect())
     }
 }
 
 fn write_list(list: &[f64], out: &mut Vec<f64>) {
     out.push(list.len() as f64);
     out.extend(list);
+}
+
+fn write_sparse(pairs: impl ExactSizeIterator<Item = (usize, f64)>, out: &mut Vec<f64>) {
+    out.push(pairs.len() as f64);
+    out.extend(pairs.flat_map(|(dof, value)| [dof as f64, value]));
 }
 
 fn write_vectors<const D: usize>(list: &[Local<D>], out: &mut Vec<f64>) {
@@ -117,10 +127,8 @@ fn write_statuses(list: impl Iterator<Item = Status>, out: &mut Vec<f64>) {
 }
 
 pub(crate) fn write_loading<const D: usize>(loading: &Loading<D>, out: &mut Vec<f64>) {
-    out.push(loading.displacement.len() as f64);
-    let pairs = loading.displacement.iter();
-    out.extend(pairs.flat_map(|(&dof, &u)| [dof as f64, u]));
-    write_list(&loading.force, out);
+    write_sparse(loading.displacement.iter().map(|(&dof, &u)| (dof, u)), out);
+    write_sparse(loading.force.iter(), out);
 }
 
 impl<const D: usize> Driver<D> {
@@ -131,7 +139,7 @@ impl<const D: usize> Driver<D> {
         out.push(state.increment as f64);
         write_list(&state.displacement, out);
         write_list(&state.internal, out);
-        write_list(&state.contact, out);
+        write_sparse(state.contact.iter(), out);
         write_loading(&state.loading, out);
         out.push(f64::from(u8::from(state.last.is_some())));
         if let Some((d_u, loading)) = &state.last {
@@ -177,8 +185,14 @@ impl<const D: usize> Driver<D> {
         let increment = from.count()?;
         let displacement = from.list("degrees of freedom", dofs)?.to_vec();
         let internal = from.list("degrees of freedom", dofs)?.to_vec();
-        let contact = from.list("degrees of freedom", dofs)?.to_vec();
+        let loads = Loading::<D> {
+            force: from.sparse()?,
+            ..Loading::default()
+        };
+        loads.check(self.mesh.nodes().len(), dofs)?;
+        let contact = loads.force;
         let loading: Loading<D> = from.loading()?;
+        loading.check(self.mesh.nodes().len(), dofs)?;
         let last = match from.count()? {
             0 => None,
             _ => Some((

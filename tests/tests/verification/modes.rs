@@ -23,7 +23,7 @@ fn zero_modes<H: Analysis<D>, const D: usize>(
     let dofs = D * mesh.nodes().len();
     let mut stiffness = DMatrix::<f64>::zeros(dofs, dofs);
     let size = D * mesh.cell_nodes(0).len();
-    block.evaluate(&vec![0.0; dofs], Stiffness::Elastic, &mut |result| {
+    block.evaluate(&vec![0.0; dofs], Stiffness::Total(0.0), &mut |result| {
         let nodes = mesh.cell_nodes(result.cell);
         let dof = |k: usize| D * nodes[k / D] + k % D;
         let mut entries = result.stiffness.iter();

@@ -67,7 +67,7 @@ pub(super) fn run() -> Result<bool, Box<dyn Error>> {
                 "forces and what flow adds to the stiffness",
                 Stiffness::Plastic(1.0),
             ),
-            ("forces and elastic stiffness", Stiffness::Elastic),
+            ("forces and elastic stiffness", Stiffness::Total(0.0)),
             ("forces", Stiffness::None),
         ] {
             let what = format!("cell of eight nodes and four points, {state}: {what}");
