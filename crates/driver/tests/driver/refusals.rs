@@ -57,6 +57,33 @@ fn a_factor_larger_than_the_memory_is_refused_with_both_sizes() {
     }
 }
 
+/// A loading is open to its users: what is of another model, or no number, is told and changes nothing.
+#[test]
+fn a_loading_of_another_model_is_refused() {
+    let mut driver = on_floor([4, 2], 0.0, 0.1, Settings::default());
+    let step = Step::new("press")
+        .fix("block.left", &[Axis::X])
+        .displace("punch", Axis::Y, -0.1);
+    let loading = driver.loading(&step).expect("valid");
+    let unknown = 2 * driver.mesh().nodes().len() + 2;
+    let (mut forced, mut moved, mut wild) = (loading.clone(), loading.clone(), loading);
+    forced.force.add(unknown, 1.0);
+    moved.displacement.insert(unknown, 1.0);
+    wild.force.add(0, f64::NAN);
+    for (loading, told) in [
+        (forced, "degree of freedom"),
+        (moved, "degree of freedom"),
+        (wild, "force f_x on node 0"),
+    ] {
+        let Err(StepError::Model(ModelError::OutOfRange { what, .. })) = driver.advance(&loading)
+        else {
+            panic!("{told} passes");
+        };
+        assert!(what.contains(told), "{what}");
+        assert_eq!(driver.increments(), 0);
+    }
+}
+
 #[test]
 fn the_papers_nesting_cannot_hold_a_floating_body() {
     let nesting = Nesting::Outside {
