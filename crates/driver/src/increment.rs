@@ -180,7 +180,7 @@ impl<const D: usize> Driver<D> {
                 self.factorise(system, &mut now, &missing)?;
             }
             chord.begin(out_of_balance, fresh);
-            let mut condensed = system.condense(&now.assembly.load(&[&end.force]));
+            let mut condensed = system.condense(now.assembly.load(&[&end.force]));
             // What a tool has moved is missing in the first iterate as well.
             let tools = self.mesh_dofs()..;
             let moved = counts.newton == 1

@@ -247,7 +247,7 @@ mod tests {
         system.factorise(true).expect("elastic");
         let (mut load, mut step) = (rest.clone(), rest.clone());
         end.force.add_to(&mut load, 1.0);
-        let condensed = system.condense(&load);
+        let condensed = system.condense(load);
         system
             .expand(
                 condensed,

@@ -43,7 +43,7 @@ impl<const D: usize> Driver<D> {
             source,
         };
         self.factorise(system, &mut now, &missing)?;
-        let condensed = system.condense(&vec![0.0; now.d_u.len()]);
+        let condensed = system.condense(vec![0.0; now.d_u.len()]);
         let points = (self.points.as_slice(), self.footings.as_slice());
         let seam = (condensed.stiffness, &condensed.load);
         let condensation =

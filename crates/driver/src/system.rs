@@ -75,10 +75,11 @@ pub(crate) struct Assembly {
 }
 
 impl Assembly {
-    /// The load of a Newton step under forces, at every degree of freedom \[N\].
-    pub(crate) fn load(&self, forces: &[&Sparse]) -> Vec<f64> {
+    /// The load of a Newton step under forces, at every degree of freedom \[N\]; it uses the coupling
+    /// up.
+    pub(crate) fn load(&mut self, forces: &[&Sparse]) -> Vec<f64> {
         let mut load = imbalance(&self.internal, forces, &[]);
-        let pairs = load.iter_mut().zip(&self.coupling);
+        let pairs = load.iter_mut().zip(std::mem::take(&mut self.coupling));
         pairs.for_each(|(f, coupling)| *f -= coupling);
         load
     }

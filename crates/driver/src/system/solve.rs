@@ -54,8 +54,9 @@ pub(crate) struct Condensed {
 
 impl System {
     /// Condenses the factorised system under a load given at every degree of freedom \[N\].
-    pub(crate) fn condense(&mut self, load: &[f64]) -> Condensed {
+    pub(crate) fn condense(&mut self, load: Vec<f64>) -> Condensed {
         let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
+        drop(load);
         let mut forward = self.restricted(&applied);
         timed(&mut self.timings.solution, || {
             self.cholesky.forward(&mut forward)
