@@ -113,8 +113,8 @@ pub const INCREMENTS: usize = 10;
 /// Coefficient of friction on the foundation.
 pub const FRICTION: f64 = 0.1;
 
-/// The least of the penalty factors that the paper finds good, its figure 14 \[N/mm\]. At 80×32 pressures
-/// are within 0.2 % of the largest; with 1e6 they are 16 % off, which is no answer to compare with.
+/// The penalty factor that is good on all meshes of the paper's figure 14 \[N/mm\]. At 80×32 pressures are
+/// within 0.2 % of the largest; with 1e6 they are 16 % off, which is no answer to compare with.
 const PENALTY: f64 = 1e8;
 
 /// The first increments of the ten.
