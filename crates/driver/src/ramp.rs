@@ -246,6 +246,10 @@ impl<const D: usize> Driver<D> {
         ramp: &mut Ramp<D>,
         watch: &mut dyn FnMut(&Iteration<'_>),
     ) -> Result<StepReport, StepError> {
+        // One that was read may be of another model.
+        let (nodes, dofs) = (self.mesh.nodes().len(), self.state.displacement.len());
+        ramp.start.check(nodes, dofs)?;
+        ramp.end.check(nodes, dofs)?;
         let pieces = ramp.increments.pieces();
         let base = 1.0 / pieces as f64;
         let fewest = ramp.increments.start * 0.5f64.powi(self.settings.cuts as i32);

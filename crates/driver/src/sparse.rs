@@ -14,7 +14,7 @@ impl Sparse {
     }
 
     /// The numbers at the degrees of freedom of a node, `D·node` and those that follow.
-    pub fn at_node<const D: usize>(&self, node: usize) -> [f64; D] {
+    pub(crate) fn at_node<const D: usize>(&self, node: usize) -> [f64; D] {
         std::array::from_fn(|i| self.at(D * node + i))
     }
 
@@ -31,40 +31,40 @@ impl Sparse {
     }
 
     /// The last degree of freedom of which something is kept.
-    pub fn last(&self) -> Option<usize> {
+    pub(crate) fn last(&self) -> Option<usize> {
         self.0.last_key_value().map(|(&dof, _)| dof)
     }
 
     /// Whether all is zero.
-    pub fn is_zero(&self) -> bool {
+    pub(crate) fn is_zero(&self) -> bool {
         self.0.values().all(|&value| value == 0.0)
     }
 
     /// Σ a_d v_d with a vector of all degrees of freedom.
-    pub fn dot(&self, v: &[f64]) -> f64 {
+    pub(crate) fn dot(&self, v: &[f64]) -> f64 {
         self.iter().map(|(dof, value)| value * v[dof]).sum()
     }
 
     /// Σ a_d b_d.
-    pub fn inner(&self, b: &Self) -> f64 {
+    pub(crate) fn inner(&self, b: &Self) -> f64 {
         self.iter().map(|(dof, value)| value * b.at(dof)).sum()
     }
 
     /// Adds a multiple to a vector of all degrees of freedom.
-    pub fn add_to(&self, v: &mut [f64], factor: f64) {
+    pub(crate) fn add_to(&self, v: &mut [f64], factor: f64) {
         for (dof, value) in self.iter() {
             v[dof] += factor * value;
         }
     }
 
     /// A multiple.
-    pub fn scaled(&self, factor: f64) -> Self {
+    pub(crate) fn scaled(&self, factor: f64) -> Self {
         Self(self.iter().map(|(dof, v)| (dof, factor * v)).collect())
     }
 
     /// What a function makes of the numbers of both, degree of freedom by degree of freedom; of zeros
     /// it makes zero.
-    pub fn with(&self, b: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
+    pub(crate) fn with(&self, b: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
         let mut out = self.0.clone();
         for &dof in b.0.keys() {
             out.entry(dof).or_insert(0.0);

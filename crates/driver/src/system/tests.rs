@@ -107,6 +107,66 @@ fn the_coarse_stiffness_is_that_of_its_displacements() {
     assert!(error < 1e-8 * size, "{error:e} of {size:e}");
 }
 
+/// With nodes that are held in one direction, in both and in none: against a sum over the cells that
+/// knows nothing of numbers or orders.
+#[test]
+fn the_stiffness_is_the_sum_of_those_of_the_cells() {
+    let (x, y) = (uniform(0.0, 10.0, 5), uniform(0.0, 5.0, 4));
+    let mesh = block2("block", CellKind::Quad8, &x, &y)
+        .expect("valid")
+        .map(|[x, y]| [x + 0.05 * y * y, y + 0.02 * x * y])
+        .expect("valid");
+    let steel = Elastic::new(210e3, 0.3).expect("valid");
+    let model = Model::new(mesh, PlaneStrain::default())
+        .material("block", steel, Integration::Reduced)
+        .expect("valid");
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    let step = Step::new("hold")
+        .fix("block.left", &[Axis::X, Axis::Y])
+        .fix("block.bottom", &[Axis::Y])
+        .fix("block.right", &[Axis::X]);
+    let end = driver.loading(&step).expect("valid");
+    let system = driver.prepare(&end, None).expect("held");
+    let dofs = 2 * driver.mesh.nodes().len();
+    let mut sum: DMatrix<f64> = DMatrix::zeros(dofs, dofs);
+    for block in &mut driver.blocks {
+        let rest = vec![0.0; dofs];
+        block.evaluate(&rest, Stiffness::Total(0.0), &mut |cell| {
+            let own: Vec<usize> = cell
+                .nodes
+                .iter()
+                .flat_map(|&a| [2 * a, 2 * a + 1])
+                .collect();
+            let mut entries = cell.stiffness.iter();
+            for (i, &p) in own.iter().enumerate() {
+                for &q in &own[i..] {
+                    let k = entries.next().expect("a triangle");
+                    sum[(p, q)] += k;
+                    if p != q {
+                        sum[(q, p)] += k;
+                    }
+                }
+            }
+        });
+    }
+    assert!(system.size() < dofs - 20);
+    let own = &system.dofs;
+    let expected = DMatrix::from_fn(own.len(), own.len(), |i, j| sum[(own[i], own[j])]);
+    let difference = (dense(&system.matrix) - &expected).amax();
+    assert!(difference < 1e-14 * expected.amax(), "{difference:e}");
+    // And what couples the unknowns to what is held.
+    let mut coupled: DMatrix<f64> = DMatrix::zeros(dofs, dofs);
+    for &(unknown, held, k) in &system.couplings {
+        assert!(system.is_free(unknown) && !system.is_free(held));
+        coupled[(unknown, held)] += k;
+    }
+    for &p in own {
+        for q in (0..dofs).filter(|&q| !system.is_free(q)) {
+            assert!((coupled[(p, q)] - sum[(p, q)]).abs() < 1e-14 * expected.amax());
+        }
+    }
+}
+
 /// Whether the elastic stiffness is kept or assembled anew.
 #[test]
 fn the_stiffness_is_the_same_whatever_is_kept() {
