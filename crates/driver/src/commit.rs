@@ -4,6 +4,7 @@
 use crate::driver::{Driver, State};
 use crate::increment::Candidate;
 use crate::load::Loading;
+use crate::norm::largest;
 use crate::report::{ContactRecord, StepReport};
 use crate::sparse::Sparse;
 use moreau_contact::Certificate;
@@ -40,6 +41,7 @@ impl<const D: usize> Driver<D> {
         let (mut open, mut stick, mut slip) = (0, 0, 0);
         for (i, (p, k)) in self.points.iter().zip(&kinematics).enumerate() {
             let mut u = k.u;
+            u[0] = k.gap;
             let mut t = solution.force[i];
             for j in 0..D {
                 if !k.active[j] {
@@ -115,6 +117,7 @@ impl<const D: usize> Driver<D> {
             displacement[dof] = u;
         }
         let last = self.repeatable(d_u, end);
+        let moved = largest(displacement[..self.mesh_dofs()].iter().copied());
         self.state = State {
             increment: self.state.increment + 1,
             displacement,
@@ -124,6 +127,7 @@ impl<const D: usize> Driver<D> {
             energies,
             contacts,
             contact,
+            farthest: moved.max(self.state.farthest),
             solution: Some(solution),
         };
         StepReport {

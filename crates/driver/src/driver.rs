@@ -77,6 +77,9 @@ pub(crate) struct State<const D: usize> {
     pub(crate) contacts: Vec<ContactRecord<D>>,
     /// Contact forces \[N\].
     pub(crate) contact: Sparse,
+    /// Largest displacement of a node of the mesh so far \[mm\]: stresses keep the rounding of the largest
+    /// that they have been.
+    pub(crate) farthest: f64,
     /// Last solution of the contact problem, to start the next from.
     pub(crate) solution: Option<ContactSolution<D>>,
 }
@@ -132,6 +135,7 @@ impl<const D: usize> Driver<D> {
             energies: Energies::default(),
             contacts: model.points.iter().map(rest).collect(),
             contact: Sparse::default(),
+            farthest: 0.0,
             solution: None,
         };
         let mut driver = Self {

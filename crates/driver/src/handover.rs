@@ -120,7 +120,7 @@ impl<const D: usize> Driver<D> {
         }
         for c in rest {
             let k = &kinematics[c];
-            kinematics[c] = Kinematics::open(k.law, k.u[0].max(0.0) + f64::MIN_POSITIVE);
+            kinematics[c] = Kinematics::apart(k.law, k.gap);
         }
     }
 

@@ -292,12 +292,14 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// Out-of-balance force at which an increment is accepted \[N\]: the tolerance, or the rounding
-    /// of internal forces where the body moves almost rigidly.
+    /// Out-of-balance force at which an increment is accepted \[N\]: the tolerance, or the rounding of
+    /// internal forces where the body moves almost rigidly, or is let go: a stress that has vanished is
+    /// what rounding left of the largest so far.
     pub(crate) fn target(&self, system: &System, scale: f64, d_u: &[f64]) -> f64 {
         // Of the size of the mesh, no position has a smaller part.
         let (size, moved) = (self.mesh.size(), &d_u[..self.mesh_dofs()]);
-        let motion = largest(moved.iter().copied()).clamp(f64::EPSILON * size, size);
+        let motion = largest(moved.iter().copied()).max(self.state.farthest);
+        let motion = motion.clamp(f64::EPSILON * size, size);
         let rounding = 64.0 * f64::EPSILON * system.stiffest() * motion;
         (self.settings.tolerance * scale).max(rounding)
     }

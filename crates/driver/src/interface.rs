@@ -211,8 +211,12 @@ pub(crate) struct Kinematics<const D: usize> {
     /// Unit normal and tangents: for forces in space, and from relative displacements to gap and
     /// slip; zero where switched off.
     pub(crate) axes: SMatrix<f64, D, D>,
-    /// Gap at the end of the step and slip of the step \[mm\].
+    /// Gap at the end of the step and slip of the step \[mm\], as the law sees them: a point that takes
+    /// no part in it is open.
     pub(crate) u: Local<D>,
+    /// Gap at the end of the step, negative inside of what is opposite, whether the law holds there or
+    /// not \[mm\].
+    pub(crate) gap: f64,
     /// Components that take part in the law.
     pub(crate) active: [bool; D],
     /// The law between them.
@@ -241,10 +245,11 @@ impl<const D: usize> Kinematics<D> {
         let length = projected.norm();
         let dimension = free.iter().filter(|f| **f).count();
         if dimension == 0 || length < PRESCRIBED {
-            // Nothing left to decide: an open gap whatever the prescribed motion does.
-            return Self::open(point.law, gap.abs() + f64::MIN_POSITIVE);
+            // Nothing left to decide, whatever the prescribed motion does.
+            return Self::apart(point.law, gap);
         }
-        let mut out = Self::open(point.law, gap);
+        let mut out = Self::apart(point.law, gap);
+        out.u[0] = gap;
         let tangents = frame_along(n, point.axis.as_ref());
         let q = if dimension == D {
             tangents
@@ -279,13 +284,14 @@ impl<const D: usize> Kinematics<D> {
         self
     }
 
-    /// A point that takes no part in the law, at an open gap.
-    pub(crate) fn open(law: Friction, gap: f64) -> Self {
+    /// A point that takes no part in the law.
+    pub(crate) fn apart(law: Friction, gap: f64) -> Self {
         let mut u = Local::zeros();
-        u[0] = gap;
+        u[0] = gap.abs() + f64::MIN_POSITIVE;
         Self {
             axes: SMatrix::zeros(),
             u,
+            gap,
             active: [false; D],
             law,
         }

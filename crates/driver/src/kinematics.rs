@@ -36,7 +36,7 @@ impl<const D: usize> Driver<D> {
                 let kinematics = match footing.plane(&slip) {
                     Some((n, gap)) => Kinematics::new(p, &n, gap - p.offset, &slip, free),
                     // Opposite to nothing: as far away as anything can be.
-                    None => Kinematics::open(p.law, self.mesh.size()),
+                    None => Kinematics::apart(p.law, self.mesh.size()),
                 };
                 return kinematics.between_forces(footing.area);
             };

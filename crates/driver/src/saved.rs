@@ -136,7 +136,7 @@ impl<const D: usize> Driver<D> {
     /// happened.
     pub fn write(&self, out: &mut Vec<f64>) {
         let state = &self.state;
-        out.push(state.increment as f64);
+        out.extend([state.increment as f64, state.farthest]);
         write_list(&state.displacement, out);
         write_list(&state.internal, out);
         write_sparse(state.contact.iter(), out);
@@ -182,7 +182,7 @@ impl<const D: usize> Driver<D> {
     /// driver is then of no use.
     pub fn read(&mut self, from: &mut Reader<'_>) -> Result<(), ModelError> {
         let (dofs, points) = (self.state.displacement.len(), self.points.len());
-        let increment = from.count()?;
+        let (increment, farthest) = (from.count()?, from.number()?);
         let displacement = from.list("degrees of freedom", dofs)?.to_vec();
         let internal = from.list("degrees of freedom", dofs)?.to_vec();
         let loads = Loading::<D> {
@@ -268,6 +268,7 @@ impl<const D: usize> Driver<D> {
             energies,
             contacts,
             contact,
+            farthest,
             solution,
         };
         self.system = None;
