@@ -40,7 +40,7 @@ pub use discrete::{
     LocalSolver, Newton, NewtonMap, ProximalNewton, Reason, Residual, TrescaFixedPoint, Unsolved,
 };
 pub use error::ContactError;
-pub use obstacle::{Ball, Cylinder, Obstacle, Plane, frame};
+pub use obstacle::{Ball, Corner, Cylinder, Obstacle, Plane, frame};
 pub use polyline::Polyline;
 pub use problem::{Certificate, ContactProblem, Delassus};
 pub use solvers::{

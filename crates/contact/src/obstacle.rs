@@ -11,6 +11,23 @@ pub trait Obstacle<const D: usize>: Send + Sync {
     /// Gradient of the distance at x: the unit normal that points from the obstacle (Ω_A) into
     /// the body (Ω_B), so that u_n ≥ 0 opens.
     fn normal(&self, x: &SVector<f64, D>) -> SVector<f64, D>;
+
+    /// The sharp convex corner that x is straight ahead of, or at, within `tolerance` \[mm\] sideways:
+    /// the normal there is any of a cone. A smooth obstacle has none.
+    fn corner(&self, _x: &SVector<f64, D>, _tolerance: f64) -> Option<Corner<D>> {
+        None
+    }
+}
+
+/// A sharp convex corner of an obstacle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Corner<const D: usize> {
+    /// Where it is \[mm\].
+    pub position: SVector<f64, D>,
+    /// The axis of the cone of normals, of unit length.
+    pub axis: SVector<f64, D>,
+    /// The angle between the axis and the normals of the faces \[rad\], below π/2.
+    pub half_angle: f64,
 }
 
 impl<const D: usize, T: Obstacle<D> + ?Sized> Obstacle<D> for Box<T> {
@@ -20,6 +37,10 @@ impl<const D: usize, T: Obstacle<D> + ?Sized> Obstacle<D> for Box<T> {
 
     fn normal(&self, x: &SVector<f64, D>) -> SVector<f64, D> {
         (**self).normal(x)
+    }
+
+    fn corner(&self, x: &SVector<f64, D>, tolerance: f64) -> Option<Corner<D>> {
+        (**self).corner(x, tolerance)
     }
 }
 

@@ -1,6 +1,6 @@
 //! A rigid profile of straight pieces in the plane; not a closed body, not a surface in space.
 
-use crate::{ContactError, Obstacle};
+use crate::{ContactError, Corner, Obstacle};
 use nalgebra::Vector2;
 
 /// A rigid obstacle bounded by an open polyline, in the plane, that lies on the right of it.
@@ -101,8 +101,8 @@ impl Polyline {
             .then_some(s)
     }
 
-    /// Signed distance and normal.
-    fn nearest(&self, x: &Vector2<f64>) -> (f64, Vector2<f64>) {
+    /// The segment nearest to a point, and the part of it where it is.
+    fn nearest_segment(&self, x: &Vector2<f64>) -> (usize, f64) {
         let mut best = (f64::INFINITY, 0, 0.0);
         for k in 0..self.segments() {
             let along = self.along(k);
@@ -112,7 +112,12 @@ impl Polyline {
                 best = (squared, k, s);
             }
         }
-        let (_, k, s) = best;
+        (best.1, best.2)
+    }
+
+    /// Signed distance and normal.
+    fn nearest(&self, x: &Vector2<f64>) -> (f64, Vector2<f64>) {
+        let (k, s) = self.nearest_segment(x);
         let corner = match s {
             0.0 if k > 0 => k,
             1.0 if k + 1 < self.segments() => k + 1,
@@ -138,6 +143,24 @@ impl Obstacle<2> for Polyline {
 
     fn normal(&self, x: &Vector2<f64>) -> Vector2<f64> {
         self.nearest(x).1
+    }
+
+    fn corner(&self, x: &Vector2<f64>, tolerance: f64) -> Option<Corner<2>> {
+        let (nearest, _) = self.nearest_segment(x);
+        let ends = [nearest, nearest + 1].into_iter();
+        let inner = ends.filter(|&k| k > 0 && k < self.segments());
+        let mut corners = inner.filter_map(|k| {
+            let (before, after) = (self.left(k - 1), self.left(k));
+            let axis = (before + after).normalize();
+            let across = (x - self.points[k]).perp(&axis);
+            let convex = self.along(k - 1).perp(&self.along(k)) < 0.0;
+            (convex && across.abs() <= tolerance).then(|| Corner {
+                position: self.points[k],
+                axis,
+                half_angle: 0.5 * before.angle(&after),
+            })
+        });
+        corners.next()
     }
 }
 

@@ -142,6 +142,15 @@ impl<const D: usize> ContactProblem<D> {
         )
     }
 
+    /// A proximal term c/2 |u − g|² about the origin, c \[N/mm\]: S + c 1 takes the place of S. Where
+    /// the statuses leave the bodies a rigid motion S is singular, and the solutions are many; this has
+    /// one, near to the origin. Repeated about its own solution it ends at one of the problem itself.
+    pub fn hold(&mut self, c: f64) {
+        for k in 0..self.stiffness.nrows() {
+            self.stiffness[(k, k)] += c;
+        }
+    }
+
     /// Number of contacts.
     pub fn contacts(&self) -> usize {
         self.friction.len()

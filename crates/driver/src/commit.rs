@@ -36,6 +36,7 @@ impl<const D: usize> Driver<D> {
         let laws: Vec<_> = kinematics.iter().map(|k| k.law).collect();
         let mut irreversible = Vec::with_capacity(kinematics.len());
         let mut contacts = Vec::with_capacity(kinematics.len());
+        let mut corners = Vec::new();
         let mut friction = 0.0;
         let mut penalty = 0.0;
         let (mut open, mut stick, mut slip) = (0, 0, 0);
@@ -73,6 +74,9 @@ impl<const D: usize> Driver<D> {
                 Status::Stick if !held => stick += 1,
                 Status::Slip if !held => slip += 1,
                 _ => {}
+            }
+            if k.at_corner && status != Status::Open {
+                corners.push(i);
             }
             contacts.push(ContactRecord {
                 contact: p.contact,
@@ -147,6 +151,11 @@ impl<const D: usize> Driver<D> {
             energies,
             certificate,
             criticality: counts.criticality,
+            free_motions: match counts.undetermined {
+                true => self.free_motions(),
+                false => Vec::new(),
+            },
+            corners,
             out_of_balance,
             residuals: counts.residuals,
         }

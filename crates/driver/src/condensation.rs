@@ -3,6 +3,7 @@
 
 use crate::dense::DenseCholesky;
 use crate::interface::{ContactPoint, Footing, Kinematics};
+use crate::suspension::Suspended;
 use crate::system::System;
 use moreau_contact::{ContactError, ContactProblem};
 use moreau_laws::{Local, Status};
@@ -25,7 +26,8 @@ pub(crate) struct Condensation<const D: usize> {
 }
 
 impl<const D: usize> Condensation<D> {
-    /// Turns stiffness and load of the condensed system into the local frames of the contacts.
+    /// Turns stiffness and load of the condensed system into the local frames of the contacts;
+    /// `previous` are the contact forces at the start of the step, `force` the last that were found.
     ///
     /// # Errors
     /// [`ContactError::Singular`] if a body is not held even with all its contacts stuck;
@@ -35,22 +37,36 @@ impl<const D: usize> Condensation<D> {
         (stiffness, load): (DMatrix<f64>, &DVector<f64>),
         (points, footings): (&[ContactPoint<D>], &[Footing<D>]),
         kinematics: &[Kinematics<D>],
-        previous: Vec<Local<D>>,
+        (previous, force): (Vec<Local<D>>, &[Local<D>]),
     ) -> Result<Self, ContactError> {
         let mut rows = Elimination::new(load.len());
+        let mut suspended = Vec::new();
         for (c, k) in kinematics.iter().enumerate() {
             for j in (0..D).filter(|&j| k.active[j]) {
                 let row = row(&footings[c], k, j, |dof| system.interface_index(dof));
                 let own = (0..D).filter_map(|i| system.interface_index(D * points[c].node + i));
                 let own: Vec<usize> = own.collect();
-                if !rows.solve(D * c + j, row, &own) {
+                if row.is_empty() {
                     return Err(ContactError::Overconstrained { contact: c });
+                }
+                if !rows.solve(D * c + j, &row, &own) {
+                    let (component, force) = (D * c + j, force[c][j]);
+                    suspended.push(Suspended {
+                        component,
+                        row,
+                        force,
+                    });
                 }
             }
         }
         let transformation = rows.finish(D * points.len());
-        let stiffness = transformation.congruence(stiffness);
-        let load = transformation.transposed(load);
+        let springs: Vec<f64> = suspended.iter().map(|s| s.spring(&stiffness)).collect();
+        let mut stiffness = transformation.congruence(stiffness);
+        let mut load = transformation.transposed(load);
+        for (own, spring) in suspended.iter().zip(springs) {
+            let row = transformation.combination(&own.row);
+            own.add(spring, &row, (&mut stiffness, &mut load));
+        }
         let (mut stiffness, load, rest) = Rest::condense(stiffness, load, D * points.len())?;
         // Components switched off: alone on their diagonal, of the size of their neighbours.
         let typical = stiffness.diagonal().amax().max(f64::MIN_POSITIVE);
@@ -203,10 +219,10 @@ impl Elimination {
     pub(crate) fn solve(
         &mut self,
         component: usize,
-        row: BTreeMap<usize, f64>,
+        row: &BTreeMap<usize, f64>,
         own: &[usize],
     ) -> bool {
-        let (u, x) = self.reduced(row);
+        let (u, x) = self.reduced(row.clone());
         let largest = |among: &mut dyn Iterator<Item = (&usize, &f64)>| {
             among
                 .map(|(&dof, &c)| (dof, c))
@@ -291,6 +307,17 @@ impl Transformation {
         let z = |k: usize| if k < u.len() { u[k] } else { y[k - u.len()] };
         let row = |row: &Vec<(usize, f64)>| row.iter().map(|&(k, c)| c * z(k)).sum();
         DVector::from_iterator(self.rows.len(), self.rows.iter().map(row))
+    }
+
+    /// Σ row x by (u, y).
+    fn combination(&self, row: &BTreeMap<usize, f64>) -> BTreeMap<usize, f64> {
+        let mut sum = BTreeMap::new();
+        for (&x, &c) in row {
+            for &(z, t) in &self.rows[x] {
+                *sum.entry(z).or_insert(0.0) += c * t;
+            }
+        }
+        sum
     }
 
     /// Tᵀ f.
@@ -409,7 +436,7 @@ mod tests {
             let mut elimination = Elimination::new(unknowns);
             for r in 0..rows {
                 let row = (0..unknowns).filter(|&i| b[(r, i)] != 0.0).map(|i| (i, b[(r, i)]));
-                prop_assert!(elimination.solve(r, row.collect(), &[r]));
+                prop_assert!(elimination.solve(r, &row.collect(), &[r]));
             }
             let t = elimination.finish(rows);
             prop_assert_eq!(t.columns, unknowns);
@@ -429,9 +456,9 @@ mod tests {
     fn a_row_without_freedom_is_refused() {
         let mut elimination = Elimination::new(2);
         let row = |c: [f64; 2]| -> BTreeMap<usize, f64> { [(0, c[0]), (1, c[1])].into() };
-        assert!(elimination.solve(0, row([1.0, 2.0]), &[0]));
-        assert!(elimination.solve(1, row([1.0, -1.0]), &[0]));
-        assert!(!elimination.solve(2, row([3.0, 1.0]), &[0]));
+        assert!(elimination.solve(0, &row([1.0, 2.0]), &[0]));
+        assert!(elimination.solve(1, &row([1.0, -1.0]), &[0]));
+        assert!(!elimination.solve(2, &row([3.0, 1.0]), &[0]));
     }
 
     /// The Schur complement is what the whole system answers on what is kept.

@@ -89,6 +89,7 @@ impl<const D: usize> Driver<D> {
         let outcome = self.balance(&mut system, ends, guess, Some(control), watch);
         self.system = Some(system);
         let candidate = outcome?;
+        self.check_passage(&candidate.d_u)?;
         Ok((control.factor <= 1.0)
             .then(|| self.commit(&start, &control.loading(&start), candidate)))
     }

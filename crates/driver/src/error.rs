@@ -59,20 +59,22 @@ pub enum ModelError {
         /// The nearest tool or group of facets.
         nearest: Option<String>,
     },
-    /// A node that touches two obstacles.
+    /// A node of two surfaces that touch the same.
     #[error(
-        "node {node} at {position:?} is in contact with {first:?} and with {second:?}: \
-         give each node one obstacle"
+        "node {node} at {position:?} belongs to {first:?} and to {second:?}, which both touch {opposite:?}: \
+         make one group of both surfaces, or leave the node out of one"
     )]
     SharedContactNode {
         /// The node.
         node: usize,
         /// Its position \[mm\].
         position: Vec<f64>,
-        /// What it touches in the first contact.
+        /// Surface of the first contact.
         first: String,
-        /// In the second.
+        /// Of the second.
         second: String,
+        /// What both touch.
+        opposite: String,
     },
     /// An axis of friction that has no direction on a surface.
     #[error(
@@ -249,6 +251,21 @@ pub enum StepError {
         worst: Vec<Imbalance>,
         /// Part of the volume in which plastic strain grew.
         plastic_fraction: f64,
+    },
+    /// A tool went through a contact point, in and out again, in one increment.
+    #[error(
+        "in one increment tool {tool:?} went through node {node} at {position:?}, {depth:.3e} mm deep on the \
+         way: the increment is too large for contact to follow"
+    )]
+    Passage {
+        /// The tool.
+        tool: String,
+        /// Node of the contact point.
+        node: usize,
+        /// Its position in the undeformed body \[mm\].
+        position: Vec<f64>,
+        /// How deep it was in the tool \[mm\].
+        depth: f64,
     },
     /// The tangent is not positive definite: a mechanism.
     #[error(

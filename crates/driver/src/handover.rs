@@ -205,7 +205,7 @@ impl<const D: usize> Driver<D> {
             let own: Vec<usize> = own(c).collect();
             for (component, row) in all {
                 // What cannot be solved for is refused where the increment is.
-                rows.solve(component, row, &own);
+                rows.solve(component, &row, &own);
             }
         }
         spare

@@ -16,7 +16,7 @@ use crate::norm::largest;
 use crate::report::{Iteration, StepReport};
 use crate::sparse::Sparse;
 use crate::system::System;
-use moreau_contact::{ContactError, ContactSolution};
+use moreau_contact::{ContactError, ContactProblem, ContactSolution};
 use nalgebra::DVector;
 use std::borrow::Cow;
 use std::time::Instant;
@@ -36,6 +36,8 @@ pub(crate) struct Counts {
     pub(crate) residuals: Vec<f64>,
     /// [`StepReport::criticality`].
     pub(crate) criticality: Option<(usize, f64)>,
+    /// Whether the statuses have left a rigid motion free on the way.
+    pub(crate) undetermined: bool,
 }
 
 /// A converged increment, not yet committed.
@@ -64,6 +66,14 @@ pub(crate) struct Start {
 /// widest gap.
 const FARTHEST: f64 = 10.0;
 
+/// Stiffness against motions that the statuses leave free, over that of the interface: softer than any
+/// body and stiffer than rounding; more of it where forces that are as small keep the statuses from
+/// settling.
+const SOFT: [f64; 2] = [1e-10, 1e-6];
+
+/// Part of the forces in play that it may carry where nothing else needs to.
+const CARRIED: f64 = 1e-2;
+
 /// Parts of what flow adds to the stiffness that are tried in turn where the tangent is a mechanism.
 const BLENDS: [f64; 4] = [1.0 - 1e-4, 0.99, 0.8, 0.0];
 
@@ -79,6 +89,7 @@ impl<const D: usize> Driver<D> {
     ) -> Result<StepReport, StepError> {
         let guess = self.predictor(start, end);
         let candidate = self.balance(system, (start, end), guess, None, watch)?;
+        self.check_passage(&candidate.d_u)?;
         Ok(self.commit(start, end, candidate))
     }
 
@@ -197,18 +208,28 @@ impl<const D: usize> Driver<D> {
             let points = (self.points.as_slice(), self.footings.as_slice());
             let stiffness = std::mem::take(&mut condensed.stiffness);
             let seam = (stiffness, &condensed.load);
-            let condensation =
-                Condensation::new(system, seam, points, &kinematics, previous).map_err(contact)?;
+            let force = match &solution {
+                Some(s) if counts.newton > 1 => s.force.clone(),
+                _ => previous.clone(),
+            };
+            let mut condensation =
+                Condensation::new(system, seam, points, &kinematics, (previous, &force))
+                    .map_err(contact)?;
             // Where the step is linear it may be the last; what a tool has moved is no imbalance yet.
             let exact = !now.assembly.flows || moved || control.is_some();
             let enough = match exact {
                 true => 0.0,
                 false => chord.contact_residual(imbalance, balance),
             };
+            let problem = &mut condensation.problem;
             let solved = self
                 .settings
                 .contact
-                .approach(&condensation.problem, solution.as_ref(), enough)
+                .approach(problem, solution.as_ref(), enough)
+                .or_else(|error| {
+                    counts.undetermined = true;
+                    self.nearest(system, problem, solution.as_ref(), error)
+                })
                 .map_err(contact)?;
             system.timings.contact += clock.elapsed();
             counts.contact += solved.iterations;
@@ -321,6 +342,32 @@ impl<const D: usize> Driver<D> {
             let gap = largest(before.iter().map(|k| k.u[0]));
             moved <= FARTHEST * (reach + gap)
         }
+    }
+
+    /// A contact problem that is singular, as where all that touches slips or nothing is left to press:
+    /// of its solutions, which differ by a rigid motion, the one nearest to where the bodies are. There is
+    /// none where a body falls or slides away: what holds it here would have to carry its load.
+    fn nearest(
+        &self,
+        system: &System,
+        problem: &mut ContactProblem<D>,
+        guess: Option<&ContactSolution<D>>,
+        error: ContactError,
+    ) -> Result<ContactSolution<D>, ContactError> {
+        if error != ContactError::Singular {
+            return Err(error);
+        }
+        for soft in SOFT.map(|part| part * system.shift()) {
+            problem.hold(soft);
+            let Ok(solved) = self.settings.contact.solve(problem, guess) else {
+                continue;
+            };
+            let pairs = solved.displacement.iter().zip(problem.origin());
+            let motion = largest(pairs.map(|(u, g)| (u - g).amax()));
+            let carries = soft * motion > CARRIED * problem.force_scale(&solved.force);
+            return if carries { Err(error) } else { Ok(solved) };
+        }
+        Err(error)
     }
 
     /// Factorises the tangent at an iterate. Where that is a mechanism, as a plastic tangent may be

@@ -219,6 +219,8 @@ pub(crate) struct Kinematics<const D: usize> {
     pub(crate) gap: f64,
     /// Components that take part in the law.
     pub(crate) active: [bool; D],
+    /// Whether the point is at a sharp corner of its tool.
+    pub(crate) at_corner: bool,
     /// The law between them.
     pub(crate) law: Friction,
 }
@@ -293,6 +295,7 @@ impl<const D: usize> Kinematics<D> {
             u,
             gap,
             active: [false; D],
+            at_corner: false,
             law,
         }
     }

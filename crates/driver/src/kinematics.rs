@@ -11,6 +11,10 @@ use moreau_contact::ContactSolution;
 use moreau_laws::Local;
 use nalgebra::SVector;
 
+/// How far sideways of a sharp corner a point may be to be at it, over the size of the mesh: what
+/// decides between its two faces is then rounding, and not the model.
+const AHEAD: f64 = 1e-6;
+
 impl<const D: usize> Driver<D> {
     /// Where a tool is at the end of an increment: as it is told, or moved by what it was driven to.
     fn tool_position(&self, tool: usize, end: &Loading<D>, d_u: &[f64]) -> SVector<f64, D> {
@@ -47,9 +51,18 @@ impl<const D: usize> Driver<D> {
                 false => tool,
             };
             let x = footing.relative(now);
-            let gap = obstacle.distance(&x) - p.offset;
-            let kinematics = Kinematics::new(p, &obstacle.normal(&x), gap, &slip, free);
-            kinematics.between_forces(footing.area)
+            let Some(corner) = obstacle.corner(&x, AHEAD * self.mesh.size()) else {
+                let gap = obstacle.distance(&x) - p.offset;
+                let kinematics = Kinematics::new(p, &obstacle.normal(&x), gap, &slip, free);
+                return kinematics.between_forces(footing.area);
+            };
+            // Any normal of the cone: friction about its axis that holds as far as the cone reaches.
+            let gap = corner.axis.dot(&(x - corner.position)) - p.offset;
+            let law = p.law.at_corner(corner.half_angle);
+            let blunt = ContactPoint { law, ..*p };
+            let mut kinematics = Kinematics::new(&blunt, &corner.axis, gap, &slip, free);
+            kinematics.at_corner = true;
+            kinematics
         };
         let mut all: Vec<_> = self.points.iter().zip(&self.footings).map(at).collect();
         self.stop_once(|dof| system.is_free(dof), &mut all);

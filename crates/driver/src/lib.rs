@@ -57,12 +57,14 @@ mod nested;
 mod norm;
 mod numbering;
 mod ordering;
+mod passage;
 mod ramp;
 mod report;
 mod saved;
 mod scatter;
 mod sparse;
 mod supports;
+mod suspension;
 mod system;
 mod timings;
 

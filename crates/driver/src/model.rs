@@ -278,7 +278,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     ///
     /// # Errors
     /// An unknown group; [`ModelError::SharedContactNode`] for a node of `surface` that is one of
-    /// another contact; [`ModelError::SharedSurfaceNode`].
+    /// another contact with the same surface; [`ModelError::SharedSurfaceNode`].
     pub fn pair(
         mut self,
         surface: &str,
@@ -316,13 +316,18 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     ) -> Result<(), ModelError> {
         let facets = self.mesh.facet_group(surface)?;
         let shares = self.mesh.facet_shares(facets, &self.hypothesis);
+        let meets = |p: &&ContactPoint<D>| self.contacts[p.contact].opposite == opposite;
+        let taken: BTreeMap<usize, usize> = (self.points.iter().filter(meets))
+            .map(|p| (p.node, p.contact))
+            .collect();
         for (share, edge) in positive_shares(&self.mesh, facets, shares) {
-            if let Some(other) = self.points.iter().find(|p| p.node == share.node) {
+            if let Some(&other) = taken.get(&share.node) {
                 return Err(ModelError::SharedContactNode {
                     node: share.node,
                     position: self.mesh.nodes()[share.node].to_vec(),
-                    first: self.contacts[other.contact].opposite.clone(),
-                    second: opposite.into(),
+                    first: self.contacts[other].surface.clone(),
+                    second: surface.into(),
+                    opposite: opposite.into(),
                 });
             }
             self.points.push(ContactPoint {

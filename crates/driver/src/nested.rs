@@ -46,8 +46,8 @@ impl<const D: usize> Driver<D> {
         let condensed = system.condense(vec![0.0; now.d_u.len()]);
         let points = (self.points.as_slice(), self.footings.as_slice());
         let seam = (condensed.stiffness, &condensed.load);
-        let condensation =
-            Condensation::new(system, seam, points, &kinematics, t.clone()).map_err(contact)?;
+        let condensation = Condensation::new(system, seam, points, &kinematics, (t.clone(), &t))
+            .map_err(contact)?;
         let mut alpha = uzawa_steps(&condensation.problem).map_err(contact)?;
         let common: Vec<f64> = (0..t.len())
             .map(|i| condensation.problem.alpha(i))
@@ -87,6 +87,7 @@ impl<const D: usize> Driver<D> {
                 status: &status,
             });
             if residual <= tolerance * scale {
+                self.check_passage(&now.d_u)?;
                 counts.factorisations = system.factorisations - done.0;
                 counts.linear = system.conjugate - done.1;
                 let candidate = Candidate {

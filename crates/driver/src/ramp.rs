@@ -71,6 +71,9 @@ const SOFTER: f64 = 0.02;
 /// structure softens.
 const SPRING: f64 = 1e-2;
 
+/// Times that an increment is halved at most where a tool moves through a body.
+const MOST_CUTS: usize = 30;
+
 impl<const D: usize> Ramp<D> {
     /// Part of the step that has been done, in [0, 1].
     pub fn done(&self) -> f64 {
@@ -252,8 +255,6 @@ impl<const D: usize> Driver<D> {
         ramp.end.check(nodes, dofs)?;
         let pieces = ramp.increments.pieces();
         let base = 1.0 / pieces as f64;
-        let fewest = ramp.increments.start * 0.5f64.powi(self.settings.cuts as i32);
-        let smallest = ramp.increments.min.unwrap_or(fewest);
         loop {
             if let Some(path) = ramp.path {
                 return self.follow(ramp, path, watch);
@@ -289,7 +290,16 @@ impl<const D: usize> Driver<D> {
                         ramp.length *= 0.5;
                     }
                     ramp.cuts += 1;
-                    ramp.path = self.path(ramp);
+                    // How far contact can follow is known, and shorter increments get there.
+                    let follows = matches!(cause, StepError::Passage { .. });
+                    let cuts = if follows {
+                        MOST_CUTS
+                    } else {
+                        self.settings.cuts
+                    };
+                    let fewest = ramp.increments.start * 0.5f64.powi(cuts as i32);
+                    let smallest = ramp.increments.min.unwrap_or(fewest);
+                    ramp.path = self.path(ramp).filter(|_| !follows);
                     if ramp.path.is_none() && ramp.length < smallest {
                         let stopped = ramp.stopped(cause, 2.0 * ramp.length);
                         return Err(self.loose_tool(&ramp.end).map_or(stopped, Into::into));

@@ -97,6 +97,13 @@ pub struct StepReport {
     /// the last iteration; `None` where nothing touches, on a path of unknown load factor, and under
     /// the paper's nesting.
     pub criticality: Option<(usize, f64)>,
+    /// Rigid motions that nothing resists in the state that was found, in words, if the statuses left
+    /// some free on the way: forces are what they are, and positions are those nearest to the ones before.
+    pub free_motions: Vec<String>,
+    /// Closed contact points at a sharp corner of their tool, as indices of
+    /// [`Driver::contacts`](crate::Driver::contacts): their normal is any of a cone, see
+    /// [`Obstacle::corner`](moreau_contact::Obstacle::corner).
+    pub corners: Vec<usize>,
     /// Largest nodal force that nothing balances \[N\].
     pub out_of_balance: f64,
     /// Out-of-balance force of every Newton iteration \[N\].

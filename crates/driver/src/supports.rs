@@ -7,6 +7,7 @@
 use crate::driver::Driver;
 use crate::error::ModelError;
 use crate::load::{Axis, Condition, Loading, Step, axis_letter};
+use moreau_laws::Status;
 use nalgebra::{DMatrix, DVector, SVector};
 use std::collections::BTreeMap;
 
@@ -196,7 +197,7 @@ impl<const D: usize> Driver<D> {
             let nodes = self.mesh().node_group(on)?;
             held.extend(nodes.iter().map(|n| (D * n + axis.index(), index)));
         }
-        let rows = self.rows(held.into_iter(), &loading);
+        let rows = self.rows(held.into_iter(), &loading, Self::may_resist);
         let kinds = [Stopper::Displacement, Stopper::Contact, Stopper::Friction];
         let free = kinds.map(|kind| null_space(&rows.up_to(kind)));
         let motions = rows.free();
@@ -244,7 +245,7 @@ impl<const D: usize> Driver<D> {
     /// normal, or by friction.
     pub(crate) fn check_rigid_motions(&self, loading: &Loading<D>) -> Result<(), ModelError> {
         let mesh = loading.displacement.range(..self.mesh_dofs());
-        let rows = self.rows(mesh.map(|(&dof, _)| (dof, 0)), loading);
+        let rows = self.rows(mesh.map(|(&dof, _)| (dof, 0)), loading, Self::may_resist);
         match rows.free().into_iter().next() {
             None => Ok(()),
             Some((body, motion)) => Err(match body.checked_sub(rows.cells.len()) {
@@ -260,8 +261,44 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// What resists, with the degrees of freedom that are held and by which of the groups.
-    fn rows(&self, held: impl Iterator<Item = (usize, usize)>, loading: &Loading<D>) -> Rows {
+    /// The rigid motions that nothing resists in the committed state, in words: of what touches, the
+    /// normals, and the tangents where it sticks.
+    pub(crate) fn free_motions(&self) -> Vec<String> {
+        let loading = &self.state.loading;
+        let held = loading.displacement.range(..self.mesh_dofs());
+        let resists = |driver: &Self, k: usize| match driver.state.contacts[k].status {
+            Status::Open => 0,
+            Status::Slip => 1,
+            Status::Stick => D,
+        };
+        let rows = self.rows(held.map(|(&dof, _)| (dof, 0)), loading, resists);
+        let whose = |body: usize| match body.checked_sub(rows.cells.len()) {
+            Some(k) => format!("tool {:?}", self.tools[rows.tools[k]].name),
+            None => format!("the body of cell {}", rows.cells[body]),
+        };
+        let motions = rows.free().into_iter();
+        motions
+            .map(|(body, motion)| format!("{motion} of {}", whose(body)))
+            .collect()
+    }
+
+    /// Components in which a contact point may resist a motion: the normal, and the tangents where its
+    /// law has friction.
+    fn may_resist(&self, point: usize) -> usize {
+        match self.points[point].law.resists_slip() {
+            true => D,
+            false => 1,
+        }
+    }
+
+    /// What resists, with the degrees of freedom that are held and by which of the groups, and the number
+    /// of components, the normal first, in which each contact point does.
+    fn rows(
+        &self,
+        held: impl Iterator<Item = (usize, usize)>,
+        loading: &Loading<D>,
+        components: impl Fn(&Self, usize) -> usize,
+    ) -> Rows {
         let size = self.mesh.size();
         let mut body_of = vec![0; self.mesh.nodes().len()];
         let bodies = self.mesh.bodies();
@@ -335,7 +372,7 @@ impl<const D: usize> Driver<D> {
             let source = (Stopper::Displacement, group, dof % D);
             rows.add(source, &row(&[(dof / D, 1.0)], &axis));
         }
-        for (point, footing) in self.points.iter().zip(&self.footings) {
+        for (c, (point, footing)) in self.points.iter().zip(&self.footings).enumerate() {
             let normal = match point.tool {
                 Some(tool) => {
                     let at = |a: usize| match a < nodes {
@@ -352,8 +389,7 @@ impl<const D: usize> Driver<D> {
             };
             let weights: Vec<(usize, f64)> = footing.weights().collect();
             let q = moreau_contact::frame(&normal);
-            let columns = if point.law.resists_slip() { D } else { 1 };
-            for k in 0..columns {
+            for k in 0..components(self, c) {
                 let kind = match k {
                     0 => Stopper::Contact,
                     _ => Stopper::Friction,

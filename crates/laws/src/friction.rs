@@ -38,6 +38,9 @@ pub enum Friction {
 /// and Newton's method would take as many iterations as that happens to be good or bad.
 const NO_SLIP: f64 = 1e-11;
 
+/// Largest angle of friction \[rad\]: nothing slips out of a corner that is as sharp.
+const STEEPEST: f64 = 1.56;
+
 impl From<Coulomb> for Friction {
     fn from(law: Coulomb) -> Self {
         Self::Coulomb(law)
@@ -71,6 +74,14 @@ impl Friction {
             Self::Tresca(law) => Self::Tresca(law.scaled(area)),
             Self::Limited(law) => Self::Limited(law.scaled(area)),
         }
+    }
+
+    /// The law at a sharp corner, whose normals fill a cone of this half angle \[rad\]: the forces of all
+    /// of them fill Coulomb's cone of the angle of friction and that one together. Of a law that limits
+    /// the shear only the coefficient counts.
+    pub fn at_corner(self, half_angle: f64) -> Self {
+        let angle = self.friction().atan() + half_angle;
+        Self::Coulomb(Coulomb::of(angle.min(STEEPEST).tan()))
     }
 
     /// Whether the law can resist slip at all.

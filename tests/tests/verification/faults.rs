@@ -441,17 +441,21 @@ fn contradicting_conditions_are_refused() -> Fallible {
             .contact("block.bottom", "floor", Coulomb::new(0.1)?)?)
     };
     match model()?
-        .contact("block.right", "wall", Coulomb::new(0.1)?)
+        .contact("block.right", "floor", Coulomb::new(0.1)?)
         .err()
     {
         Some(ModelError::SharedContactNode {
             position,
             first,
             second,
+            opposite,
             ..
         }) => {
             assert_eq!(position, vec![4.0, 0.0]);
-            assert_eq!((first.as_str(), second.as_str()), ("floor", "wall"));
+            assert_eq!(
+                [first.as_str(), second.as_str(), opposite.as_str()],
+                ["block.bottom", "block.right", "floor"]
+            );
         }
         other => panic!("{other:?}"),
     }

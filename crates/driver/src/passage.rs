@@ -1,0 +1,66 @@
+//! Tools that an increment takes through a body: contact is asked for at its end alone, and may be found
+//! on the wrong side.
+
+use crate::driver::Driver;
+use crate::error::StepError;
+use nalgebra::SVector;
+
+/// How deep a straight way through a tool may be in it, over the length of the way inside: of a cylinder, that
+/// of the chord of a quarter turn.
+const CHORD: f64 = 0.2;
+
+/// And over the size of the mesh: what is thinner does not matter.
+const THIN: f64 = 1e-3;
+
+/// Pieces of the way that are looked at, at least; farther from the tool they are longer.
+const PIECES: f64 = 4096.0;
+
+impl<const D: usize> Driver<D> {
+    /// Every contact point that comes to its tool must have come from outside of it, not through it: the
+    /// straight way of the displacement increments `d_u` may cut the surface as a chord does.
+    ///
+    /// # Errors
+    /// [`StepError::Passage`].
+    pub(crate) fn check_passage(&self, d_u: &[f64]) -> Result<(), StepError> {
+        let size = self.mesh.size();
+        let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
+        for (p, footing) in self.points.iter().zip(&self.footings) {
+            let Some(tool) = p.tool else { continue };
+            let way = footing.relative(moved);
+            let length = way.norm();
+            if length <= THIN * size {
+                continue;
+            }
+            let obstacle = &self.tools[tool].obstacle;
+            let at = |a: usize| match a < self.mesh.nodes().len() {
+                true => self.position(a),
+                false => self.displacement(a),
+            };
+            let start = footing.relative(at);
+            let gap = |s: f64| obstacle.distance(&(start + way * (s / length))) - p.offset;
+            let surface = gap(0.0).min(gap(length)).min(0.0);
+            let piece = (0.25 * THIN * size).max(length / PIECES);
+            let (mut s, mut entered, mut depth) = (0.0, 0.0, 0.0f64);
+            while s < length {
+                // Nothing is nearer than the distance: going as far passes nothing.
+                let inside = surface - gap(s);
+                let ahead = (s + inside.abs().max(piece)).min(length);
+                depth = depth.max(inside);
+                let out = inside <= 0.0 || ahead >= length;
+                if out && depth > (THIN * size).max(CHORD * (s - entered)) {
+                    return Err(StepError::Passage {
+                        tool: self.tools[tool].name.clone(),
+                        node: p.node,
+                        position: self.mesh.nodes()[p.node].to_vec(),
+                        depth,
+                    });
+                }
+                if out {
+                    (entered, depth) = (ahead, 0.0);
+                }
+                s = ahead;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,58 @@
+//! Contact components that follow from others, as where a node touches several tools: a spring whose
+//! force starts from the last multiplier; not the contact problem.
+
+use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
+
+/// A component of a relative displacement that is a combination R x of unknowns which others have
+/// determined already.
+///
+/// A node in a corner between two tools has four gaps and slips, and two displacements: the multipliers
+/// need not be unique, and as unknowns the components are too many. This one becomes an unknown u of
+/// its own, on a spring to the displacement that it follows:
+///
+/// ```text
+/// e = u − R x,   t = t₀ + k e
+/// ```
+///
+/// with t₀ the multiplier of the last iteration. That is the augmented Lagrangian of \[83\] to \[90\], its
+/// correction repeated with the bulk: e vanishes as t converges, whatever k is.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Suspended {
+    /// Index of the component among those of all contacts.
+    pub(crate) component: usize,
+    /// R, by unknown.
+    pub(crate) row: BTreeMap<usize, f64>,
+    /// t₀ \[N\].
+    pub(crate) force: f64,
+}
+
+/// k over the stiffness of the unknowns: e shrinks by about its inverse with every iteration, and the
+/// rounding of forces grows with it.
+const STIFFER: f64 = 30.0;
+
+impl Suspended {
+    /// k \[N/mm\], from the diagonal of the stiffness of the unknowns.
+    pub(crate) fn spring(&self, stiffness: &DMatrix<f64>) -> f64 {
+        let entries = self.row.iter().map(|(&x, c)| c * c * stiffness[(x, x)]);
+        STIFFER * entries.sum::<f64>()
+    }
+
+    /// Adds ½ k e² + t₀ e to a stiffness and a load whose first unknowns are the components of all
+    /// contacts; `row` is R by these unknowns.
+    pub(crate) fn add(
+        &self,
+        k: f64,
+        row: &BTreeMap<usize, f64>,
+        (stiffness, load): (&mut DMatrix<f64>, &mut DVector<f64>),
+    ) {
+        let mut elongation: Vec<(usize, f64)> = row.iter().map(|(&z, c)| (z, -c)).collect();
+        elongation.push((self.component, 1.0));
+        for &(i, a) in &elongation {
+            load[i] -= self.force * a;
+            for &(j, b) in &elongation {
+                stiffness[(i, j)] += k * a * b;
+            }
+        }
+    }
+}
