@@ -401,6 +401,7 @@ fn newton_treats_a_body_that_only_contact_holds() {
     let problem = ContactProblem::new(s, load, zero.clone(), law, zero.clone()).expect("valid");
     let touching = ContactSolution {
         displacement: zero.clone(),
+        motion: zero.clone(),
         irreversible: zero,
         force: vec![Local::<2>::new(10.0, 0.0); 2],
         status: vec![Status::Stick; 2],

@@ -20,7 +20,6 @@ pub(crate) struct Condensation<const D: usize> {
     pub(crate) problem: ContactProblem<D>,
     transformation: Transformation,
     rest: Rest,
-    now: Vec<Local<D>>,
     /// Components that are not switched off.
     active: Vec<bool>,
 }
@@ -77,12 +76,11 @@ impl<const D: usize> Condensation<D> {
         }
         let now: Vec<Local<D>> = kinematics.iter().map(|k| k.u).collect();
         let laws = kinematics.iter().map(|k| k.law).collect();
-        let problem = ContactProblem::new(stiffness, load, now.clone(), laws, previous)?;
+        let problem = ContactProblem::new(stiffness, load, now, laws, previous)?;
         Ok(Self {
             problem,
             transformation,
             rest,
-            now,
             active: kinematics
                 .iter()
                 .flat_map(|k| (0..D).map(|j| k.active[j]))
@@ -90,13 +88,10 @@ impl<const D: usize> Condensation<D> {
         })
     }
 
-    /// Interface displacements x for gaps and slips u.
-    pub(crate) fn interface(&self, u: &[Local<D>]) -> DVector<f64> {
-        let motion = u.iter().zip(&self.now).flat_map(|(u, now)| {
-            let motion = u - now;
-            (0..D).map(move |j| motion[j])
-        });
-        let motion = DVector::from_iterator(D * u.len(), motion);
+    /// Interface displacements x for displacements u − u_now.
+    pub(crate) fn interface(&self, motion: &[Local<D>]) -> DVector<f64> {
+        let components = motion.iter().flat_map(|u| (0..D).map(|j| u[j]));
+        let motion = DVector::from_iterator(D * motion.len(), components);
         let y = self.rest.expand(&motion, self.rest.load.clone());
         self.transformation.apply(&motion, &y)
     }

@@ -241,7 +241,7 @@ impl<const D: usize> Driver<D> {
                 .flatten();
             let mut step = vec![0.0; now.d_u.len()];
             std::mem::take(&mut missing).add_to(&mut step, 1.0);
-            let x = condensation.interface(&solved.displacement);
+            let x = condensation.interface(&solved.motion);
             let growth = border.map_or(0.0, |b| system.factor(&b, &mut condensed, &x));
             let target = self.contact_forces(&kinematics, &solved.force);
             // A load of unknown factor is found with the interface.

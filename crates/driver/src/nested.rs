@@ -97,6 +97,7 @@ impl<const D: usize> Driver<D> {
                     kinematics,
                     solution: ContactSolution {
                         irreversible: u.clone(),
+                        motion: vec![Local::zeros(); u.len()],
                         displacement: u,
                         force: t,
                         status,

@@ -235,6 +235,8 @@ impl<const D: usize> Driver<D> {
             _ => Some(ContactSolution {
                 displacement: from.vectors(points)?,
                 irreversible: from.vectors(points)?,
+                // Of the iteration that found it; the next begins where that has led.
+                motion: vec![Local::zeros(); points],
                 force: from.vectors(points)?,
                 status: from.statuses(points)?,
                 iterations: from.count()?,

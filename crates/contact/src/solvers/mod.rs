@@ -32,6 +32,9 @@ pub struct Tolerance {
 pub struct ContactSolution<const D: usize> {
     /// Gap and slip u of every contact \[mm\].
     pub displacement: Vec<Local<D>>,
+    /// u − g, the displacement from where the structure was linearised, without the rounding of gaps that
+    /// are large \[mm\].
+    pub motion: Vec<Local<D>>,
     /// The part of u that obeys Coulomb's law exactly: u itself, or under the penalty its
     /// irreversible part Δuᶠ of \[81\] \[mm\].
     pub irreversible: Vec<Local<D>>,
@@ -106,6 +109,7 @@ fn fixed_point<const D: usize>(
             let status = problem.statuses(&u, &image);
             return Ok(ContactSolution {
                 irreversible: u.clone(),
+                motion: problem.relative(&u),
                 displacement: u,
                 force: image,
                 status,

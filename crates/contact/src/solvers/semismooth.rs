@@ -264,6 +264,7 @@ impl<const D: usize> Newton<'_, D> {
         ContactSolution {
             residual: p.residual(&now.irreversible, &force),
             displacement: now.u,
+            motion: now.x,
             irreversible: now.irreversible,
             force,
             status,

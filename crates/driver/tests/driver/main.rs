@@ -10,5 +10,6 @@ mod klarbring;
 mod passages;
 mod refusals;
 mod released;
+mod slender;
 mod steps;
 mod tools;
