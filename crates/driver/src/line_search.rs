@@ -31,6 +31,8 @@ pub(crate) struct Line<'a, const D: usize> {
     pub(crate) slack: f64,
     /// Whether the tangent at its end is likely to be needed.
     pub(crate) tangent: bool,
+    /// Whether the step is one of a symmetric tangent, on which ΔΦ can decide.
+    pub(crate) symmetric: bool,
 }
 
 impl<const D: usize> Line<'_, D> {
@@ -68,7 +70,8 @@ fn norm(v: &[f64]) -> f64 {
 impl<const D: usize> Driver<D> {
     /// Goes along a Newton step: all the way, unless that overshoots the minimum of ΔΦ with contact
     /// forces between those of both ends. Friction that changes can make ΔΦ no potential of the
-    /// step, which then does not begin downhill; there the norm of the imbalance decides.
+    /// step, which then does not begin downhill; there, and where the tangent is not symmetric, the norm of
+    /// the imbalance decides.
     pub(crate) fn search(
         &mut self,
         system: &mut System,
@@ -87,7 +90,8 @@ impl<const D: usize> Driver<D> {
         let (at_start, before) = (line.slope(&before), norm(&before));
         let after = line.imbalance(&assembly.internal, line.target, 1.0);
         let (at_end, left) = (line.slope(&after), largest(after.iter().copied()));
-        let overshoots = match at_start < 0.0 {
+        let downhill = line.symmetric && at_start < 0.0;
+        let overshoots = match downhill {
             true => at_end > ACCEPTED_SLOPE * at_start.abs(),
             false => norm(&after) > before,
         };
@@ -102,7 +106,7 @@ impl<const D: usize> Driver<D> {
                 part: 1.0,
             };
         }
-        let s = if at_start < 0.0 {
+        let s = if downhill {
             self.minimise(system, line, &now, at_start, at_end)
         } else {
             self.backtrack(system, line, &now, before)
@@ -273,6 +277,7 @@ mod tests {
             complete: true,
             slack: 0.0,
             tangent: true,
+            symmetric: true,
         };
         let next = driver.search(&mut system, &line, now);
         assert!(next.part < 1.0);
