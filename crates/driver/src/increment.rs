@@ -277,7 +277,7 @@ impl<const D: usize> Driver<D> {
             let elastic = system.holds_elastic_factor() && !now.assembly.flows;
             let line = Line {
                 tangent: !(elastic || symmetric && chord.may_serve(balance, worth)),
-                symmetric,
+                allowed: self.allowed(&counts.residuals),
                 end: &end,
                 growth: control
                     .as_ref()

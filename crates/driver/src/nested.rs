@@ -177,7 +177,7 @@ impl<const D: usize> Driver<D> {
             let target = now.contact.clone();
             let line = Line {
                 tangent: true,
-                symmetric: self.is_symmetric(),
+                allowed: self.allowed(&[worst]),
                 end,
                 growth: Sparse::default(),
                 held,

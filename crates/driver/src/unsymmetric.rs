@@ -3,6 +3,7 @@
 
 use crate::driver::Driver;
 use crate::iterate::Iterate;
+use crate::norm::largest;
 use crate::system::System;
 use moreau_contact::Anderson;
 use nalgebra::DVector;
@@ -16,6 +17,9 @@ const COARSE: f64 = 0.1;
 
 /// Part of the imbalance at which an increment is accepted that a step may leave.
 const EXACT: f64 = 0.1;
+
+/// Iterates of which the worst bounds what the next step may leave.
+const MEMORY: usize = 5;
 
 /// What the factorised stiffness K lacks of the tangent K + A.
 ///
@@ -98,6 +102,13 @@ impl<const D: usize> Driver<D> {
     ) -> bool {
         let settled = |u: &mut Unsymmetric| u.settles(self.lacking(&now.d_u, step, held));
         unsymmetric.as_mut().is_none_or(settled)
+    }
+
+    /// Imbalance that a step of an unsymmetric tangent may leave \[N\], after the imbalances of the
+    /// iterates so far: the largest of the last few; `None` where the tangent is symmetric.
+    pub(crate) fn allowed(&self, imbalances: &[f64]) -> Option<f64> {
+        let last = &imbalances[imbalances.len().saturating_sub(MEMORY)..];
+        (!self.is_symmetric()).then(|| largest(last.iter().copied()))
     }
 
     /// Whether the stiffness of all blocks is that of their forces.
