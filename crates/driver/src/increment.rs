@@ -31,7 +31,7 @@ pub(crate) struct Counts {
     pub(crate) last_contact: usize,
     pub(crate) shortened: usize,
     pub(crate) factorisations: usize,
-    /// Iterations of conjugate gradients.
+    /// Iterations of conjugate gradients, and steps for what a symmetric tangent lacks.
     pub(crate) linear: usize,
     pub(crate) residuals: Vec<f64>,
     /// [`StepReport::criticality`].

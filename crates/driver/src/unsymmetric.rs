@@ -36,7 +36,7 @@ pub(crate) struct Unsymmetric {
     /// What a step may leave out of balance \[N\].
     enough: f64,
     /// Steps done.
-    pub(crate) steps: usize,
+    steps: usize,
 }
 
 impl Unsymmetric {
@@ -129,5 +129,66 @@ impl<const D: usize> Driver<D> {
         }
         held.iter().for_each(|&dof| forces[dof] = 0.0);
         forces
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DMatrix;
+
+    /// K + A with eigenvalues on both sides of zero, and parts that turn.
+    fn sample(n: usize) -> (DMatrix<f64>, DMatrix<f64>) {
+        let k = DMatrix::from_fn(n, n, |i, j| match i.abs_diff(j) {
+            0 => 2.5,
+            1 => -1.0,
+            _ => 0.0,
+        });
+        let a = DMatrix::from_fn(n, n, |i, j| {
+            let turned = 0.8 * ((3 * i + 5 * j) as f64).sin();
+            turned - if i == j && i < 2 { 5.0 } else { 0.0 }
+        });
+        (k, a)
+    }
+
+    #[test]
+    fn steps_of_the_symmetric_part_solve_what_is_neither_symmetric_nor_definite() {
+        let n = 12;
+        let (k, a) = sample(n);
+        let tangent = &k + &a;
+        let eigenvalues = tangent.complex_eigenvalues();
+        assert!(eigenvalues.iter().any(|e| e.re < 0.0) && eigenvalues.iter().any(|e| e.re > 0.0));
+        let load = DVector::from_fn(n, |i, _| 1.0 + (i as f64).cos());
+        let factor = k.cholesky().expect("definite");
+        let mut unsymmetric = Unsymmetric::new(n, load.amax(), (1e-9, 0.0), true);
+        let step = loop {
+            let given = DVector::from_vec(unsymmetric.load(load.as_slice()));
+            let step = factor.solve(&given);
+            if unsymmetric.settles((&a * &step).as_slice().to_vec()) {
+                break step;
+            }
+        };
+        assert!(unsymmetric.steps <= n + 3, "{} steps", unsymmetric.steps);
+        let left = (&load - &tangent * &step).amax();
+        assert!(left <= 1.01e-9, "{left:e}");
+        // What a step leaves is told in newtons: less is asked for, less is done.
+        let mut coarse = Unsymmetric::new(n, load.amax(), (0.0, 0.0), false);
+        let first = factor.solve(&load);
+        let settled = coarse.settles((&a * &first).as_slice().to_vec());
+        assert_eq!(settled, (&a * &first).amax() <= COARSE * load.amax());
+    }
+
+    #[test]
+    fn what_lacks_nothing_takes_one_step() {
+        let mut unsymmetric = Unsymmetric::new(3, 1.0, (0.0, 0.0), true);
+        assert_eq!(unsymmetric.load(&[1.0, 2.0, 3.0]), [1.0, 2.0, 3.0]);
+        assert!(unsymmetric.settles(vec![0.0; 3]));
+        assert_eq!(unsymmetric.steps, 1);
+    }
+
+    #[test]
+    fn what_is_no_number_does_not_go_on() {
+        let mut unsymmetric = Unsymmetric::new(2, 1.0, (0.0, 0.0), true);
+        assert!(unsymmetric.settles(vec![f64::NAN, 1.0]));
     }
 }
