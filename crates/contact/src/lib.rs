@@ -44,6 +44,6 @@ pub use obstacle::{Ball, Corner, Cylinder, Obstacle, Plane, frame};
 pub use polyline::Polyline;
 pub use problem::{Certificate, ContactProblem, Delassus};
 pub use solvers::{
-    ContactSolution, ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Tolerance, Uzawa,
-    uzawa_steps,
+    Anderson, ContactSolution, ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Tolerance,
+    Uzawa, uzawa_steps,
 };

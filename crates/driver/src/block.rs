@@ -90,6 +90,14 @@ pub trait Block<const D: usize>: Send + Sync {
         sink: &mut dyn FnMut(CellResult<'_>),
     ) -> bool;
 
+    /// Whether the stiffness is that of the forces, or does for it.
+    fn is_symmetric(&self) -> bool;
+
+    /// Forces ∫ Bᵀ A B v dΩ of what the tangents under the displacement increments `d_u` lack of being
+    /// those of the forces, A, on the displacements `v` (one entry a degree of freedom of the mesh),
+    /// handed cell by cell, in order, to `sink`: its nodes, and the forces node by node \[N\].
+    fn lacking(&self, d_u: &[f64], v: &[f64], sink: &mut dyn FnMut(&[usize], &[f64]));
+
     /// ∫ ΔV(Δε) + σ₀ : Δε dΩ, the bulk part of ΔΦ \[74\] when total forces are
     /// applied instead of increments \[N·mm\]; `None` of a law without a potential.
     fn potential(&self, d_u: &[f64]) -> Option<f64>;
@@ -278,6 +286,38 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
             }
         }
         any
+    }
+
+    fn is_symmetric(&self) -> bool {
+        self.law.is_symmetric()
+    }
+
+    fn lacking(&self, d_u: &[f64], v: &[f64], sink: &mut dyn FnMut(&[usize], &[f64])) {
+        let all = self.cells.count();
+        if all == 0 || self.is_symmetric() {
+            return;
+        }
+        let size = D * self.cells.nodes(0).len();
+        let count = self.cells.points_per_cell();
+        let (cells, law, old) = (self.cells.as_ref(), &self.law, &self.old);
+        let of_a_cell = |(cell, force): (usize, &mut [f64])| {
+            let mut d_eps = [Sym2::zeros(); MAX_POINTS];
+            let mut rate = [Sym2::zeros(); MAX_POINTS];
+            cells.strain(cell, d_u, &mut d_eps[..count]);
+            cells.strain(cell, v, &mut rate[..count]);
+            for (g, rate) in rate[..count].iter_mut().enumerate() {
+                *rate = law.lacking(&old[cell * count + g], &d_eps[g]) * *rate;
+            }
+            cells.force(cell, &rate[..count], force);
+        };
+        let mut forces = vec![0.0; all * size];
+        let parts = forces.par_chunks_mut(size).enumerate();
+        parts
+            .with_min_len(GRAIN.div_ceil(count))
+            .for_each(of_a_cell);
+        for (k, force) in forces.chunks_exact(size).enumerate() {
+            sink(cells.nodes(k), force);
+        }
     }
 
     fn potential(&self, d_u: &[f64]) -> Option<f64> {

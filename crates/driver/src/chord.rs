@@ -25,7 +25,7 @@ const AGEING: f64 = 4.0;
 const POOR: f64 = 0.5;
 
 /// Part of what a step is expected to leave that its contact solution may keep.
-const FORCING: f64 = 1e-2;
+pub(crate) const FORCING: f64 = 1e-2;
 
 impl Chord {
     /// Takes note of a step that begins at this imbalance \[N\].

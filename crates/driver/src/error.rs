@@ -305,7 +305,7 @@ pub enum StepError {
     /// The step was cut as far as allowed.
     #[error(
         "step {step:?} stopped at {:.4} % of its load: increments were cut to {smallest:.2e} of the \
-         step. {} Last attempt: {cause}", 100.0 * .reached, collapse_hint(*.plastic_fraction, *.limit)
+         step. {} Last attempt: {cause}", 100.0 * .reached, collapse_hint(*.plastic_fraction, *.limit, *.moves)
     )]
     Stopped {
         /// Name of the step.
@@ -321,6 +321,8 @@ pub enum StepError {
         /// the work of the loads; `None` where only part of what is applied are loads, or the
         /// structure does not soften.
         limit: Option<f64>,
+        /// Whether the step moves something that it prescribes.
+        moves: bool,
         /// Why the last attempt failed.
         cause: Box<StepError>,
     },
@@ -337,9 +339,15 @@ fn worst_nodes(worst: &[Imbalance]) -> String {
     worst.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-fn collapse_hint(plastic_fraction: f64, limit: Option<f64>) -> String {
+fn collapse_hint(plastic_fraction: f64, limit: Option<f64>, moves: bool) -> String {
     if plastic_fraction <= 0.02 {
         return "Hardly anything flows plastically: look for a contact that opens or a missing support."
+            .into();
+    }
+    if moves {
+        return "Plastic flow is widespread under motions that are prescribed: the load has probably passed \
+                its limit, and the path of equilibria turns back or breaks off where flow gathers in \
+                bands; allow smaller increments, and compare with another mesh."
             .into();
     }
     let estimate = limit.map_or_else(String::new, |limit| {

@@ -31,7 +31,7 @@ pub(crate) struct Counts {
     pub(crate) last_contact: usize,
     pub(crate) shortened: usize,
     pub(crate) factorisations: usize,
-    /// Iterations of conjugate gradients.
+    /// Iterations of conjugate gradients, and steps for what a symmetric tangent lacks.
     pub(crate) linear: usize,
     pub(crate) residuals: Vec<f64>,
     /// [`StepReport::criticality`].
@@ -160,7 +160,7 @@ impl<const D: usize> Driver<D> {
                 && let Some(s) = solution.take_if(|s| self.law_holds(system, &kinematics, s, scale))
             {
                 counts.factorisations = system.factorisations - done.0;
-                counts.linear = system.conjugate - done.1;
+                counts.linear += system.conjugate - done.1;
                 let candidate = Candidate {
                     d_u: now.d_u,
                     internal: now.assembly.internal,
@@ -186,82 +186,98 @@ impl<const D: usize> Driver<D> {
             counts.newton += 1;
 
             let worth = system.steps_per_factorisation();
-            let fresh = !(arrived && chord.serves(out_of_balance, balance, worth));
+            // What a symmetric tangent lacks is that of its own iterate.
+            let symmetric = self.is_symmetric();
+            let fresh = !(symmetric && arrived && chord.serves(out_of_balance, balance, worth));
             if fresh {
                 self.factorise(system, &mut now, &missing)?;
             }
             chord.begin(out_of_balance, fresh);
-            let mut condensed = system.condense(now.assembly.load(&[&end.force]));
+            let mut load = now.assembly.load(&[&end.force]);
+            let missing = std::mem::take(&mut missing);
             // What a tool has moved is missing in the first iterate as well.
             let tools = self.mesh_dofs()..;
             let moved = counts.newton == 1
                 && !(start.displacement.range(tools.clone())).eq(end.displacement.range(tools));
             let complete = !moved && arrived;
-            let border = control.as_ref().map(|c| {
-                let equation = (c.compliance, c.missing(&now.d_u));
-                system.border(&mut condensed, c.load, equation)
-            });
-            let iteration = counts.newton;
-            let contact = |source: ContactError| StepError::Contact { iteration, source };
-            let previous = self.previous_forces(&kinematics);
-            let clock = Instant::now();
-            let points = (self.points.as_slice(), self.footings.as_slice());
-            let stiffness = std::mem::take(&mut condensed.stiffness);
-            let seam = (stiffness, &condensed.load);
-            let force = match &solution {
-                Some(s) if counts.newton > 1 => s.force.clone(),
-                _ => previous.clone(),
-            };
-            let mut condensation =
-                Condensation::new(system, seam, points, &kinematics, (previous, &force))
+            let accuracy = (chord.contact_residual(imbalance, balance), balance);
+            let mut unsymmetric = self.unsymmetric(system, &now, imbalance, accuracy);
+            let (step, growth, target, slack) = loop {
+                let mut condensed = system.condense(match &unsymmetric {
+                    None => std::mem::take(&mut load),
+                    Some(u) => u.load(&load),
+                });
+                let border = control.as_ref().map(|c| {
+                    let equation = (c.compliance, c.missing(&now.d_u));
+                    system.border(&mut condensed, c.load, equation)
+                });
+                let iteration = counts.newton;
+                let contact = |source: ContactError| StepError::Contact { iteration, source };
+                let previous = self.previous_forces(&kinematics);
+                let clock = Instant::now();
+                let points = (self.points.as_slice(), self.footings.as_slice());
+                let stiffness = std::mem::take(&mut condensed.stiffness);
+                let seam = (stiffness, &condensed.load);
+                let force = match &solution {
+                    Some(s) if counts.newton > 1 => s.force.clone(),
+                    _ => previous.clone(),
+                };
+                let mut condensation =
+                    Condensation::new(system, seam, points, &kinematics, (previous, &force))
+                        .map_err(contact)?;
+                // Where the step is linear it may be the last; what a tool has moved is no imbalance yet.
+                let exact = !now.assembly.flows || moved || control.is_some();
+                let enough = match exact {
+                    true => 0.0,
+                    false => chord.contact_residual(imbalance, balance),
+                };
+                let problem = &mut condensation.problem;
+                let solved = self
+                    .settings
+                    .contact
+                    .approach(problem, solution.as_ref(), enough)
+                    .or_else(|error| {
+                        counts.undetermined = true;
+                        self.nearest(system, problem, solution.as_ref(), error)
+                    })
                     .map_err(contact)?;
-            // Where the step is linear it may be the last; what a tool has moved is no imbalance yet.
-            let exact = !now.assembly.flows || moved || control.is_some();
-            let enough = match exact {
-                true => 0.0,
-                false => chord.contact_residual(imbalance, balance),
+                system.timings.contact += clock.elapsed();
+                counts.contact += solved.iterations;
+                counts.last_contact = solved.iterations;
+                // On a path the stiffness is not that of the structure alone.
+                counts.criticality = control
+                    .is_none()
+                    .then(|| condensation.problem.criticality(&solved.status))
+                    .flatten();
+                let mut step = vec![0.0; now.d_u.len()];
+                missing.add_to(&mut step, 1.0);
+                let x = condensation.interface(&solved.motion);
+                let growth = border.map_or(0.0, |b| system.factor(&b, &mut condensed, &x));
+                let target = self.contact_forces(&kinematics, &solved.force);
+                // A load of unknown factor is found with the interface.
+                let yielding = (!system.is_direct() && control.is_none())
+                    .then(|| condensation.yielding(&solved.status))
+                    .flatten();
+                let give = yielding
+                    .as_ref()
+                    .map(|y| |g: &DVector<f64>| y.displacement(g));
+                let interface = match &give {
+                    Some(give) => Interface::Yields(give),
+                    None => Interface::Held,
+                };
+                system.expand(condensed, &x, (&target, interface), &mut step)?;
+                let slack = slack(&solved);
+                solution = Some(solved);
+                drop(condensation);
+                if self.settles(&mut unsymmetric, &now, &step, &held) {
+                    break (step, growth, target, slack);
+                }
+                counts.linear += 1;
             };
-            let problem = &mut condensation.problem;
-            let solved = self
-                .settings
-                .contact
-                .approach(problem, solution.as_ref(), enough)
-                .or_else(|error| {
-                    counts.undetermined = true;
-                    self.nearest(system, problem, solution.as_ref(), error)
-                })
-                .map_err(contact)?;
-            system.timings.contact += clock.elapsed();
-            counts.contact += solved.iterations;
-            counts.last_contact = solved.iterations;
-            // On a path the stiffness is not that of the structure alone.
-            counts.criticality = control
-                .is_none()
-                .then(|| condensation.problem.criticality(&solved.status))
-                .flatten();
-            let mut step = vec![0.0; now.d_u.len()];
-            std::mem::take(&mut missing).add_to(&mut step, 1.0);
-            let x = condensation.interface(&solved.motion);
-            let growth = border.map_or(0.0, |b| system.factor(&b, &mut condensed, &x));
-            let target = self.contact_forces(&kinematics, &solved.force);
-            // A load of unknown factor is found with the interface.
-            let yielding = (!system.is_direct() && control.is_none())
-                .then(|| condensation.yielding(&solved.status))
-                .flatten();
-            let give = yielding
-                .as_ref()
-                .map(|y| |g: &DVector<f64>| y.displacement(g));
-            let interface = match &give {
-                Some(give) => Interface::Yields(give),
-                None => Interface::Held,
-            };
-            system.expand(condensed, &x, (&target, interface), &mut step)?;
-            let slack = slack(&solved);
-            solution = Some(solved);
-            drop(condensation);
             let elastic = system.holds_elastic_factor() && !now.assembly.flows;
             let line = Line {
-                tangent: !(elastic || chord.may_serve(balance, worth)),
+                tangent: !(elastic || symmetric && chord.may_serve(balance, worth)),
+                allowed: self.allowed(&counts.residuals),
                 end: &end,
                 growth: control
                     .as_ref()

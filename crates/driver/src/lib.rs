@@ -67,6 +67,7 @@ mod supports;
 mod suspension;
 mod system;
 mod timings;
+mod unsymmetric;
 
 pub use block::{Block, BlockEnergy, CellResult, PointState, SolidBlock, Stiffness};
 pub use cells::Cells;

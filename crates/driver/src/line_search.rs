@@ -31,6 +31,9 @@ pub(crate) struct Line<'a, const D: usize> {
     pub(crate) slack: f64,
     /// Whether the tangent at its end is likely to be needed.
     pub(crate) tangent: bool,
+    /// Imbalance that a step of an unsymmetric tangent may leave \[N\]; `None` of a symmetric one, of
+    /// which ΔΦ decides.
+    pub(crate) allowed: Option<f64>,
 }
 
 impl<const D: usize> Line<'_, D> {
@@ -68,7 +71,8 @@ fn norm(v: &[f64]) -> f64 {
 impl<const D: usize> Driver<D> {
     /// Goes along a Newton step: all the way, unless that overshoots the minimum of ΔΦ with contact
     /// forces between those of both ends. Friction that changes can make ΔΦ no potential of the
-    /// step, which then does not begin downhill; there the norm of the imbalance decides.
+    /// step, which then does not begin downhill; there the norm of the imbalance decides; where the tangent
+    /// is not symmetric, the largest imbalance of the last iterations, so that kinks are passed.
     pub(crate) fn search(
         &mut self,
         system: &mut System,
@@ -87,9 +91,10 @@ impl<const D: usize> Driver<D> {
         let (at_start, before) = (line.slope(&before), norm(&before));
         let after = line.imbalance(&assembly.internal, line.target, 1.0);
         let (at_end, left) = (line.slope(&after), largest(after.iter().copied()));
-        let overshoots = match at_start < 0.0 {
-            true => at_end > ACCEPTED_SLOPE * at_start.abs(),
-            false => norm(&after) > before,
+        let overshoots = match line.allowed {
+            Some(allowed) => left > allowed,
+            None if at_start < 0.0 => at_end > ACCEPTED_SLOPE * at_start.abs(),
+            None => norm(&after) > before,
         };
         drop(after);
         // While prescribed displacements or motions are missing, ΔΦ is not what the step minimises; in balance
@@ -102,10 +107,12 @@ impl<const D: usize> Driver<D> {
                 part: 1.0,
             };
         }
-        let s = if at_start < 0.0 {
-            self.minimise(system, line, &now, at_start, at_end)
-        } else {
-            self.backtrack(system, line, &now, before)
+        let s = match line.allowed {
+            Some(allowed) => self.backtrack(system, line, &now, |r| {
+                largest(r.iter().copied()) <= allowed
+            }),
+            None if at_start < 0.0 => self.minimise(system, line, &now, at_start, at_end),
+            None => self.backtrack(system, line, &now, |r| norm(r) < before),
         };
         let d_u = line.displacement(&now, s);
         Iterate {
@@ -153,13 +160,13 @@ impl<const D: usize> Driver<D> {
         s
     }
 
-    /// Step length at which the norm of the imbalance has decreased from what it was before.
+    /// Step length at which the imbalance will do.
     fn backtrack(
         &mut self,
         system: &mut System,
         line: &Line<'_, D>,
         now: &Iterate,
-        before: f64,
+        will_do: impl Fn(&[f64]) -> bool,
     ) -> f64 {
         let none = Sparse::default();
         let mut s = 1.0;
@@ -167,7 +174,7 @@ impl<const D: usize> Driver<D> {
             s *= 0.5;
             let trial = line.displacement(now, s);
             let at = system.assemble(&mut self.blocks, &trial, &none, Stiffness::None);
-            if norm(&line.imbalance(&at.internal, &line.contact(now, s), s)) < before {
+            if will_do(&line.imbalance(&at.internal, &line.contact(now, s), s)) {
                 break;
             }
         }
@@ -273,6 +280,7 @@ mod tests {
             complete: true,
             slack: 0.0,
             tangent: true,
+            allowed: None,
         };
         let next = driver.search(&mut system, &line, now);
         assert!(next.part < 1.0);

@@ -1,6 +1,7 @@
 //! The paper's own nesting: Uzawa's prediction and correction around the nonlinear solve; kept to
 //! be compared with, not to be used.
 
+use crate::chord::FORCING;
 use crate::condensation::Condensation;
 use crate::driver::Driver;
 use crate::error::StepError;
@@ -163,10 +164,21 @@ impl<const D: usize> Driver<D> {
             let load = now.assembly.load(&[&end.force, &now.contact]);
             let mut step = vec![0.0; load.len()];
             std::mem::take(missing).add_to(&mut step, 1.0);
-            system.solve(&load, &mut step)?;
+            let expected = FORCING * largest(load.iter().copied());
+            let mut unsymmetric = self.unsymmetric(system, &now, worst, (expected, 0.0));
+            loop {
+                match &unsymmetric {
+                    None => system.solve(&load, &mut step)?,
+                    Some(u) => system.solve(&u.load(&load), &mut step)?,
+                }
+                if self.settles(&mut unsymmetric, &now, &step, held) {
+                    break;
+                }
+            }
             let target = now.contact.clone();
             let line = Line {
                 tangent: true,
+                allowed: self.allowed(&[worst]),
                 end,
                 growth: Sparse::default(),
                 held,

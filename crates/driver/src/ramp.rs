@@ -153,6 +153,11 @@ impl<const D: usize> Ramp<D> {
             .with(&self.start.force, |end, start| end - start)
     }
 
+    /// Whether something that the step prescribes is moved.
+    fn moves(&self) -> bool {
+        self.start.displacement != self.end.displacement
+    }
+
     /// Takes note of an increment from λ = `before`, and of the work that the loads of the whole step
     /// did in it.
     fn converged(&mut self, report: &StepReport, before: f64, work: f64) {
@@ -174,7 +179,7 @@ impl<const D: usize> Ramp<D> {
         let [Some(last), Some(first)] = self.yielded else {
             return None;
         };
-        let moves = self.start.displacement != self.end.displacement;
+        let moves = self.moves();
         let roots = [first, last].map(|y| y.stiffness.sqrt());
         let softer = roots[1] < (1.0 - SOFTER) * roots[0] && last.factor > first.factor;
         (softer && !moves).then(|| {
@@ -199,6 +204,7 @@ impl<const D: usize> Ramp<D> {
             smallest,
             plastic_fraction,
             limit: self.estimated_limit(),
+            moves: self.moves(),
             cause: Box::new(cause),
         }
     }
@@ -311,7 +317,7 @@ impl<const D: usize> Driver<D> {
 
     /// The path of a step that moves nothing, from after its first increment on.
     fn path(&self, ramp: &Ramp<D>) -> Option<Path> {
-        let moves = ramp.start.displacement != ramp.end.displacement;
+        let moves = ramp.moves();
         let (last, before) = self.state.last.as_ref()?;
         let load = ramp.load();
         let square = load.inner(&load);

@@ -71,7 +71,8 @@ pub struct StepReport {
     pub contact_iterations: usize,
     /// Sparse factorisations.
     pub factorisations: usize,
-    /// Iterations of conjugate gradients; none where the stiffness itself is factorised.
+    /// Iterations of conjugate gradients and, where the tangent is not symmetric, steps beyond the first of each
+    /// Newton iteration; none where the stiffness itself is factorised.
     pub linear_iterations: usize,
     /// Newton steps that the line search shortened.
     pub shortened_steps: usize,

@@ -24,8 +24,8 @@ impl Numbers for Sym2 {
 pub struct Response<S> {
     /// Stress at the end of the step, σ₁ \[MPa\].
     pub stress: Sym2,
-    /// Consistent tangent ∂σ₁/∂Δε \[MPa\], 6×6 and symmetric; where the flow is not associated a
-    /// symmetric matrix near it, with which Newton's method converges linearly.
+    /// Consistent tangent ∂σ₁/∂Δε \[MPa\], 6×6 and symmetric; where that is not, a symmetric matrix
+    /// near it, which lacks [`BulkLaw::lacking`].
     pub tangent: Sym4,
     /// Whether plastic strain grows; the tangent is the elastic one otherwise.
     pub flows: bool,
@@ -67,6 +67,17 @@ pub trait BulkLaw: 'static + Clone + Send + Sync {
 
     /// Response to the strain increment Δε of the whole step, from the state at its start.
     fn respond(&self, old: &Self::State, d_eps: &Sym2) -> Response<Self::State>;
+
+    /// Whether ∂σ₁/∂Δε is symmetric, or the tangent does for it.
+    fn is_symmetric(&self) -> bool {
+        true
+    }
+
+    /// What [`Response::tangent`] lacks of ∂σ₁/∂Δε at the response to Δε \[MPa\], 6×6; zero of a law
+    /// that is symmetric.
+    fn lacking(&self, _old: &Self::State, _d_eps: &Sym2) -> Sym4 {
+        Sym4::zeros()
+    }
 
     /// Stress in a state \[MPa\].
     fn stress(&self, state: &Self::State) -> Sym2;

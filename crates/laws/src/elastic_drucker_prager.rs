@@ -26,6 +26,19 @@ impl Numbers for DruckerPragerState {
     }
 }
 
+/// Part of the elastic stiffness in the tangent of a flow that is not associated.
+const ELASTIC: f64 = 1e-2;
+
+/// Where a trial stress returns to.
+enum Return {
+    /// Nowhere: it is admissible.
+    Elastic,
+    /// The cone, along n, by λ; with the norm of the trial deviator.
+    Cone { n: Sym2, lambda: f64, norm: f64 },
+    /// The apex.
+    Apex,
+}
+
 /// Isotropic elasticity with the plastic flow of [`DruckerPrager`]: perfectly plastic, in general not
 /// associated.
 ///
@@ -36,11 +49,15 @@ impl Numbers for DruckerPragerState {
 /// s = s_trial − 2G λ n and σ_m = σ_m,trial − K_c k_t λ; where that would turn s around, it returns
 /// to the apex s = 0, σ_m = c₀. Either way (Δεᵖ, σ₁) is extremal for the bipotential.
 ///
-/// With k_t < k_f there is no potential and ∂σ₁/∂Δε = C is not symmetric. Its symmetric part is
-/// indefinite and Newton's method with it diverges. The tangent of the response is that of associated
-/// flow with the friction k_t: symmetric and positive semi-definite, it lets the same strains flow
-/// freely as C does, T εᵖ = C εᵖ = 0, and differs from it along one strain only. Convergence is
-/// linear, at a rate that grows with k_f − k_t: some forty iterations at k_t = 0, k_f = ½.
+/// With k_t < k_f there is no potential, and with a = 2G n + K k 1 on the cone
+///
+/// ∂σ₁/∂Δε = C − a_t ⊗ a_f / (2G + K k_f k_t) − (2G)² λ/‖s_trial‖ (P − n ⊗ n)
+///
+/// is not symmetric; its symmetric part is indefinite. The tangent of the response is that of associated
+/// flow with the friction k_t, a_t in place of a_f, and a hundredth of it is replaced by the elastic
+/// stiffness: symmetric and positive definite, also at the apex and on the plateau of a load, where
+/// ∂σ₁/∂Δε is a mechanism. What it lacks is [`BulkLaw::lacking`]: without it Newton's method converges
+/// linearly, at a rate that grows with k_f − k_t, or not at all.
 ///
 /// Source: M. Hjiaj, J. Fortin and G. de Saxcé, *International Journal of Engineering Science* 41
 /// (2003) 1109-1143.
@@ -73,7 +90,30 @@ impl ElasticDruckerPrager {
         &self.plastic
     }
 
-    /// Tangent on the cone, with λ and the norm of the trial deviator.
+    /// Where the trial stress of a trial strain returns to.
+    #[inline]
+    fn returned(&self, trial: &Sym2) -> Return {
+        let (k, g) = (self.elastic.bulk_modulus(), self.elastic.shear_modulus());
+        let (k_f, k_t) = (self.plastic.friction(), self.plastic.dilatancy());
+        let s = 2.0 * g * deviator(trial);
+        let (norm, mean) = (s.norm(), k * trace(trial));
+        let resisted = k_f * (self.plastic.apex() - mean);
+        let f = norm - resisted;
+        if f <= ON_SURFACE * (norm + resisted.abs()) {
+            return Return::Elastic;
+        }
+        let lambda = f / (2.0 * g + k * k_f * k_t);
+        match norm < 2.0 * g * lambda {
+            true => Return::Apex,
+            false => Return::Cone {
+                n: s / norm,
+                lambda,
+                norm,
+            },
+        }
+    }
+
+    /// Tangent of associated flow with the friction k_t on the cone, with λ and the norm of the trial deviator.
     fn tangent_on_cone(&self, n: &Sym2, lambda: f64, norm: f64) -> Sym4 {
         let (k, g) = (self.elastic.bulk_modulus(), self.elastic.shear_modulus());
         let k_t = self.plastic.dilatancy();
@@ -98,34 +138,31 @@ impl BulkLaw for ElasticDruckerPrager {
 
     #[inline]
     fn respond(&self, old: &DruckerPragerState, d_eps: &Sym2) -> Response<DruckerPragerState> {
-        let (k, g) = (self.elastic.bulk_modulus(), self.elastic.shear_modulus());
-        let (k_f, k_t) = (self.plastic.friction(), self.plastic.dilatancy());
-        let apex = self.plastic.apex();
+        let (k, k_t) = (self.elastic.bulk_modulus(), self.plastic.dilatancy());
         let mut state = *old;
         let trial = old.elastic_strain + d_eps;
-        let s = 2.0 * g * deviator(&trial);
-        let (norm, mean) = (s.norm(), k * trace(&trial));
-        let resisted = k_f * (apex - mean);
-        let f = norm - resisted;
-        if f <= ON_SURFACE * (norm + resisted.abs()) {
-            state.elastic_strain = trial;
-            return Response {
-                stress: self.stress(&state),
-                tangent: self.elastic.tangent(),
-                flows: false,
-                state,
-            };
-        }
-        let lambda = f / (2.0 * g + k * k_f * k_t);
-        let (flow, tangent) = if norm < 2.0 * g * lambda {
-            (trial - apex / (3.0 * k) * identity(), Sym4::zeros())
-        } else {
-            let n = s / norm;
-            (
+        let (flow, mut tangent) = match self.returned(&trial) {
+            Return::Elastic => {
+                state.elastic_strain = trial;
+                return Response {
+                    stress: self.stress(&state),
+                    tangent: self.elastic.tangent(),
+                    flows: false,
+                    state,
+                };
+            }
+            Return::Apex => {
+                let left = self.plastic.apex() / (3.0 * k) * identity();
+                (trial - left, Sym4::zeros())
+            }
+            Return::Cone { n, lambda, norm } => (
                 lambda * (n + k_t / 3.0 * identity()),
                 self.tangent_on_cone(&n, lambda, norm),
-            )
+            ),
         };
+        if !self.is_symmetric() {
+            tangent += ELASTIC * (self.elastic.tangent() - tangent);
+        }
         state.elastic_strain = trial - flow;
         state.plastic_strain += flow;
         state.p += (2.0f64 / 3.0).sqrt() * flow.norm();
@@ -134,6 +171,30 @@ impl BulkLaw for ElasticDruckerPrager {
             tangent,
             flows: true,
             state,
+        }
+    }
+
+    fn is_symmetric(&self) -> bool {
+        self.plastic.dilatancy() >= self.plastic.friction()
+    }
+
+    fn lacking(&self, old: &DruckerPragerState, d_eps: &Sym2) -> Sym4 {
+        if self.is_symmetric() {
+            return Sym4::zeros();
+        }
+        match self.returned(&(old.elastic_strain + d_eps)) {
+            Return::Elastic => Sym4::zeros(),
+            Return::Apex => -ELASTIC * self.elastic.tangent(),
+            Return::Cone { n, lambda, norm } => {
+                let (k, g) = (self.elastic.bulk_modulus(), self.elastic.shear_modulus());
+                let (k_f, k_t) = (self.plastic.friction(), self.plastic.dilatancy());
+                let along = |slope: f64| 2.0 * g * n + k * slope * identity();
+                let (a_f, a_t) = (along(k_f), along(k_t));
+                let associated = (1.0 - ELASTIC) / (2.0 * g + k * k_t * k_t);
+                let yielded = associated * a_t - a_f / (2.0 * g + k * k_f * k_t);
+                let turned = ELASTIC * 4.0 * g * g * lambda / norm;
+                a_t * yielded.transpose() - turned * (deviatoric_projector() - n * n.transpose())
+            }
         }
     }
 

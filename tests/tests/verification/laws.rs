@@ -249,12 +249,7 @@ fn compressed(dilatancy: f64, mu: f64, cells: [usize; 2]) -> Fallible<(f64, usiz
     .material("soil", soil(dilatancy)?, Integration::Reduced)?
     .tool("plate", Plane::new([0.0, 10.0], [0.0, -1.0])?)?
     .contact("soil.top", "plate", Coulomb::new(mu)?)?;
-    // Where the flow is not associated, convergence is linear.
-    let settings = Settings {
-        iterations: 100,
-        ..Settings::default()
-    };
-    let mut driver = Driver::new(model, settings)?;
+    let mut driver = Driver::new(model, Settings::default())?;
     let step = Step::new("compress")
         .fix("soil.left", &[Axis::X])
         .fix("soil.bottom", &[Axis::Y])
@@ -283,12 +278,12 @@ fn soil_in_plane_strain_fails_by_its_dilatancy() -> Fallible {
     Ok(())
 }
 
-/// Friction on the plate adds to the load, and the stress is not uniform: fast convergence where the
-/// flow is associated, and convergence where it is not.
+/// Friction on the plate adds to the load, and the stress is not uniform: fast convergence whether
+/// the flow is associated or not.
 #[test]
 fn soil_under_a_rough_plate() -> Fallible {
     let mut before = 0.0;
-    for (dilatancy, most) in [(0.0, 70), (0.2, 35), (0.4, 22), (FRICTION, 14)] {
+    for (dilatancy, most) in [(0.0, 10), (0.2, 10), (0.4, 10), (FRICTION, 14)] {
         let (rough, iterations) = compressed(dilatancy, 0.2, [6, 3])?;
         assert!(rough > before, "dilatancy strengthens what is confined");
         assert!(iterations <= most, "{iterations} iterations");

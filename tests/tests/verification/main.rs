@@ -26,6 +26,7 @@ mod prandtl;
 mod rates;
 mod report;
 mod sliders;
+mod soils;
 mod sphere;
 mod strip;
 mod transactions;

@@ -3,7 +3,7 @@
 use super::{LocalProblem, LocalSolution, LocalSolver, Reason, Unsolved, judge, start};
 use crate::Uzawa;
 use crate::problem::{split, stack};
-use crate::solvers::anderson::Anderson;
+use crate::solvers::Anderson;
 use moreau_laws::Local;
 
 const NAME: &str = "Uzawa";

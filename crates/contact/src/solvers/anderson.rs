@@ -14,7 +14,7 @@ const GROWTH: f64 = 10.0;
 /// (D. G. Anderson, J. ACM 12, 1965). On a map that is piecewise affine, such as a projection with
 /// its statuses settled, it converges like a Krylov method.
 #[derive(Debug, Default)]
-pub(crate) struct Anderson {
+pub struct Anderson {
     /// Differences of iterates' images and of their residuals, oldest first.
     images: VecDeque<DVector<f64>>,
     residuals: VecDeque<DVector<f64>>,
@@ -25,7 +25,7 @@ pub(crate) struct Anderson {
 
 impl Anderson {
     /// The next iterate, from an iterate and its image under T.
-    pub(crate) fn next(&mut self, x: &DVector<f64>, image: DVector<f64>) -> DVector<f64> {
+    pub fn next(&mut self, x: &DVector<f64>, image: DVector<f64>) -> DVector<f64> {
         let residual = &image - x;
         let size = residual.norm();
         match &self.best {

@@ -1,12 +1,13 @@
 //! The methods that solve a contact problem, one file each, behind one trait.
 
-pub(crate) mod anderson;
+mod anderson;
 mod gauss_seidel;
 mod linearised;
 mod penalty;
 mod semismooth;
 mod uzawa;
 
+pub use anderson::Anderson;
 pub use gauss_seidel::GaussSeidel;
 pub use penalty::Penalty;
 pub use semismooth::SemismoothNewton;
@@ -14,7 +15,6 @@ pub use uzawa::{Uzawa, uzawa_steps};
 
 use crate::problem::{split, stack};
 use crate::{Certificate, ContactError, ContactProblem, Delassus};
-use anderson::Anderson;
 use moreau_laws::{Local, Status};
 use nalgebra::DVector;
 
