@@ -69,7 +69,7 @@ impl Unsymmetric {
     pub(crate) fn settles(&mut self, lacking: Vec<f64>) -> bool {
         self.steps += 1;
         let lacking = DVector::from_vec(lacking);
-        let left = (&lacking - &self.forces).amax();
+        let left = largest((&lacking - &self.forces).iter().copied());
         if left <= self.enough || !left.is_finite() || self.steps >= LIMIT {
             return true;
         }
