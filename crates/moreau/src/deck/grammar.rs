@@ -90,7 +90,7 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
         .into_iter()
         .filter_map(|t| step::read(t, dimension))
         .collect();
-    let empty = |v: Value<'_>| v.get_ref().as_array().is_some_and(|a| a.len() == 0);
+    let empty = |v: Value<'_>| v.get_ref().as_array().is_some_and(|a| a.is_empty());
     if root.get("step").is_none_or(empty) {
         missing(root, "[[step]]", "name, increments, fix, move and load");
     }
