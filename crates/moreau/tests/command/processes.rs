@@ -46,16 +46,11 @@ fn two_writers(name: &str, times: usize) {
     }
 }
 
+/// Twenty times: `WRITERS=20 cargo test -p moreau --test command writers`
 #[test]
 fn of_two_writers_at_once_one_writes_and_the_other_is_refused() {
-    two_writers("writers", 3);
-}
-
-/// `cargo test -p moreau --test command -- --ignored twenty`
-#[test]
-#[ignore = "takes longer than what it adds"]
-fn of_two_writers_one_writes_twenty_times() {
-    two_writers("twenty", 20);
+    let times = std::env::var("WRITERS").map_or(3, |n| n.parse().expect("a number"));
+    two_writers("writers", times);
 }
 
 #[test]
