@@ -13,6 +13,7 @@
 //! | problems in text files | | [`deck`] |
 //! | mesh files | | [`files`] |
 //! | their results | | [`run`] |
+//! | memory that there is | | [`memory`] |
 //!
 //! ```
 //! use moreau::{contact::*, driver::*, laws::*, mesh::*};
@@ -31,7 +32,7 @@
 
 pub mod deck;
 pub mod files;
-mod memory;
+pub mod memory;
 pub mod plot;
 pub mod recovery;
 pub mod run;

@@ -6,6 +6,7 @@ mod body;
 mod checkpoint;
 mod contact;
 mod diagnosis;
+mod directory;
 mod drawing;
 mod files;
 mod grid;
@@ -15,6 +16,7 @@ mod outcome;
 mod pictures;
 mod points;
 mod report;
+mod resumable;
 mod surface;
 mod table;
 mod touch;
@@ -24,16 +26,17 @@ mod viewer;
 mod vtu;
 
 pub use diagnosis::{Diagnosis, Flip};
+pub use directory::Directory;
 pub use drawing::{Drawing, draw};
 pub(crate) use grid::vtu_of_mesh;
 pub use outcome::{Outcome, RunStatus, Verdict};
+pub use resumable::Resumable;
 pub use view::View;
 
 use crate::deck::{Deck, Setup};
 use crate::driver::{Driver, StepReport};
 use crate::laws::Status;
-use files::{read_text, write_file};
-use std::fs;
+use files::{read_text, replace_file, write_file};
 use std::path::{Path, PathBuf};
 use under_way::Run;
 
@@ -57,6 +60,29 @@ pub enum RunError {
         /// Why.
         source: std::io::Error,
     },
+    /// A directory that another process writes.
+    #[error(
+        "{} is being written by {by}: wait until it has ended, or write elsewhere with --out",
+        path.display()
+    )]
+    Taken {
+        /// The directory.
+        path: PathBuf,
+        /// The process, and for how long, as far as is known.
+        by: String,
+    },
+    /// A file that a run would overwrite, and that no run of its deck wrote.
+    #[error(
+        "{} {}, and would be overwritten: write elsewhere with --out, or overwrite it with --force",
+        file.display(),
+        belongs(.deck)
+    )]
+    NotOurs {
+        /// The file.
+        file: PathBuf,
+        /// The deck whose results it belongs to, if it is of a run.
+        deck: Option<PathBuf>,
+    },
     /// No checkpoint to go on from.
     #[error(
         "no checkpoint in {} can be used{why}: run the deck again", directory.display()
@@ -75,6 +101,13 @@ pub enum RunError {
         /// What there is.
         expected: String,
     },
+}
+
+fn belongs(deck: &Option<PathBuf>) -> String {
+    match deck {
+        Some(deck) => format!("is of the results of another deck, {}", deck.display()),
+        None => "was there before, not of a run of this deck".to_owned(),
+    }
 }
 
 /// A converged increment, as it is told while running.
@@ -104,6 +137,10 @@ pub trait Watch {
     /// With every line of `log.jsonl`.
     fn iterated(&mut self, _line: &str) {}
 
+    /// At the start and after every converged increment: `state` makes what it takes to go on from
+    /// there, which another thread may write while the next increment is under way.
+    fn reached(&mut self, _state: &dyn Fn() -> Resumable) {}
+
     /// Asked before every increment: whether to stop here, with a checkpoint.
     fn stops(&self) -> bool {
         false
@@ -113,56 +150,60 @@ pub trait Watch {
 /// Nobody looks on.
 impl Watch for () {}
 
-/// Runs a problem and writes its results into a directory, which is made if need be.
+/// Runs a problem and writes its results into a directory.
 ///
 /// A run that does not converge is an outcome, not an error: what converged is written.
 ///
 /// # Errors
-/// [`RunError::Write`] for the first file that could not be written.
+/// [`RunError::Write`] for the first file that could not be written: the last checkpoint before it
+/// stays.
 pub fn run<const D: usize>(
     setup: Setup<D>,
     deck: &Deck,
-    directory: &Path,
+    directory: &Directory,
     watch: &mut dyn Watch,
 ) -> Result<Outcome, RunError>
 where
     Driver<D>: View,
 {
-    if directory.exists() && !directory.is_dir() {
-        return Err(RunError::Write {
-            path: directory.to_owned(),
-            source: std::io::Error::other("this is a file, results need a directory"),
-        });
-    }
-    fs::create_dir_all(directory).map_err(|source| RunError::Write {
-        path: directory.to_owned(),
-        source,
-    })?;
-    // Those of another run would be taken for its own.
-    let _ = fs::remove_dir_all(directory.join(CHECKPOINTS));
-    let resolved = deck.resolved();
-    write_file(&directory.join(RESOLVED), resolved.as_bytes())?;
-    let mut run = Run::new(setup, deck, directory, resolved)?;
-    if deck.checkpoint > 0 {
-        run.save()?;
-    }
-    run.finish(watch)
+    let at = directory.path();
+    let begin = || {
+        // Those of another run would be taken for its own.
+        checkpoint::clear(&at.join(CHECKPOINTS))?;
+        replace_file(&at.join(RUN), RUNNING)?;
+        let resolved = deck.resolved();
+        write_file(&at.join(RESOLVED), resolved.as_bytes())?;
+        let mut run = Run::new(setup, deck, at, resolved)?;
+        if deck.checkpoint > 0 {
+            run.save()?;
+        }
+        Ok(run)
+    };
+    let outcome = begin().and_then(|run| run.finish(watch));
+    outcome.inspect_err(|error| break_off(at, error))
+}
+
+/// Leaves word of what could not be written, if that can be.
+fn break_off(directory: &Path, error: &RunError) {
+    let json = serde_json::json!({ "status": "not written", "error": error.to_string() });
+    let _ = replace_file(&directory.join(RUN), format!("{json:#}\n").as_bytes());
 }
 
 /// Continues a run from its last checkpoint, as if it had never stopped. `setup` and `deck` come
 /// from the `deck.resolved.toml` of the directory.
 ///
 /// # Errors
-/// [`RunError::NoCheckpoint`] if none is whole; [`RunError::Write`].
+/// [`RunError::NoCheckpoint`] if none is whole, or the results that it continues are not; [`RunError::Write`].
 pub fn resume<const D: usize>(
     setup: Setup<D>,
     deck: &Deck,
-    directory: &Path,
+    directory: &Directory,
     watch: &mut dyn Watch,
 ) -> Result<Outcome, RunError>
 where
     Driver<D>: View,
 {
+    let directory = directory.path();
     let resolved = read_text(&directory.join(RESOLVED))?;
     let checkpoints = directory.join(CHECKPOINTS);
     let mut why = String::new();
@@ -170,7 +211,11 @@ where
     for path in checkpoint::list(&checkpoints) {
         let numbers = checkpoint::read(&path, &run.resolved);
         match numbers.and_then(|n| run.reopen(&n).map_err(|e| e.to_string())) {
-            Ok(()) => return run.finish(watch),
+            Ok(()) => {
+                replace_file(&directory.join(RUN), RUNNING)?;
+                let outcome = run.finish(watch);
+                return outcome.inspect_err(|error| break_off(directory, error));
+            }
             Err(error) => {
                 let name = path.file_name().unwrap_or_default().to_string_lossy();
                 why.push_str(&format!("; {name}: {error}"));
@@ -183,6 +228,9 @@ where
     })
 }
 
+const RUN: &str = "run.json";
+/// What it says until there is an outcome: also of a run that was killed.
+const RUNNING: &[u8] = b"{\n  \"status\": \"running\"\n}\n";
 const RESOLVED: &str = "deck.resolved.toml";
 const CHECKPOINTS: &str = "checkpoint";
 

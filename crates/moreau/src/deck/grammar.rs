@@ -8,7 +8,7 @@ mod tool;
 
 use super::entries::{Analysis, Deck};
 use super::finding::{At, Class, Findings};
-use super::reader::{self, Log, Table};
+use super::reader::{self, Log, Table, Value};
 use super::units::Units;
 use std::ops::Range;
 use std::path::Path;
@@ -90,7 +90,8 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
         .into_iter()
         .filter_map(|t| step::read(t, dimension))
         .collect();
-    if root.get("step").is_none() {
+    let empty = |v: Value<'_>| v.get_ref().as_array().is_some_and(|a| a.is_empty());
+    if root.get("step").is_none_or(empty) {
         missing(root, "[[step]]", "name, increments, fix, move and load");
     }
     let solver = solver::read_solver(root);

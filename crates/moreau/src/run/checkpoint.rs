@@ -1,17 +1,18 @@
 //! Checkpoints: lists of numbers in files that are whole or known not to be; not what the numbers
 //! mean.
 //!
-//! A file is the line `moreau checkpoint 2`, the CRC-32 of the resolved deck, that of the numbers
+//! A file is the line `moreau checkpoint 3`, the CRC-32 of the resolved deck, that of the numbers
 //! and their count, each as 8 bytes, and the numbers as IEEE doubles; all little endian. It is
 //! written beside its place, forced to the disk and renamed, so that a crash leaves the one before.
 
 use super::RunError;
+use super::files::beside;
 use flate2::Crc;
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-const MAGIC: &[u8] = b"moreau checkpoint 2\n";
+const MAGIC: &[u8] = b"moreau checkpoint 3\n";
 
 /// Checkpoints that are kept.
 const KEPT: usize = 2;
@@ -36,9 +37,9 @@ pub(super) fn write(
         bytes.extend(word.to_le_bytes());
     }
     bytes.extend(body);
+    let beside = beside(&path);
     let place = || {
         fs::create_dir_all(directory)?;
-        let beside = path.with_extension("tmp");
         let mut file = File::create(&beside)?;
         file.write_all(&bytes)?;
         file.sync_all()?;
@@ -46,26 +47,43 @@ pub(super) fn write(
         // The name, too, where a directory can be synchronised.
         let _ = File::open(directory).and_then(|d| d.sync_all());
         for old in list(directory).iter().skip(KEPT) {
-            fs::remove_file(old)?;
+            // Another thread may have been there first.
+            let _ = fs::remove_file(old);
         }
         Ok(())
     };
-    place().map_err(|source| RunError::Write {
-        path: path.clone(),
-        source,
+    place().map_err(|source| {
+        // What there is of it only takes room.
+        let _ = fs::remove_file(&beside);
+        RunError::Write {
+            path: path.clone(),
+            source,
+        }
     })
 }
 
 /// The checkpoints of a directory, newest first.
 pub(super) fn list(directory: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(directory).into_iter().flatten().flatten();
-    let mut list: Vec<PathBuf> = entries
-        .map(|e| e.path())
-        .filter(|p| p.extension().is_some_and(|e| e == "ckpt"))
-        .collect();
+    let mut list = ours(directory);
+    list.retain(|p| p.extension().is_some_and(|e| e == "ckpt"));
     // Numbers above six digits are longer.
     list.sort_by_key(|p| std::cmp::Reverse((p.as_os_str().len(), p.clone())));
     list
+}
+
+/// Files of a directory that [`write`] made or began.
+fn ours(directory: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(directory).into_iter().flatten().flatten();
+    let ours = |e: &fs::DirEntry| e.file_name().to_string_lossy().starts_with("increment-");
+    entries.filter(ours).map(|e| e.path()).collect()
+}
+
+/// Removes all checkpoints of a directory, and nothing else.
+pub(super) fn clear(directory: &Path) -> Result<(), RunError> {
+    for path in ours(directory) {
+        fs::remove_file(&path).map_err(|source| RunError::Write { path, source })?;
+    }
+    Ok(())
 }
 
 /// The numbers of a checkpoint, or why it cannot be used.

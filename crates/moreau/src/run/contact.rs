@@ -1,5 +1,6 @@
 //! `contact.csv`: a row for each contact point and converged increment; no sums.
 
+use super::table::field;
 use super::touch::{Touch, touches};
 use super::{number, status_name};
 use crate::deck::Units;
@@ -31,7 +32,7 @@ pub(super) fn rows<const D: usize>(
         let mut fields = vec![
             stage.to_string(),
             report.increment.to_string(),
-            driver.contact_name(c.contact).0.to_owned(),
+            field(driver.contact_name(c.contact).0).into_owned(),
             c.node.to_string(),
         ];
         fields.extend((0..3).map(|k| at(k, &c.position)));

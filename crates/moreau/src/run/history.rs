@@ -1,6 +1,7 @@
 //! `history.csv`: a row for each converged increment; contact points have a file of their own.
 
 use super::number;
+use super::table::field;
 use crate::deck::{Setup, Units};
 use crate::deck::{Unit, columns};
 use crate::driver::{Driver, StepReport};
@@ -39,7 +40,9 @@ impl History {
     /// The header: a name, and its unit in brackets if it has one.
     pub(super) fn header(&self) -> String {
         let label = |(name, unit): &(String, Unit)| unit.label(name, self.units);
-        self.columns.iter().map(label).collect::<Vec<_>>().join(",")
+        let fields = self.columns.iter().map(label);
+        let fields: Vec<String> = fields.map(|f| field(&f).into_owned()).collect();
+        fields.join(",")
     }
 
     /// Makes the row of an increment, and returns it as a line.

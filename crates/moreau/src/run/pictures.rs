@@ -58,7 +58,7 @@ pub(super) fn contact_table(directory: &Path, increments: &[usize]) -> Result<Ta
     let wanted: HashSet<String> = increments.iter().map(usize::to_string).collect();
     Table::read(&directory.join("contact.csv"), |names, fields| {
         let column = names.iter().position(|n| n == "increment");
-        column.is_some_and(|k| wanted.contains(fields[k]))
+        column.is_some_and(|k| wanted.contains(&*fields[k]))
     })
 }
 

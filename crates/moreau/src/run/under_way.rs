@@ -1,12 +1,12 @@
-//! A run under way: its steps, the files that grow with them, and its checkpoints.
+//! A run under way: its steps, the files that grow with them, and what it takes to go on from there.
 
 use super::drawing::{Drawing, pictures_of};
-use super::files::{Stream, write_file};
+use super::files::{Mark, Stream, replace_file};
 use super::history::{self, History};
 use super::log::Trace;
 use super::outcome::{self, Outcome, RunStatus, Tally};
-use super::vtu::Collection;
-use super::{CHECKPOINTS, Diagnosis, Event, RunError, View, Watch, body, checkpoint, contact};
+use super::vtu::{Collection, LIST};
+use super::{Diagnosis, Event, RUN, Resumable, RunError, View, Watch, body, contact};
 use crate::deck::{Deck, Setup, Vtu};
 use crate::driver::{Driver, Ramp, Reader, StepError, StepReport};
 use std::path::Path;
@@ -36,6 +36,27 @@ struct Out {
     contact: Stream,
     log: Stream,
     collection: Collection,
+}
+
+/// Names of the streams, in the order of [`Out`].
+const STREAMS: [&str; 3] = ["history.csv", "contact.csv", "log.jsonl"];
+
+impl Out {
+    fn marks(&self) -> [Mark; 4] {
+        let Self {
+            history,
+            contact,
+            log,
+            collection,
+        } = self;
+        let list = collection.mark();
+        [history.mark(), contact.mark(), log.mark(), list]
+    }
+
+    fn flush(&mut self) -> Result<(), RunError> {
+        let streams = [&mut self.history, &mut self.contact, &mut self.log];
+        streams.into_iter().try_for_each(Stream::flush)
+    }
 }
 
 impl<'a, const D: usize> Run<'a, D>
@@ -72,14 +93,16 @@ where
         resolved: String,
     ) -> Result<Self, RunError> {
         let mut run = Self::unopened(setup, deck, directory, resolved);
+        let [history, contact, log] = STREAMS.map(|name| Stream::create(directory.join(name)));
         let mut out = Out {
-            history: Stream::create(directory.join("history.csv"))?,
-            contact: Stream::create(directory.join("contact.csv"))?,
-            log: Stream::create(directory.join("log.jsonl"))?,
-            collection: Collection::reopen(directory.to_owned(), 0)?,
+            history: history?,
+            contact: contact?,
+            log: log?,
+            collection: Collection::reopen(directory.to_owned(), Mark::default())?,
         };
         out.history.line(&run.history.header())?;
         out.contact.line(&contact::header(deck.units))?;
+        out.flush()?;
         run.out = Some(out);
         Ok(run)
     }
@@ -88,28 +111,61 @@ where
         self.before + self.started.elapsed().as_secs_f64()
     }
 
-    /// Writes a checkpoint: all that [`Run::reopen`] needs.
+    /// Writes a checkpoint.
     pub(super) fn save(&mut self) -> Result<(), RunError> {
+        self.state(self.ramp.as_ref()).write()
+    }
+
+    /// All that [`Run::reopen`] needs, in the middle of a step or between two. Files are flushed.
+    fn state(&self, ramp: Option<&Ramp<D>>) -> Resumable {
         let mut numbers = vec![self.seconds(), self.stage as f64];
-        if let Some(out) = &mut self.out {
-            for stream in [&mut out.history, &mut out.contact, &mut out.log] {
-                stream.sync()?;
-                numbers.push(stream.length() as f64);
-            }
-            out.collection.sync()?;
-            numbers.push(out.collection.length() as f64);
+        let mut streams: Vec<_> = STREAMS.map(|name| self.directory.join(name)).into();
+        let marks = self.out.as_ref().map_or_else(Default::default, Out::marks);
+        for mark in &marks {
+            numbers.extend([mark.length as f64, f64::from(mark.crc)]);
+        }
+        if marks[3].length > 0 {
+            streams.push(self.directory.join(LIST));
         }
         self.tally.write(&mut numbers);
         numbers.push(self.history.last.len() as f64);
         numbers.extend(&self.history.last);
         self.setup.driver.write(&mut numbers);
-        numbers.push(f64::from(u8::from(self.ramp.is_some())));
-        if let Some(ramp) = &self.ramp {
+        numbers.push(f64::from(u8::from(ramp.is_some())));
+        if let Some(ramp) = ramp {
             ramp.write(&mut numbers);
         }
-        let directory = self.directory.join(CHECKPOINTS);
-        let increment = self.setup.driver.increments();
-        checkpoint::write(&directory, increment, &self.resolved, &numbers)
+        Resumable {
+            directory: self.directory.to_owned(),
+            streams,
+            increment: self.setup.driver.increments(),
+            resolved: self.resolved.clone(),
+            numbers,
+            summary: String::new(),
+        }
+    }
+
+    /// Hands over the state to go on from, if anybody asks.
+    fn reached(&self, ramp: Option<&Ramp<D>>, watch: &mut dyn Watch) {
+        watch.reached(&|| {
+            let increment = self.setup.driver.increments();
+            let outcome = self.outcome((RunStatus::Interrupted(increment), None));
+            Resumable {
+                summary: outcome.json(),
+                ..self.state(ramp)
+            }
+        });
+    }
+
+    fn outcome(&self, how: (RunStatus, Option<Diagnosis>)) -> Outcome {
+        outcome::conclude(
+            &self.setup.driver,
+            self.deck,
+            &self.history,
+            &self.tally,
+            how,
+            self.seconds(),
+        )
     }
 
     /// Takes over a checkpoint, and cuts the files back to it.
@@ -117,8 +173,11 @@ where
         let from = &mut Reader::new(numbers);
         self.before = from.number()?;
         self.stage = from.count()?;
-        let lengths = [from.count()?, from.count()?, from.count()?, from.count()?];
-        let [history, contact, log, list] = lengths.map(|n| n as u64);
+        let mut marks = [Mark::default(); 4];
+        for mark in &mut marks {
+            mark.length = from.count()? as u64;
+            mark.crc = u32::try_from(from.count()?)?;
+        }
         self.tally.read(from)?;
         let columns = from.count()?;
         self.history.last = from.take(columns)?.to_vec();
@@ -127,12 +186,17 @@ where
             (1, Some(stage)) => Some(Ramp::read(&stage.step, stage.increments, from)?),
             _ => None,
         };
-        let at = |name: &str| self.directory.join(name);
+        let at = |k: usize| Stream::reopen(self.directory.join(STREAMS[k]), marks[k]);
+        let mut streams = [at(0)?, at(1)?, at(2)?];
+        // Nothing is cut before all are known to be what they were.
+        let collection = Collection::reopen(self.directory.to_owned(), marks[3])?;
+        streams.iter_mut().try_for_each(Stream::cut)?;
+        let [history, contact, log] = streams;
         self.out = Some(Out {
-            history: Stream::reopen(at("history.csv"), history)?,
-            contact: Stream::reopen(at("contact.csv"), contact)?,
-            log: Stream::reopen(at("log.jsonl"), log)?,
-            collection: Collection::reopen(self.directory.to_owned(), list)?,
+            history,
+            contact,
+            log,
+            collection,
         });
         Ok(())
     }
@@ -142,6 +206,9 @@ where
         let (status, diagnosis) = match self.steps(watch)? {
             Ending::Done => (RunStatus::Done, None),
             Ending::Interrupted => {
+                if let Some(out) = &mut self.out {
+                    out.flush()?;
+                }
                 self.save()?;
                 let increment = self.setup.driver.increments();
                 (RunStatus::Interrupted(increment), None)
@@ -172,20 +239,10 @@ where
                 let parts = (self.deck.vtu == Vtu::Last, self.deck.points == Vtu::Last);
                 out.collection.add(driver, self.history.time(), parts)?;
             }
-            out.history.flush()?;
-            out.contact.flush()?;
-            out.log.flush()?;
+            out.flush()?;
         }
-        let outcome = outcome::conclude(
-            driver,
-            self.deck,
-            &self.history,
-            &self.tally,
-            (status, diagnosis),
-            self.seconds(),
-        );
-        let json = outcome.json();
-        write_file(&self.directory.join("run.json"), json.as_bytes())?;
+        let outcome = self.outcome((status, diagnosis));
+        replace_file(&self.directory.join(RUN), outcome.json().as_bytes())?;
         if driver.increments() > 0 {
             let last = body::body(driver).0.point_data;
             let drawing = Drawing::default();
@@ -196,6 +253,7 @@ where
 
     fn steps(&mut self, watch: &mut dyn Watch) -> Result<Ending, RunError> {
         let first = self.stage as f64 + self.ramp.as_ref().map_or(0.0, Ramp::done);
+        self.reached(self.ramp.as_ref(), watch);
         while let Some(stage) = self.setup.stages.get(self.stage) {
             let mut ramp = match self.ramp.take() {
                 Some(ramp) => ramp,
@@ -251,10 +309,9 @@ where
                 });
                 let every = self.deck.checkpoint;
                 if every > 0 && report.increment.is_multiple_of(every) {
-                    self.ramp = Some(ramp.clone());
-                    self.save()?;
-                    self.ramp = None;
+                    self.state(Some(&ramp)).write()?;
                 }
+                self.reached(Some(&ramp), watch);
             }
             if to_collapse && !collapsed {
                 return Ok(Ending::Carried(name));
@@ -279,9 +336,7 @@ where
         for line in contact::rows(driver, report, place.stage) {
             out.contact.line(&line)?;
         }
-        for stream in [&mut out.history, &mut out.contact, &mut out.log] {
-            stream.flush()?;
-        }
+        out.flush()?;
         self.tally.add(driver, report);
         let parts = (self.deck.vtu == Vtu::All, self.deck.points == Vtu::All);
         out.collection.add(driver, self.history.time(), parts)

@@ -3,7 +3,7 @@
 
 use super::RunError;
 use super::body::body;
-use super::files::{Stream, read_text, write_file};
+use super::files::{Mark, Stream, read_text, write_file};
 use super::grid::{Array, attribute, point_data, three};
 use super::points::points;
 use super::surface::surface;
@@ -12,7 +12,7 @@ use crate::driver::Driver;
 use std::path::{Path, PathBuf};
 
 /// Name of the list.
-const LIST: &str = "result.pvd";
+pub(super) const LIST: &str = "result.pvd";
 const LIST_HEAD: &str = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
                          byte_order=\"LittleEndian\">\n<Collection>";
 const LIST_TAIL: &str = "</Collection>\n</VTKFile>\n";
@@ -24,14 +24,15 @@ pub(super) struct Collection {
 }
 
 impl Collection {
-    /// The collection as it was when its list had a length; files that came later are
+    /// The collection as it was when its list had come to a mark; files that came later are
     /// removed. At 0 it is empty; the list begins with the first file.
-    pub(super) fn reopen(directory: PathBuf, length: u64) -> Result<Self, RunError> {
+    pub(super) fn reopen(directory: PathBuf, mark: Mark) -> Result<Self, RunError> {
         let path = directory.join(LIST);
         let mut kept = String::new();
         let mut list = None;
-        if length > 0 {
-            let mut stream = Stream::reopen(path.clone(), length)?;
+        if mark.length > 0 {
+            let mut stream = Stream::reopen(path.clone(), mark)?;
+            stream.cut()?;
             stream.tail(LIST_TAIL)?;
             list = Some(stream);
             kept = read_text(&path)?;
@@ -44,10 +45,7 @@ impl Collection {
             .flatten()
         {
             let name = entry.file_name().to_string_lossy().into_owned();
-            let ours = ["body_", "contact_", "points_", "failed"]
-                .iter()
-                .any(|p| name.starts_with(p));
-            if ours && name.ends_with(".vtu") && !kept.contains(&format!("\"{name}\"")) {
+            if is_ours(&name) && !kept.contains(&format!("\"{name}\"")) {
                 // One that stays does no harm.
                 let _ = std::fs::remove_file(entry.path());
             }
@@ -55,13 +53,9 @@ impl Collection {
         Ok(Self { directory, list })
     }
 
-    /// Length of the list without its end.
-    pub(super) fn length(&self) -> u64 {
-        self.list.as_ref().map_or(0, Stream::length)
-    }
-
-    pub(super) fn sync(&mut self) -> Result<(), RunError> {
-        self.list.as_mut().map_or(Ok(()), Stream::sync)
+    /// The end of the list, without what closes it.
+    pub(super) fn mark(&self) -> Mark {
+        self.list.as_ref().map_or(Mark::default(), Stream::mark)
     }
 
     /// Writes of the state of a driver the body with its contact surfaces, the quadrature points, or
@@ -130,6 +124,16 @@ impl Collection {
         grid.point_data.push(vector("out_of_balance", residual));
         write_file(&self.directory.join("failed.vtu"), &grid.bytes())
     }
+}
+
+/// Whether a name is that of a file that a collection may write.
+pub(super) fn is_ours(name: &str) -> bool {
+    let number = |kind: &str| name.strip_prefix(kind)?.strip_suffix(".vtu");
+    let numbered = ["body_", "contact_", "points_"]
+        .into_iter()
+        .find_map(number);
+    let digits = |n: &str| n.len() >= 5 && n.bytes().all(|b| b.is_ascii_digit());
+    name == "failed.vtu" || numbered.is_some_and(digits)
 }
 
 /// Number, time and file of the bodies listed in a directory; none without a list.

@@ -3,6 +3,7 @@
 mod answers;
 mod files;
 mod pictures;
+mod processes;
 mod resume;
 mod same;
 mod status;

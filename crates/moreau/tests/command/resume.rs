@@ -50,7 +50,7 @@ fn equal_but_for_times(a: &Path, b: &Path) {
             v
         };
         match name.as_str() {
-            "checkpoint" | "report.html" => {}
+            "checkpoint" | "report.html" | "run.lock" => {}
             "log.jsonl" => {
                 let lines = |d: &Path| text(&read(d)).lines().map(timeless).collect::<Vec<_>>();
                 assert_eq!(lines(a), lines(b));
@@ -105,7 +105,7 @@ fn a_resumed_run_is_the_uninterrupted_one() {
     // None whole, or of another deck: told.
     for name in &kept {
         let path = crashed.join("checkpoint").join(name);
-        fs::write(path, b"moreau checkpoint 2\n").expect("written");
+        fs::write(path, b"moreau checkpoint 3\n").expect("written");
     }
     let (status, err) = resume(&crashed, &[]);
     assert!(status == 1 && err.contains("torn"), "{status} {err}");
@@ -119,6 +119,29 @@ fn a_resumed_run_is_the_uninterrupted_one() {
         "{status} {err}"
     );
     assert_eq!(resume(&directory("empty"), &[]).0, 1);
+}
+
+/// Rows that were changed since are noticed: a run does not go on from results that are not its own.
+#[test]
+fn a_resumed_run_goes_on_from_results_as_they_were_written() {
+    let (status, _, err, whole) = run("changed", &pressed_and_released(4), &["--quiet"]);
+    assert_eq!(status, 0, "{err}");
+    let other = whole.with_file_name("other");
+    for file in ["history.csv", "contact.csv", "log.jsonl", "result.pvd"] {
+        copy(&whole, &other);
+        let path = other.join(file);
+        let mut bytes = fs::read(&path).expect("a file");
+        bytes[150] ^= 1;
+        fs::write(&path, &bytes).expect("written");
+        let (status, err) = resume(&other, &[]);
+        let words = [file, "not those that were written", "run the deck again"];
+        assert!(
+            status == 1 && words.iter().all(|w| err.contains(w)),
+            "{status} {err}"
+        );
+        let after = fs::read(&path).expect("a file");
+        assert!(bytes == after, "{file} was cut all the same");
+    }
 }
 
 /// Killed at some moment, or asked to stop: it goes on from the last checkpoint.

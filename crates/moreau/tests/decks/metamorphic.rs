@@ -8,7 +8,7 @@ mod units;
 use super::{folder, temporary};
 use moreau::deck::{Problem, open_in};
 use moreau::driver::StepReport;
-use moreau::run::{Event, Watch, resume, run};
+use moreau::run::{Directory, Event, Watch, resume, run};
 use std::fs;
 use std::path::Path;
 use toml::{Table, Value};
@@ -117,16 +117,17 @@ impl Watch for Pause {
 /// Runs a deck into a directory, after a pause if that is asked for.
 fn history(deck: &Table, beside: &Path, name: &str, pause: bool) -> History {
     let at = temporary(&format!("metamorphic/{name}"));
+    let to = Directory::take(&at).expect("a directory");
     let text = deck.to_string();
     let mut watch = Pause(if pause { 1 } else { usize::MAX });
     for go_on in [false, true] {
         let (deck, problem, findings) = open_in(&text, beside);
         let shown = || findings.render(name, &text, false);
         match (problem.unwrap_or_else(|| panic!("{}", shown())), go_on) {
-            (Problem::Plane(setup), false) => run(*setup, &deck, &at, &mut watch),
-            (Problem::Plane(setup), true) => resume(*setup, &deck, &at, &mut ()),
-            (Problem::Solid(setup), false) => run(*setup, &deck, &at, &mut watch),
-            (Problem::Solid(setup), true) => resume(*setup, &deck, &at, &mut ()),
+            (Problem::Plane(setup), false) => run(*setup, &deck, &to, &mut watch),
+            (Problem::Plane(setup), true) => resume(*setup, &deck, &to, &mut ()),
+            (Problem::Solid(setup), false) => run(*setup, &deck, &to, &mut watch),
+            (Problem::Solid(setup), true) => resume(*setup, &deck, &to, &mut ()),
         }
         .expect("a run");
         if !pause {

@@ -5,7 +5,7 @@ use moreau::deck::{SCHEMA, open};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
-fn schema() -> Value {
+pub(super) fn schema() -> Value {
     serde_json::from_str(SCHEMA).expect("json")
 }
 
@@ -188,76 +188,213 @@ fn the_schema_has_the_keys_of_the_reader() {
     }
 }
 
-/// Whether a value is as a part of the schema says: types, keys, references, choices.
-fn fits(value: &Value, part: &Value, root: &Value) -> Result<(), String> {
-    if let Some(name) = part["$ref"]
-        .as_str()
-        .and_then(|r| r.strip_prefix("#/$defs/"))
-    {
-        return fits(value, &root["$defs"][name], root);
-    }
-    let wrong = || Err(format!("{value} is not {part}"));
-    if let Some(choices) = part["enum"].as_array()
-        && !choices.contains(value)
-    {
-        return wrong();
-    }
-    let typed = match part["type"].as_str() {
-        Some("object") => value.is_object(),
-        Some("array") => value.is_array(),
-        Some("string") => value.is_string(),
-        Some("number") => value.is_number(),
-        Some("integer") => value.is_u64() || value.is_i64(),
-        Some("boolean") => value.is_boolean(),
-        _ => true,
-    };
-    if !typed {
-        return wrong();
-    }
-    if let Some(options) = part["oneOf"].as_array() {
-        // Alternatives of keys are about which are there, the others about what a value is.
-        let there = |o: &Value| {
-            o["required"].as_array().is_some_and(|r| {
-                r.iter()
-                    .all(|k| k.as_str().is_some_and(|k| value.get(k).is_some()))
-            })
+/// What tells, and asks for nothing.
+const ABOUT: [&str; 4] = ["$schema", "$defs", "title", "description"];
+/// The only pattern: that of names.
+const NAME: &str = "^[^\\s!-,/:-@\\[-^`{-~]+$";
+
+/// Whether a value is as a part of the schema says: every keyword in it, as draft 2020-12 has them.
+pub(super) fn fits(value: &Value, part: &Value, root: &Value) -> Result<(), String> {
+    let keywords = part.as_object().into_iter().flatten();
+    for (keyword, asked) in keywords.filter(|(k, _)| !ABOUT.contains(&k.as_str())) {
+        let holds = match value {
+            _ if ANY.contains(&keyword.as_str()) => of_any(value, (keyword, asked), part, root),
+            Value::Object(_) => of_object(value, (keyword, asked), part, root),
+            Value::Array(_) => of_array(value, (keyword, asked), part, root),
+            Value::Number(_) => Ok(of_number(value, (keyword, asked))),
+            Value::String(text) if keyword == "pattern" => Ok(is_name(text, asked)),
+            _ => Ok(true),
         };
-        let fitting = options
-            .iter()
-            .filter(|o| match part["properties"].is_object() {
-                true => there(o),
-                false => fits(value, o, root).is_ok(),
-            });
-        if fitting.count() != 1 {
-            return wrong();
+        if !holds? {
+            return Err(format!("{value} is not of {keyword}: {asked}"));
         }
-    }
-    for key in part["required"].as_array().into_iter().flatten() {
-        if key.as_str().is_some_and(|key| value.get(key).is_none()) {
-            return Err(format!("{value} has no {key}"));
-        }
-    }
-    for (key, inner) in value.as_object().into_iter().flatten() {
-        let rest = &part["additionalProperties"];
-        match (&part["properties"][key], rest) {
-            (Value::Null, Value::Object(_)) => fits(inner, rest, root)?,
-            (Value::Null, Value::Bool(false)) => return Err(format!("unknown key {key}")),
-            (own, _) => fits(inner, own, root)?,
-        }
-    }
-    for inner in value.as_array().into_iter().flatten() {
-        fits(inner, &part["items"], root)?;
     }
     Ok(())
+}
+
+/// Keywords that ask something of values of every kind.
+const ANY: [&str; 11] = [
+    "$ref", "type", "enum", "const", "allOf", "anyOf", "oneOf", "not", "if", "then", "else",
+];
+
+type Keyword<'a> = (&'a String, &'a Value);
+
+fn of_any(
+    value: &Value,
+    (keyword, asked): Keyword<'_>,
+    part: &Value,
+    root: &Value,
+) -> Result<bool, String> {
+    let fit = |part: &Value| fits(value, part, root).is_ok();
+    let list = || asked.as_array().into_iter().flatten();
+    // Numbers are equal if their values are.
+    let equal = |a: &Value| a == value || a.is_number() && a.as_f64() == value.as_f64();
+    Ok(match keyword.as_str() {
+        "$ref" => {
+            let name = asked.as_str().and_then(|r| r.strip_prefix("#/$defs/"));
+            return fits(value, &root["$defs"][name.expect("a reference")], root).map(|()| true);
+        }
+        "type" => match asked.as_str().expect("a type") {
+            "object" => value.is_object(),
+            "array" => value.is_array(),
+            "string" => value.is_string(),
+            "number" => value.is_number(),
+            "integer" => value.is_u64() || value.is_i64(),
+            "boolean" => value.is_boolean(),
+            other => panic!("the type {other}"),
+        },
+        "enum" => list().any(equal),
+        "const" => equal(asked),
+        "allOf" => {
+            for part in list() {
+                fits(value, part, root)?;
+            }
+            true
+        }
+        "anyOf" => list().any(fit),
+        "oneOf" => list().filter(|part| fit(part)).count() == 1,
+        "not" => !fit(asked),
+        "if" => {
+            let then = if fit(asked) { "then" } else { "else" };
+            return part
+                .get(then)
+                .map_or(Ok(true), |t| fits(value, t, root).map(|()| true));
+        }
+        _ => true,
+    })
+}
+
+fn of_object(
+    value: &Value,
+    (keyword, asked): Keyword<'_>,
+    part: &Value,
+    root: &Value,
+) -> Result<bool, String> {
+    let object = value.as_object().expect("an object");
+    let all = |keys: &Value| {
+        let keys = keys.as_array().into_iter().flatten();
+        keys.filter_map(Value::as_str)
+            .all(|k| object.contains_key(k))
+    };
+    let count = asked.as_u64().unwrap_or_default();
+    Ok(match keyword.as_str() {
+        "required" => all(asked),
+        "dependentRequired" => {
+            let mut rules = asked.as_object().expect("rules").iter();
+            rules.all(|(key, needs)| !object.contains_key(key) || all(needs))
+        }
+        "minProperties" => object.len() as u64 >= count,
+        "maxProperties" => object.len() as u64 <= count,
+        "properties" => {
+            for (key, inner) in object {
+                fits(inner, &asked[key], root).map_err(|e| format!("{key}: {e}"))?;
+            }
+            true
+        }
+        "additionalProperties" => {
+            for (key, inner) in object
+                .iter()
+                .filter(|(k, _)| part["properties"][k].is_null())
+            {
+                if asked == &Value::Bool(false) {
+                    return Err(format!("unknown key {key}"));
+                }
+                fits(inner, asked, root)?;
+            }
+            true
+        }
+        other => of_another_kind(other),
+    })
+}
+
+fn of_array(
+    value: &Value,
+    (keyword, asked): Keyword<'_>,
+    part: &Value,
+    root: &Value,
+) -> Result<bool, String> {
+    let list = value.as_array().expect("an array");
+    let count = asked.as_u64().unwrap_or_default();
+    let first = |part: &Value| part.as_array().map_or(0, Vec::len);
+    Ok(match keyword.as_str() {
+        "minItems" => list.len() as u64 >= count,
+        "maxItems" => list.len() as u64 <= count,
+        "items" => {
+            for inner in list.iter().skip(first(&part["prefixItems"])) {
+                fits(inner, asked, root)?;
+            }
+            true
+        }
+        "prefixItems" => {
+            for (inner, part) in list.iter().zip(asked.as_array().expect("parts")) {
+                fits(inner, part, root)?;
+            }
+            true
+        }
+        "contains" => {
+            let found = list.iter().filter(|v| fits(v, asked, root).is_ok()).count() as u64;
+            let bound = |key: &str, default| part[key].as_u64().unwrap_or(default);
+            (bound("minContains", 1)..=bound("maxContains", u64::MAX)).contains(&found)
+        }
+        "minContains" | "maxContains" => true,
+        other => of_another_kind(other),
+    })
+}
+
+fn of_number(value: &Value, (keyword, asked): Keyword<'_>) -> bool {
+    let value = value.as_f64().expect("a number");
+    let bound = || asked.as_f64().expect("a bound");
+    match keyword.as_str() {
+        "minimum" => value >= bound(),
+        "maximum" => value <= bound(),
+        "exclusiveMinimum" => value > bound(),
+        "exclusiveMaximum" => value < bound(),
+        other => of_another_kind(other),
+    }
+}
+
+fn is_name(text: &str, pattern: &Value) -> bool {
+    assert_eq!(pattern, NAME, "a pattern that this test does not know");
+    let sign = |c: char| c.is_ascii_punctuation() && !"-_.".contains(c);
+    !text.is_empty() && !text.chars().any(|c| c.is_whitespace() || sign(c))
+}
+
+/// A keyword that asks nothing of a value of this kind. One that is not known here would pass unseen.
+fn of_another_kind(keyword: &str) -> bool {
+    const KNOWN: [&str; 19] = [
+        "required",
+        "dependentRequired",
+        "minProperties",
+        "maxProperties",
+        "properties",
+        "additionalProperties",
+        "minItems",
+        "maxItems",
+        "items",
+        "prefixItems",
+        "contains",
+        "minContains",
+        "maxContains",
+        "minimum",
+        "maximum",
+        "exclusiveMinimum",
+        "exclusiveMaximum",
+        "pattern",
+        "$comment",
+    ];
+    assert!(KNOWN.contains(&keyword), "the keyword {keyword}");
+    true
+}
+
+/// A deck as a schema sees it.
+pub(super) fn read(text: &str) -> Value {
+    let table: toml::Table = text.parse().expect("toml");
+    serde_json::to_value(table).expect("json")
 }
 
 #[test]
 fn the_examples_fit_the_schema() {
     let root = schema();
-    let read = |text: &str| -> Value {
-        let table: toml::Table = text.parse().expect("toml");
-        serde_json::to_value(table).expect("json")
-    };
     let mut count = 0;
     for entry in std::fs::read_dir(folder("docs/examples")).expect("examples") {
         let path = entry.expect("an entry").path();

@@ -2,15 +2,18 @@
 
 use super::{INPUT_ERROR, NOT_CONVERGED, run, say, tell};
 use moreau::deck::{At, Deck, Method, Problem, Vtu, open};
-use moreau::run::{Outcome, RunStatus};
+use moreau::run::{Directory, Outcome, RunStatus};
 use std::path::{Path, PathBuf};
 
 /// Runs a deck under every algorithm; the exit status is that of the first that fails.
-pub(crate) fn bench(path: &Path, out: Option<PathBuf>) -> u8 {
+pub(crate) fn bench(path: &Path, out: Option<PathBuf>, force: bool) -> u8 {
     let Some((deck, problem)) = run::problem(path) else {
         return INPUT_ERROR;
     };
     drop(problem);
+    let Some(pool) = run::pool(deck.solver.threads) else {
+        return INPUT_ERROR;
+    };
     let out = out.unwrap_or_else(|| run::default_directory(path, "-bench"));
     say!(
         "{:<34} {:>9} {:>7} {:>8} {:>7} {:>10} {:>11}  status",
@@ -26,11 +29,18 @@ pub(crate) fn bench(path: &Path, out: Option<PathBuf>) -> u8 {
     let mut results = Vec::new();
     for (name, deck) in algorithms(&deck) {
         let directory = out.join(name.replace([' ', ','], "-"));
+        let Some(directory) = run::taken(Directory::take_for(&directory, path, force)) else {
+            return INPUT_ERROR;
+        };
         // The deck as text, so that it is checked as any other.
         let (deck, problem, findings) = open(&deck.resolved());
         let outcome = match problem {
-            Some(Problem::Plane(s)) => moreau::run::run(*s, &deck, &directory, &mut ()),
-            Some(Problem::Solid(s)) => moreau::run::run(*s, &deck, &directory, &mut ()),
+            Some(Problem::Plane(s)) => {
+                pool.install(|| moreau::run::run(*s, &deck, &directory, &mut ()))
+            }
+            Some(Problem::Solid(s)) => {
+                pool.install(|| moreau::run::run(*s, &deck, &directory, &mut ()))
+            }
             None => {
                 tell!("{}", findings.render(&name, &deck.resolved(), false));
                 return INPUT_ERROR;

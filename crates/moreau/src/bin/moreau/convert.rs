@@ -12,11 +12,19 @@ pub(crate) struct Convert {
     input: PathBuf,
     /// The file to write: .vtu (for ParaView) or .msh (Gmsh 2.2).
     output: PathBuf,
+    /// Overwrite a file that is there.
+    #[arg(long)]
+    force: bool,
 }
 
 impl Convert {
     /// Converts; the exit status.
     pub(crate) fn run(&self) -> u8 {
+        if self.output.exists() && !self.force {
+            let file = self.output.display();
+            tell!("{file} is there already: give another name, or --force to overwrite it");
+            return INPUT_ERROR;
+        }
         // Of the dimension of its cells: in space, unless there are none.
         let done = match read_mesh::<3>(&self.input) {
             Ok(read) => written(&self.output, &read),

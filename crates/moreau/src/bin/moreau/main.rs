@@ -8,6 +8,7 @@ mod convert;
 mod plot;
 mod progress;
 mod run;
+mod signals;
 
 use clap::{Parser, Subcommand};
 use std::path::{Path, PathBuf};
@@ -33,15 +34,16 @@ use tell;
 
 /// Exit status for input that makes no sense.
 const INPUT_ERROR: u8 = 1;
-/// Exit status for a run that did not converge, or was interrupted: what converged is kept.
+/// Exit status for a run that did not converge, was interrupted or could not be written to its end: what
+/// converged is kept.
 const NOT_CONVERGED: u8 = 2;
 /// Exit status for an expectation that failed.
 const UNEXPECTED: u8 = 3;
 
 /// Elastoplastic solids in unilateral contact with Coulomb friction.
 ///
-/// Exit status: 0 done, 1 input error, 2 not converged or interrupted (what converged is kept and
-/// written), 3 an expectation failed.
+/// Exit status: 0 done, 1 input error, 2 not converged, interrupted, or results that cannot be
+/// written (what converged before is kept), 3 an expectation failed.
 #[derive(Debug, Parser)]
 #[command(name = "moreau", version)]
 struct Arguments {
@@ -56,13 +58,17 @@ enum Command {
         /// The deck.
         deck: PathBuf,
     },
-    /// Runs a deck and writes its results. Ctrl-C finishes the increment, and `resume` goes on.
+    /// Runs a deck and writes its results. Ctrl-C ends it within a second, and `resume` goes on from the last
+    /// increment.
     Run {
         /// The deck.
         deck: PathBuf,
         /// Directory of the results, instead of the deck's.
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
+        /// Overwrite results of another deck, and files that no run wrote.
+        #[arg(long)]
+        force: bool,
         #[command(flatten)]
         manner: Manner,
     },
@@ -80,6 +86,9 @@ enum Command {
         /// Directory of the results, instead of the deck's name with `-bench`.
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
+        /// Overwrite results of another deck, and files that no run wrote.
+        #[arg(long)]
+        force: bool,
     },
     /// Converts a mesh file: .msh or .inp to .vtu or .msh.
     Convert(convert::Convert),
@@ -122,6 +131,7 @@ struct Manner {
 }
 
 fn main() -> ExitCode {
+    signals::survive_limits();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -135,9 +145,14 @@ fn main() -> ExitCode {
     };
     let status = match arguments.command {
         Command::Check { deck } => check::check(&deck),
-        Command::Run { deck, out, manner } => run::run(&deck, out, &manner),
+        Command::Run {
+            deck,
+            out,
+            force,
+            manner,
+        } => run::run(&deck, out, force, &manner),
         Command::Resume { directory, manner } => run::resume(&directory, &manner),
-        Command::Bench { deck, out } => bench::bench(&deck, out),
+        Command::Bench { deck, out, force } => bench::bench(&deck, out, force),
         Command::Plot {
             directory,
             field,

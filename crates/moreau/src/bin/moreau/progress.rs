@@ -1,23 +1,22 @@
 //! One line for each increment on stderr, a bar on a terminal, plain lines elsewhere; or every
 //! iteration as JSON on stdout. And the wish to stop.
 
+use super::signals::Signals;
 use super::tell;
 use indicatif::{ProgressBar, ProgressStyle};
-use moreau::run::{Event, Watch};
+use moreau::run::{Event, Resumable, Watch};
 use std::io::{IsTerminal, Write};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Shows a run as it goes on.
 pub(crate) struct Progress {
     bar: Option<ProgressBar>,
     quiet: bool,
     json: bool,
-    stop: Arc<AtomicBool>,
+    signals: Signals,
 }
 
 impl Progress {
-    pub(crate) fn new(quiet: bool, json: bool, stop: Arc<AtomicBool>) -> Self {
+    pub(crate) fn new(quiet: bool, json: bool, signals: Signals) -> Self {
         let quiet = quiet || json;
         let terminal = std::io::stderr().is_terminal();
         let bar = (terminal && !quiet).then(|| {
@@ -30,7 +29,7 @@ impl Progress {
             bar,
             quiet,
             json,
-            stop,
+            signals,
         }
     }
 
@@ -94,7 +93,11 @@ impl Watch for Progress {
         }
     }
 
+    fn reached(&mut self, state: &dyn Fn() -> Resumable) {
+        self.signals.keep(state());
+    }
+
     fn stops(&self) -> bool {
-        self.stop.load(Ordering::SeqCst)
+        self.signals.raised()
     }
 }

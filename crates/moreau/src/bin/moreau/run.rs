@@ -2,22 +2,27 @@
 //! status that says so.
 
 use super::progress::Progress;
+use super::signals::{Signals, interrupted};
 use super::{INPUT_ERROR, Manner, NOT_CONVERGED, UNEXPECTED, folder, read, report, say, tell};
 use moreau::deck::{Deck, Problem, open_in};
-use moreau::run::{Outcome, RunError, RunStatus, Watch, shown};
+use moreau::memory;
+use moreau::run::{Directory, Outcome, RunError, RunStatus, Watch, shown};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Runs a deck; the exit status.
-pub(crate) fn run(path: &Path, out: Option<PathBuf>, manner: &Manner) -> u8 {
+pub(crate) fn run(path: &Path, out: Option<PathBuf>, force: bool, manner: &Manner) -> u8 {
     let Some((deck, problem)) = problem(path) else {
         return INPUT_ERROR;
     };
     let given = deck.directory.as_ref().map(PathBuf::from);
     let directory = out.or(given).unwrap_or_else(|| default_directory(path, ""));
-    let (deck, to) = (&deck, directory.as_path());
-    go(deck, to, manner, move |watch| match problem {
+    let Some(to) = taken(Directory::take_for(&directory, path, force)) else {
+        return INPUT_ERROR;
+    };
+    let (deck, to) = (&deck, &to);
+    go(deck, &directory, manner, move |watch| match problem {
         Problem::Plane(setup) => moreau::run::run(*setup, deck, to, watch),
         Problem::Solid(setup) => moreau::run::run(*setup, deck, to, watch),
     })
@@ -28,11 +33,31 @@ pub(crate) fn resume(directory: &Path, manner: &Manner) -> u8 {
     let Some((deck, problem)) = results(directory) else {
         return INPUT_ERROR;
     };
-    let deck = &deck;
+    let Some(at) = taken(Directory::take(directory)) else {
+        return INPUT_ERROR;
+    };
+    let (deck, at) = (&deck, &at);
     go(deck, directory, manner, move |watch| match problem {
-        Problem::Plane(setup) => moreau::run::resume(*setup, deck, directory, watch),
-        Problem::Solid(setup) => moreau::run::resume(*setup, deck, directory, watch),
+        Problem::Plane(setup) => moreau::run::resume(*setup, deck, at, watch),
+        Problem::Solid(setup) => moreau::run::resume(*setup, deck, at, watch),
     })
+}
+
+/// A directory to write to; why not is printed.
+pub(crate) fn taken(directory: Result<Directory, RunError>) -> Option<Directory> {
+    match directory {
+        Ok(directory) => {
+            if !directory.is_exclusive() {
+                let place = directory.path().display();
+                tell!("warning: {place} cannot be locked there: let no other run write to it");
+            }
+            Some(directory)
+        }
+        Err(error) => {
+            tell!("{error}");
+            None
+        }
+    }
 }
 
 /// The problem of a directory of results; what is wrong with it is printed.
@@ -62,39 +87,32 @@ fn go(
     manner: &Manner,
     solve: impl FnOnce(&mut dyn Watch) -> Result<Outcome, RunError> + Send,
 ) -> u8 {
-    let threads = manner.threads.unwrap_or(deck.solver.threads);
-    let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool,
-        Err(error) => {
-            tell!("cannot start {threads} threads: {error}");
-            return INPUT_ERROR;
-        }
+    let Some(pool) = pool(manner.threads.unwrap_or(deck.solver.threads)) else {
+        return INPUT_ERROR;
     };
-    let mut progress = Progress::new(manner.quiet, manner.json_log, stopping());
+    let mut progress = Progress::new(manner.quiet, manner.json_log, Signals::listen());
     let outcome = pool.install(|| solve(&mut progress));
     progress.end();
     match outcome {
         Ok(outcome) => conclude(&outcome, manner, directory),
         Err(error) => {
             tell!("{error}");
-            INPUT_ERROR
+            match error {
+                // What converged before is there.
+                RunError::Write { .. } => NOT_CONVERGED,
+                _ => INPUT_ERROR,
+            }
         }
     }
 }
 
-/// A flag that the first Ctrl-C raises; the second ends the process.
-fn stopping() -> Arc<AtomicBool> {
-    let flag = Arc::new(AtomicBool::new(false));
-    let raised = flag.clone();
-    let handler = move || {
-        if raised.swap(true, Ordering::SeqCst) {
-            std::process::exit(i32::from(NOT_CONVERGED));
-        }
-        tell!("stopping after this increment; once more to stop now");
-    };
-    // Without a handler Ctrl-C ends the process, and checkpoints are there all the same.
-    let _ = ctrlc::set_handler(handler);
-    flag
+/// Threads to work with, this one among them; why there are none is printed.
+pub(crate) fn pool(wanted: usize) -> Option<ThreadPool> {
+    let told = |error: &dyn Display| tell!("cannot start threads: {error}");
+    let threads = memory::threads(wanted).map_err(|e| told(&e)).ok()?;
+    let builder = ThreadPoolBuilder::new().num_threads(threads);
+    let pool = builder.use_current_thread().build();
+    pool.map_err(|e| told(&e)).ok()
 }
 
 fn conclude(outcome: &Outcome, manner: &Manner, directory: &Path) -> u8 {
@@ -118,7 +136,7 @@ fn conclude(outcome: &Outcome, manner: &Manner, directory: &Path) -> u8 {
             NOT_CONVERGED
         }
         RunStatus::Interrupted(increment) => {
-            tell!("interrupted after increment {increment}; to go on: moreau resume \"{place}\"");
+            tell!("{}", interrupted(increment, directory));
             NOT_CONVERGED
         }
         RunStatus::Done if manner.verify && !outcome.as_expected() => {
