@@ -104,7 +104,7 @@ impl<const D: usize> Driver<D> {
             let along = |node: usize| {
                 SVector::<f64, D>::from_fn(|i, _| if is_free(D * node + i) { n[i] } else { 0.0 })
             };
-            if p.own().into_iter().any(|(a, _)| along(a).norm() > 0.0) {
+            if p.own.iter().any(|&(a, _)| along(a).norm() > 0.0) {
                 continue;
             }
             let way = k.u[0] / along(self.tool_node(tool)).norm();

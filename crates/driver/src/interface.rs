@@ -3,7 +3,7 @@
 use crate::ModelError;
 use moreau_contact::{Obstacle, frame};
 use moreau_laws::{Friction, Local};
-use moreau_mesh::{Coupling, Facet, FacetKind, Mesh, NodeKind, Share, nearest};
+use moreau_mesh::{Coupling, NodeKind, nearest};
 use nalgebra::{SMatrix, SVector};
 use std::collections::BTreeMap;
 
@@ -28,7 +28,7 @@ pub(crate) fn tool_index<const D: usize>(
 }
 
 /// A node that may touch what is opposite.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct ContactPoint<const D: usize> {
     pub(crate) node: usize,
     /// The tool opposite; `None` for the surface of a deformable body.
@@ -44,72 +44,38 @@ pub(crate) struct ContactPoint<const D: usize> {
     /// Share of the surface \[mm²\], to turn a force into a traction.
     pub(crate) area: f64,
     pub(crate) kind: NodeKind,
-    /// The corners of the edge that the node halves, where the edge carries a changed basis.
-    pub(crate) edge: Option<[usize; 2]>,
+    /// Nodes whose displacements, with these weights, are that of the point; they add up to 1.
+    pub(crate) own: Vec<(usize, f64)>,
 }
 
-/// Part α of the shape function of a mid-side node that goes to either corner of its edge.
-///
-/// The integrals of the shape functions over the faces of serendipity hexahedra are negative at
-/// corners, −A/12, and those of quadratic tetrahedra zero: no law of unilateral contact can hold
-/// there node by node. The basis Ñ_c = N_c + α Σ N_m, Ñ_m = (1 − 2α) N_m spans the same functions,
-/// and its integrals are A/20 and A/5, or 2A/15 and A/5. The displacement of a mid-side point is
-/// then ũ_m = (u_m − α Σ u_c) / (1 − 2α), and that of a corner its own.
-///
-/// Source: A. Popp, B. Wohlmuth, M. Gee and W. Wall, *SIAM Journal on Scientific Computing* 34
-/// (2012) B421-B446.
-const TO_CORNERS: f64 = 0.2;
-
-/// The shares of the nodes of a surface, in the changed basis on the edges of its facets that need
-/// one; with the corners of these edges.
-pub(crate) fn positive_shares<const D: usize>(
-    mesh: &Mesh<D>,
-    facets: &[Facet],
-    mut shares: Vec<Share<D>>,
-) -> Vec<(Share<D>, Option<[usize; 2]>)> {
-    let mut edges: BTreeMap<usize, [usize; 2]> = BTreeMap::new();
-    for &facet in facets {
-        let kind = mesh.facet_kind(facet);
-        if matches!(kind, FacetKind::Tri6 | FacetKind::Quad8) {
-            let nodes: Vec<usize> = mesh.facet_nodes(facet).collect();
-            let (corners, midsides) = nodes.split_at(kind.corner_count());
-            for (k, &midside) in midsides.iter().enumerate() {
-                edges.insert(midside, [corners[k], corners[(k + 1) % corners.len()]]);
-            }
-        }
-    }
-    let index: BTreeMap<usize, usize> = shares.iter().map(|s| s.node).zip(0..).collect();
-    for (midside, corners) in &edges {
-        let Some(&m) = index.get(midside) else {
-            continue;
-        };
-        let given = shares[m].area * TO_CORNERS;
-        shares[m].area -= 2.0 * given;
-        for c in corners.iter().filter_map(|c| index.get(c)) {
-            shares[*c].area += given;
-        }
-    }
-    let edge = |share: Share<D>| (share, edges.get(&share.node).copied());
-    shares.into_iter().map(edge).collect()
-}
+/// Least cosine between normals of a tool over an edge that is one smooth surface there.
+const SMOOTH: f64 = 0.9;
 
 impl<const D: usize> ContactPoint<D> {
-    /// Nodes whose displacements, with these weights, are that of the point; they add up to 1.
-    pub(crate) fn own(&self) -> Vec<(usize, f64)> {
-        let rest = 1.0 - 2.0 * TO_CORNERS;
-        match self.edge {
-            None => vec![(self.node, 1.0)],
-            Some([a, b]) => vec![
-                (self.node, 1.0 / rest),
-                (a, -TO_CORNERS / rest),
-                (b, -TO_CORNERS / rest),
-            ],
+    /// Its gap on a tool, from the places of the nodes relative to that \[mm\].
+    ///
+    /// In a changed basis the gaps of the nodes have the weights that their displacements have, so that
+    /// no node is inside a curved tool where the gaps of all points are zero: as far as the tool is one
+    /// smooth surface over the edge. Beside its end, or where it is smaller, the gap is that at the point.
+    pub(crate) fn gap(
+        &self,
+        obstacle: &dyn Obstacle<D>,
+        x: impl Fn(usize) -> SVector<f64, D>,
+    ) -> f64 {
+        let at: SVector<f64, D> = self.own.iter().map(|&(a, w)| x(a) * w).sum();
+        let here = obstacle.distance(&at);
+        let n = obstacle.normal(&at);
+        let mut weighted = 0.0;
+        for &(a, w) in self.own.iter().filter(|_| self.own.len() > 1) {
+            let (way, distance, m) = (x(a) - at, obstacle.distance(&x(a)), obstacle.normal(&x(a)));
+            // A smooth surface is between its tangents at both ends.
+            let off = distance - here - 0.5 * (n + m).dot(&way);
+            if n.dot(&m) < SMOOTH || off.abs() > 0.25 * (n - m).norm() * way.norm() {
+                return here - self.offset;
+            }
+            weighted += w * (distance - here);
         }
-    }
-
-    /// Its place, from those of the nodes \[mm\].
-    pub(crate) fn place(&self, x: impl Fn(usize) -> SVector<f64, D>) -> SVector<f64, D> {
-        self.own().into_iter().map(|(a, w)| x(a) * w).sum()
+        here + weighted - self.offset
     }
 }
 
@@ -132,7 +98,7 @@ impl<const D: usize> Footing<D> {
     /// On a tool, a body of the one node `tool`.
     pub(crate) fn on_tool(point: &ContactPoint<D>, tool: usize) -> Self {
         Self {
-            own: point.own(),
+            own: point.own.clone(),
             opposite: vec![(tool, 1.0)],
             area: point.area,
             ..Self::default()
@@ -359,6 +325,7 @@ fn frame_in<const D: usize>(e: &SVector<f64, D>, free: [bool; D]) -> SMatrix<f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use moreau_contact::Ball;
     use moreau_laws::{AnisotropicCoulomb, Coulomb};
 
     fn point<const D: usize>() -> ContactPoint<D> {
@@ -371,7 +338,7 @@ mod tests {
             offset: 0.0,
             area: 1.0,
             kind: NodeKind::Corner,
-            edge: None,
+            own: vec![(0, 1.0)],
         }
     }
 
@@ -411,6 +378,23 @@ mod tests {
         assert!((k.u[1].abs() - 0.2).abs() < 1e-15 && k.u[2] == 0.0);
     }
 
+    /// Three nodes of an edge on a cylinder have no gap, nor has the point of the mid-side; where a tool is
+    /// smaller than the edge the gaps of the ends say nothing about it.
+    #[test]
+    fn gaps_have_the_weights_of_the_basis_where_a_tool_is_smooth() {
+        let (corner, rest) = (-0.2 / 0.6, 1.0 / 0.6);
+        let point = ContactPoint {
+            own: vec![(0, rest), (1, corner), (2, corner)],
+            ..point()
+        };
+        let x = [0.5, 0.0, 1.0];
+        let large = Ball::new([0.0, -10.0], 10.0).expect("a ball");
+        let on_it = |a: usize| SVector::from([x[a], f64::sqrt(100.0 - x[a] * x[a]) - 10.0]);
+        assert!(point.gap(&large, on_it).abs() < 1e-14);
+        let small = Ball::new([0.5, -0.3], 0.3).expect("a ball");
+        assert!(point.gap(&small, |a| SVector::from([x[a], 0.0])).abs() < 1e-15);
+    }
+
     /// The first coefficient along the axis on an inclined surface; along the one tangent that a plane
     /// of symmetry leaves, what the ellipse has there.
     #[test]
@@ -437,7 +421,7 @@ mod tests {
             let (s, c) = degrees.to_radians().sin_cos();
             let point = ContactPoint {
                 axis: Some(SVector::<f64, 3>::new(c, s, 0.0)),
-                ..point
+                ..point.clone()
             };
             let held_across = [true, false, true];
             let k = Kinematics::new(&point, &floor, 0.0, &SVector::zeros(), held_across);

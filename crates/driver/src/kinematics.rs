@@ -52,14 +52,14 @@ impl<const D: usize> Driver<D> {
             };
             let x = footing.relative(now);
             let Some(corner) = obstacle.corner(&x, AHEAD * self.mesh.size()) else {
-                let gap = obstacle.distance(&x) - p.offset;
+                let gap = p.gap(obstacle.as_ref(), |a| now(a) - tool);
                 let kinematics = Kinematics::new(p, &obstacle.normal(&x), gap, &slip, free);
                 return kinematics.between_forces(footing.area);
             };
             // Any normal of the cone: friction about its axis that holds as far as the cone reaches.
             let gap = corner.axis.dot(&(x - corner.position)) - p.offset;
             let law = p.law.at_corner(corner.half_angle);
-            let blunt = ContactPoint { law, ..*p };
+            let blunt = ContactPoint { law, ..p.clone() };
             let mut kinematics = Kinematics::new(&blunt, &corner.axis, gap, &slip, free);
             kinematics.at_corner = true;
             kinematics

@@ -72,10 +72,9 @@ impl<const D: usize> Driver<D> {
         let at = self.displacement(self.tool_node(tool)) + motion;
         let obstacle = &self.tools[tool].obstacle;
         let points = self.points.iter().enumerate();
-        let gaps = points.filter(|(_, p)| p.tool == Some(tool)).map(|(k, p)| {
-            let x = p.place(|a| self.position(a)) - at;
-            (obstacle.distance(&x) - p.offset, k)
-        });
+        let gaps = points
+            .filter(|(_, p)| p.tool == Some(tool))
+            .map(|(k, p)| (p.gap(obstacle.as_ref(), |a| self.position(a) - at), k));
         gaps.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 

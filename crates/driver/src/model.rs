@@ -3,13 +3,13 @@
 use crate::ModelError;
 use crate::block::{Block, SolidBlock};
 use crate::cells::{Cells, ElementCells};
-use crate::interface::{ALONG_NORMAL, ContactPoint, Tool, positive_shares, tool_index};
+use crate::interface::{ALONG_NORMAL, ContactPoint, Tool, tool_index};
 use moreau_contact::Obstacle;
 use moreau_laws::{BulkLaw, Friction};
 use moreau_mesh::{
     Axisymmetric, CellKind, Coupling, Element, Facet, Hex8, Hex20, Hex27, Hypothesis, Integration,
-    Mesh, Pairing, PlaneStrain, Quad4, Quad8, Quad9, Share, Solid, Tet4, Tet10, Tri3, Tri6,
-    nearest,
+    Mesh, Pairing, PlaneStrain, PositiveShare, Quad4, Quad8, Quad9, Share, Solid, Tet4, Tet10,
+    Tri3, Tri6, nearest,
 };
 use nalgebra::SVector;
 use std::collections::BTreeMap;
@@ -315,12 +315,12 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         tool: Option<usize>,
     ) -> Result<(), ModelError> {
         let facets = self.mesh.facet_group(surface)?;
-        let shares = self.mesh.facet_shares(facets, &self.hypothesis);
+        let shares = self.mesh.positive_shares(facets, &self.hypothesis);
         let meets = |p: &&ContactPoint<D>| self.contacts[p.contact].opposite == opposite;
         let taken: BTreeMap<usize, usize> = (self.points.iter().filter(meets))
             .map(|p| (p.node, p.contact))
             .collect();
-        for (share, edge) in positive_shares(&self.mesh, facets, shares) {
+        for PositiveShare { share, own } in shares {
             if let Some(&other) = taken.get(&share.node) {
                 return Err(ModelError::SharedContactNode {
                     node: share.node,
@@ -339,7 +339,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 offset: 0.0,
                 area: share.area,
                 kind: share.kind,
-                edge,
+                own,
             });
         }
         Ok(())
@@ -419,9 +419,9 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         }
         let last = self.contacts.len();
         for point in self.points.iter_mut().filter(|p| p.contact + 1 == last) {
-            let x = point.place(|a| self.mesh.nodes()[a].into());
             let Some(tool) = point.tool else { continue };
-            let gap = self.tools[tool].obstacle.distance(&x) - point.offset;
+            let obstacle = self.tools[tool].obstacle.as_ref();
+            let gap = point.gap(obstacle, |a| self.mesh.nodes()[a].into());
             if gap.abs() <= tolerance {
                 point.offset += gap;
             }

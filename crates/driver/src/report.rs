@@ -142,8 +142,10 @@ pub struct ContactRecord<const D: usize> {
     /// Force on the body in space \[N\].
     pub force: SVector<f64, D>,
     /// Consistent share of the surface \[mm²\], between bodies that of the overlap; none at a node
-    /// that is held, whose neighbours have it. On faces of serendipity hexahedra and quadratic tetrahedra shares and forces are
-    /// those of a basis with positive integrals, not of the nodes.
+    /// that is held, whose neighbours have it. On faces of serendipity
+    /// hexahedra and quadratic tetrahedra, and on quadratic edges with an end on the axis, shares,
+    /// forces, gaps and slips are those of a basis with positive integrals, not of the nodes: see
+    /// [`PositiveShare`](moreau_mesh::PositiveShare).
     pub area: f64,
     /// Status; for a point held along the surface, `Open` or `Stick`.
     pub status: Status,

@@ -3,9 +3,12 @@
 
 mod groups;
 mod integrals;
+mod positive;
 mod topology;
 
 pub use integrals::{NodeKind, Share};
+pub(crate) use positive::Change;
+pub use positive::PositiveShare;
 pub(crate) use topology::facet_key;
 
 use crate::geometry::{bounds, diagonal};

@@ -68,7 +68,10 @@ impl<const D: usize> Mesh<D> {
         hypothesis: &H,
     ) -> Vec<Coupling<D>> {
         let faces = |facets: &[Facet]| -> Vec<Face<D>> {
-            let face = |&f: &Facet| Face::new(self.facet_kind(f), self.facet_nodes(f), positions);
+            let face = |&f: &Facet| {
+                let change = self.change(f, hypothesis);
+                Face::new(self.facet_kind(f), self.facet_nodes(f), positions, change)
+            };
             facets.iter().map(face).collect()
         };
         let (own, other) = (faces(surface), faces(opposite));
@@ -118,17 +121,23 @@ impl<const D: usize> Sides<'_, D> {
         self.tree.within(&face::hull(ends, 0.1 * depth))
     }
 
-    /// The point of the other surface opposite to every node along its normal.
+    /// The point of the other surface opposite to that of every node along its normal.
     fn node_to_surface(&self, measure: &dyn Fn(&[f64; D]) -> f64) -> Vec<Coupling<D>> {
         let mut shares: BTreeMap<usize, (f64, NodeKind, f64)> = BTreeMap::new();
+        let mut points: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new();
         for face in self.own {
+            for (k, &node) in face.nodes.iter().enumerate() {
+                let own = face.change.own(k).into_iter();
+                points.insert(node, own.map(|(c, w)| (face.nodes[c], w)).collect());
+            }
             for sample in facet_samples::<D>(face.kind) {
                 let area = sample.area_vector(&face.x);
                 let d_s = sample.weight * dot(&area, &area).sqrt();
                 let d_s = d_s * measure(&sample.position(&face.x));
+                let shape = face.change.apply(&face::filled(&sample.shape));
                 for (k, &node) in face.nodes.iter().enumerate() {
                     let share = shares.entry(node).or_insert((0.0, face.node_kind(k), 0.0));
-                    share.0 += sample.shape[k] * d_s;
+                    share.0 += shape[k] * d_s;
                     share.2 = face.size().max(share.2);
                 }
             }
@@ -140,7 +149,9 @@ impl<const D: usize> Sides<'_, D> {
             .collect();
         let mut couplings = Vec::new();
         for (&node, &(area, kind, size)) in &shares {
-            let (x, n) = (position[&node], self.normals[&node]);
+            let own = points.remove(&node).unwrap_or_default();
+            let place = |i: usize| own.iter().map(|(a, w)| w * position[a][i]).sum();
+            let (x, n): ([f64; D], _) = (std::array::from_fn(place), self.normals[&node]);
             let mut nearest: Option<(f64, usize, Values)> = None;
             for k in self.candidates(&[x], &[n], size, self.reach) {
                 let other = &self.other[k];
@@ -158,7 +169,7 @@ impl<const D: usize> Sides<'_, D> {
                 kind,
                 area,
                 normal: n.map(|v| -v),
-                own: vec![(node, 1.0)],
+                own,
                 opposite: self.other[k].nodes.iter().copied().zip(n_b).collect(),
             });
         }

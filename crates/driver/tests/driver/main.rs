@@ -1,6 +1,7 @@
 //! Contracts of the driver's public items.
 
 mod anisotropic;
+mod axis;
 mod block;
 mod coarse;
 mod collapse;

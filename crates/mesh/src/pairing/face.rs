@@ -2,7 +2,7 @@
 //! its cell.
 
 use crate::geometry::{basis, bounds, cofactors, diagonal, dot, interpolate};
-use crate::mesh::NodeKind;
+use crate::mesh::{Change, NodeKind};
 use crate::{Element, FacetKind, Line2, Line3, Quad4, Quad8, Quad9, Tri3, Tri6};
 
 /// A box, by its least and greatest corner.
@@ -10,9 +10,6 @@ pub(super) type Box<const D: usize> = ([f64; D], [f64; D]);
 
 /// Most nodes of a facet.
 const NODES: usize = 9;
-
-/// The part of a middle's shape function that each corner beside it takes.
-const LIFT: f64 = 0.2;
 
 /// Values of all nodes of a facet; those of nodes that are not there are zero.
 pub(super) type Values = [f64; NODES];
@@ -29,6 +26,13 @@ pub(super) struct Face<const D: usize> {
     pub(super) kind: FacetKind,
     pub(super) nodes: Vec<usize>,
     pub(super) x: Vec<[f64; D]>,
+    /// From the N_a to the Ñ_a of positive integrals, to which multipliers are dual.
+    pub(super) change: Change,
+}
+
+/// Values of the nodes that there are.
+pub(super) fn filled(values: &[f64]) -> Values {
+    std::array::from_fn(|a| values.get(a).copied().unwrap_or(0.0))
 }
 
 impl<const D: usize> Face<D> {
@@ -36,12 +40,14 @@ impl<const D: usize> Face<D> {
         kind: FacetKind,
         nodes: impl Iterator<Item = usize>,
         positions: &[[f64; D]],
+        change: Change,
     ) -> Self {
         let nodes: Vec<usize> = nodes.collect();
         Self {
             kind,
             x: nodes.iter().map(|&a| positions[a]).collect(),
             nodes,
+            change,
         }
     }
 
@@ -82,40 +88,15 @@ impl<const D: usize> Face<D> {
 
     /// Shape functions N_a.
     pub(super) fn shape(&self, xi: Xi) -> Values {
-        fn filled<const N: usize>(values: [f64; N]) -> Values {
-            std::array::from_fn(|a| values.get(a).copied().unwrap_or(0.0))
-        }
         match self.kind {
-            FacetKind::Line2 => filled(Line2::shape([xi[0]])),
-            FacetKind::Line3 => filled(Line3::shape([xi[0]])),
-            FacetKind::Tri3 => filled(Tri3::shape(xi)),
-            FacetKind::Tri6 => filled(Tri6::shape(xi)),
-            FacetKind::Quad4 => filled(Quad4::shape(xi)),
-            FacetKind::Quad8 => filled(Quad8::shape(xi)),
-            FacetKind::Quad9 => filled(Quad9::shape(xi)),
+            FacetKind::Line2 => filled(&Line2::shape([xi[0]])),
+            FacetKind::Line3 => filled(&Line3::shape([xi[0]])),
+            FacetKind::Tri3 => filled(&Tri3::shape(xi)),
+            FacetKind::Tri6 => filled(&Tri6::shape(xi)),
+            FacetKind::Quad4 => filled(&Quad4::shape(xi)),
+            FacetKind::Quad8 => filled(&Quad8::shape(xi)),
+            FacetKind::Quad9 => filled(&Quad9::shape(xi)),
         }
-    }
-
-    /// Whether corners have a negative share of the face, or none: then Ñ is not N.
-    pub(super) fn is_lifted(&self) -> bool {
-        matches!(self.kind, FacetKind::Tri6 | FacetKind::Quad8)
-    }
-
-    /// Combinations Ñ_a of the shape functions that all have a positive share, sum to 1 and span the
-    /// same: corners take a part of the middles beside them, as in A. Popp, B. I. Wohlmuth,
-    /// M. W. Gee and W. A. Wall, *SIAM J. Sci. Comput.* 34 (2012).
-    pub(super) fn lifted(&self, shape: &[f64]) -> Values {
-        let mut lifted = std::array::from_fn(|a| shape.get(a).copied().unwrap_or(0.0));
-        if self.is_lifted() {
-            let corners = self.kind.corner_count();
-            for k in 0..corners {
-                let middle = shape[corners + k];
-                lifted[k] += LIFT * middle;
-                lifted[(k + 1) % corners] += LIFT * middle;
-                lifted[corners + k] -= 2.0 * LIFT * middle;
-            }
-        }
-        lifted
     }
 
     /// The vectors ∂x/∂ξ; the first is none, and its cofactor the area vector.

@@ -34,7 +34,7 @@ pub(super) struct Sample {
     /// N_c of the facet.
     pub(super) shape: Values,
     /// Its Ñ_c, to which multipliers are dual.
-    pub(super) lifted: Values,
+    pub(super) changed: Values,
     /// Weight times area times the measure of the hypothesis.
     pub(super) d_s: f64,
     /// The facet opposite.
@@ -68,7 +68,7 @@ impl<const D: usize> Sides<'_, D> {
             };
             self.integrate(face, &overlap, &mut sums);
         }
-        // A corner on the axis of symmetry has no share of the surface.
+        // What lies on the axis of symmetry is no surface.
         let largest = sums.values().map(|s| s.area).fold(0.0, f64::max);
         sums.retain(|_, s| s.area > SLIVER * largest);
         let coupling = |(node, sums): (usize, Sums)| {
@@ -105,7 +105,8 @@ impl<const D: usize> Sides<'_, D> {
             });
             sums.area += phi.iter().sum::<f64>();
             // Those of the other nodes with a multiplier vanish where Ñ is N.
-            let beside = |c: &usize| *c == a || face.is_lifted() || !multipliers.nodes.contains(c);
+            let beside =
+                |c: &usize| *c == a || !face.change.is_none() || !multipliers.nodes.contains(c);
             for c in (0..count).filter(beside) {
                 let products = overlap.samples.iter().zip(phi).map(|(s, p)| p * s.shape[c]);
                 *sums.own.entry(face.nodes[c]).or_insert(0.0) += products.sum::<f64>();
@@ -128,7 +129,7 @@ impl Multipliers {
     /// which the overlap is far, is left to the others: a force would push nowhere, or pull.
     fn new(overlap: &Overlap, count: usize) -> Option<Self> {
         let samples = &overlap.samples;
-        let share = |c: usize| samples.iter().map(|s| s.d_s * s.lifted[c]).sum::<f64>();
+        let share = |c: usize| samples.iter().map(|s| s.d_s * s.changed[c]).sum::<f64>();
         let by_share = |a: &usize, b: &usize| share(*a).total_cmp(&share(*b));
         let whole: f64 = samples.iter().map(|s| s.d_s).sum();
         let pushes = |phi: &Vec<f64>| phi.iter().sum::<f64>() > LEAST * whole;
@@ -157,15 +158,15 @@ impl Multipliers {
 fn dual(samples: &[Sample], nodes: &[usize]) -> Option<Vec<Vec<f64>>> {
     let order = nodes.len();
     let spanning = |s: &Sample, row: usize| {
-        let sum: f64 = nodes.iter().map(|&c| s.lifted[c]).sum();
-        s.lifted[nodes[row]] + (1.0 - sum) / order as f64
+        let sum: f64 = nodes.iter().map(|&c| s.changed[c]).sum();
+        s.changed[nodes[row]] + (1.0 - sum) / order as f64
     };
     let mut moments = DMatrix::<f64>::zeros(order, order);
     for s in samples {
         for c in 0..order {
             let weight = s.d_s * spanning(s, c);
             for d in 0..order {
-                moments[(c, d)] += weight * s.lifted[nodes[d]];
+                moments[(c, d)] += weight * s.changed[nodes[d]];
             }
         }
     }

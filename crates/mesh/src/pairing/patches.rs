@@ -130,7 +130,7 @@ impl<const D: usize> Sides<'_, D> {
                 let tilt = dot(&outward, &outward).sqrt() / dot(&outward, &view.normal);
                 samples.push(Sample {
                     shape,
-                    lifted: face.lifted(&shape),
+                    changed: face.change.apply(&shape),
                     d_s: point.weight * twice * tilt * measure(&face.at(xi)),
                     other: patch.other,
                     opposite: other.shape(eta),

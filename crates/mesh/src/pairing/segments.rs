@@ -114,7 +114,7 @@ impl<const D: usize> Sides<'_, D> {
                 };
                 samples.push(Sample {
                     shape,
-                    lifted: edge.lifted(&shape),
+                    changed: edge.change.apply(&shape),
                     d_s: point.weight * half * edge.stretch(xi) * measure(&x),
                     other: segment.other,
                     opposite: other.shape(eta),

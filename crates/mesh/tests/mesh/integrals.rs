@@ -194,3 +194,82 @@ fn a_serendipity_cell_shares_its_volume_with_negative_corners() {
         );
     }
 }
+
+/// Of bodies that need another basis where they touch: faces of hex20 and tet10, and quadratic edges
+/// with an end on the axis.
+#[test]
+fn positive_shares_are_positive_and_carry_the_load_of_a_pressure() {
+    fn check<const D: usize, H: Hypothesis<D>>(mesh: &Mesh<D>, hypothesis: &H) {
+        let kind = mesh.kind(0);
+        let facets = mesh.facet_group("b.bottom").expect("named");
+        let consistent = mesh.facet_shares(facets, hypothesis);
+        let positive = mesh.positive_shares(facets, hypothesis);
+        assert!(
+            positive
+                .iter()
+                .map(|p| p.share.node)
+                .eq(consistent.iter().map(|s| s.node))
+        );
+        let whole: f64 = consistent.iter().map(|s| s.area).sum();
+        let mut nodal = vec![0.0; mesh.nodes().len()];
+        for p in &positive {
+            assert!(p.share.area > 1e-3 * whole, "{kind}: {p:?}");
+            assert_abs_diff_eq!(p.share.normal[1], -p.share.area, epsilon = 1e2 * ROUND_OFF);
+            let sum = |x: &dyn Fn(usize) -> f64| p.own.iter().map(|&(a, w)| w * x(a)).sum::<f64>();
+            assert_abs_diff_eq!(sum(&|_| 1.0), 1.0, epsilon = ROUND_OFF);
+            for i in 0..D {
+                let x = sum(&|a| mesh.nodes()[a][i]);
+                assert_abs_diff_eq!(x, mesh.nodes()[p.share.node][i], epsilon = 10.0 * ROUND_OFF);
+            }
+            p.own
+                .iter()
+                .for_each(|&(a, w)| nodal[a] += w * p.share.area);
+        }
+        for share in consistent {
+            assert_abs_diff_eq!(nodal[share.node], share.area, epsilon = 1e-13 * whole);
+        }
+    }
+    let lines = uniform(0.0, 6.0, 3);
+    for kind in kinds(2) {
+        check(
+            &block2("b", kind, &lines, &lines).expect("valid"),
+            &Axisymmetric,
+        );
+        // On both sides of the axis: its node is the second end of one edge, the first of another.
+        let turned = block2("b", kind, &lines, &lines)
+            .and_then(|m| m.map(|[x, y]| [6.0 - x, 6.0 - y]))
+            .expect("valid");
+        let top = turned.facet_group("b.top").expect("named");
+        let axis = turned.positive_shares(top, &Axisymmetric);
+        assert!(axis.iter().all(|p| p.share.area > 0.0), "{kind}");
+    }
+    for kind in kinds(3) {
+        check(
+            &block3("b", kind, &lines, &lines, &lines).expect("valid"),
+            &Solid,
+        );
+    }
+}
+
+/// ∫ N_a 2πr dr from the axis to h, A = πh², with a fifth of the middle at either end.
+#[test]
+fn a_quadratic_edge_at_the_axis_shares_as_its_changed_basis_does() {
+    for kind in [CellKind::Tri6, CellKind::Quad8, CellKind::Quad9] {
+        let mesh = block2("b", kind, &uniform(0.0, 6.0, 3), &[0.0, 1.0]).expect("valid");
+        let facets = mesh.facet_group("b.bottom").expect("named");
+        let area = PI * 4.0;
+        // The edge beside has shares of its own: r from h to 2h.
+        let edge = [2.0 / 15.0, 2.0 / 5.0, 7.0 / 15.0 + 1.0 / 3.0];
+        let positive = mesh.positive_shares(facets, &Axisymmetric);
+        for (p, part) in positive.iter().zip(edge) {
+            assert_relative_eq!(p.share.area, part * area, max_relative = 1e-13);
+        }
+        // Elsewhere nothing is changed, nor where there is no axis.
+        let consistent = mesh.facet_shares(facets, &Axisymmetric);
+        for (p, share) in positive.iter().zip(consistent).skip(3) {
+            assert_eq!((p.share, p.own.len()), (share, 1));
+        }
+        let plane = mesh.positive_shares(facets, &PlaneStrain::default());
+        assert!(plane.iter().all(|p| p.own == [(p.share.node, 1.0)]));
+    }
+}

@@ -1,6 +1,8 @@
 //! Pairing of surfaces that do not match, straight and curved, wholly and partly covered.
 
-use moreau_mesh::{CellKind, Coupling, Mesh, Pairing, PlaneStrain, block2, uniform};
+use moreau_mesh::{
+    Axisymmetric, CellKind, Coupling, Hypothesis, Mesh, Pairing, PlaneStrain, block2, uniform,
+};
 use std::collections::BTreeMap;
 
 /// Two blocks, the upper on the lower, mapped by f.
@@ -20,12 +22,20 @@ fn stack(
 }
 
 fn pair(mesh: &Mesh<2>, pairing: Pairing) -> Vec<Coupling<2>> {
+    pair_under(mesh, pairing, &PlaneStrain::default())
+}
+
+fn pair_under(
+    mesh: &Mesh<2>,
+    pairing: Pairing,
+    hypothesis: &impl Hypothesis<2>,
+) -> Vec<Coupling<2>> {
     let group = |name| mesh.facet_group(name).expect("named");
     mesh.couplings(
         mesh.nodes(),
         (group("upper.bottom"), group("lower.top")),
         pairing,
-        &PlaneStrain::default(),
+        hypothesis,
     )
 }
 
@@ -81,6 +91,43 @@ fn linear_fields_and_a_uniform_pressure_pass_between_meshes_that_do_not_match() 
                 for share in mesh.facet_shares(facets, &PlaneStrain::default()) {
                     let found = on_lower[&share.node];
                     assert!((found - share.area).abs() < 1e-12, "{found} {}", share.area);
+                }
+            }
+        }
+    }
+}
+
+/// Every node of a disc on another has a share, that on the axis as well, and the other disc feels the
+/// consistent load of a pressure.
+#[test]
+fn linear_fields_and_a_uniform_pressure_pass_at_the_axis() {
+    for kinds in KINDS {
+        for kinds in [kinds, [kinds[1], kinds[0]]] {
+            for lower in [4, 3, 7] {
+                let mesh = stack(kinds, (0.0, 6.0, 4), (0.0, 6.0, lower), |x| x);
+                let own = mesh.node_group("upper.bottom").expect("named");
+                let facets = mesh.facet_group("upper.bottom").expect("named");
+                let shares = mesh.positive_shares(facets, &Axisymmetric);
+                for pairing in [Pairing::Mortar, Pairing::NodeToSurface] {
+                    let what = format!("{kinds:?} {lower} {pairing:?}");
+                    let couplings = pair_under(&mesh, pairing, &Axisymmetric);
+                    assert!(couplings.iter().map(|c| &c.node).eq(&own), "{what}");
+                    let x = |a: usize| mesh.nodes()[a][0];
+                    let mut on_lower: BTreeMap<usize, f64> = BTreeMap::new();
+                    for (c, p) in couplings.iter().zip(&shares) {
+                        assert!((c.area / p.share.area - 1.0).abs() < 1e-11, "{what}");
+                        let apart = sum(&c.own, x) - sum(&c.opposite, x);
+                        assert!(apart.abs() < 1e-11, "{what}: {apart}");
+                        for &(b, w) in &c.opposite {
+                            *on_lower.entry(b).or_insert(0.0) += w * c.area;
+                        }
+                    }
+                    let facets = mesh.facet_group("lower.top").expect("named");
+                    for share in mesh.facet_shares(facets, &Axisymmetric) {
+                        let found = on_lower.get(&share.node).copied().unwrap_or(0.0);
+                        let off = (found - share.area).abs();
+                        assert!(off < 1e-11 || pairing != Pairing::Mortar, "{what}: {off}");
+                    }
                 }
             }
         }
