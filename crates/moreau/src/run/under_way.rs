@@ -177,7 +177,7 @@ where
             out.log.flush()?;
         }
         let outcome = outcome::conclude(
-            driver,
+            &self.setup,
             self.deck,
             &self.history,
             &self.tally,
@@ -256,6 +256,7 @@ where
                     self.ramp = None;
                 }
             }
+            (self.tally.warnings).end_of_step(&mut self.setup.driver, self.stage);
             if to_collapse && !collapsed {
                 return Ok(Ending::Carried(name));
             }
@@ -282,7 +283,8 @@ where
         for stream in [&mut out.history, &mut out.contact, &mut out.log] {
             stream.flush()?;
         }
-        self.tally.add(driver, report);
+        let to_collapse = self.setup.stages[self.stage].until_collapse;
+        self.tally.add(driver, report, to_collapse);
         let parts = (self.deck.vtu == Vtu::All, self.deck.points == Vtu::All);
         out.collection.add(driver, self.history.time(), parts)
     }
