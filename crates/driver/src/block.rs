@@ -3,7 +3,8 @@
 
 use crate::cells::{Cells, MAX_POINTS};
 use moreau_laws::{BulkLaw, FlowPower, Numbers};
-use moreau_mandel::{Sym2, Sym4};
+use moreau_mandel::{Sym2, Sym4, to_matrix};
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 /// Which stiffness an evaluation computes.
@@ -115,6 +116,16 @@ pub trait Block<const D: usize>: Send + Sync {
     /// The committed state at every quadrature point, cell by cell.
     fn points(&self) -> Vec<PointState<D>>;
 
+    /// Hands the committed state at every quadrature point with the displacement gradient there, cell by
+    /// cell, to `sink`; `u` has an entry a degree of freedom of the mesh.
+    fn gradients(&self, u: &[f64], sink: &mut dyn FnMut(&PointState<D>, &Matrix3<f64>));
+
+    /// Adds to `force` what the stiffness of the committed stresses makes of the displacements `v`:
+    /// ∫ (∂v/∂x · σ) : ∂δv/∂x dΩ \[N\], both with an entry a degree of freedom of the mesh, from the means of
+    /// gradients and stresses in every cell: modes that the rule of a cell does not see turn its points
+    /// without resistance, and not the cell.
+    fn add_stress_stiffness(&self, v: &[f64], force: &mut [f64]);
+
     /// The numbers of all committed states, cell by cell.
     fn state(&self) -> Vec<f64>;
 
@@ -144,6 +155,18 @@ pub struct SolidBlock<L: BulkLaw, const D: usize> {
 }
 
 impl<L: BulkLaw, const D: usize> SolidBlock<L, D> {
+    /// The committed state at a quadrature point.
+    fn point(&self, point: usize) -> PointState<D> {
+        let state = &self.old[point];
+        PointState {
+            cell: self.members[point / self.cells.points_per_cell()],
+            position: self.cells.position(point),
+            weight: self.cells.weight(point),
+            stress: self.law.stress(state),
+            plastic_strain: self.law.equivalent_plastic_strain(state),
+        }
+    }
+
     /// The block of `cells`, which are the cells `members` of the mesh, in the virgin state.
     pub fn new(members: Vec<usize>, cells: Box<dyn Cells<D>>, law: L) -> Self {
         let states = vec![L::State::default(); cells.count() * cells.points_per_cell()];
@@ -371,15 +394,43 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
     }
 
     fn points(&self) -> Vec<PointState<D>> {
+        (0..self.old.len()).map(|point| self.point(point)).collect()
+    }
+
+    fn gradients(&self, u: &[f64], sink: &mut dyn FnMut(&PointState<D>, &Matrix3<f64>)) {
         let count = self.cells.points_per_cell();
-        let state = |(point, state): (usize, &L::State)| PointState {
-            cell: self.members[point / count],
-            position: self.cells.position(point),
-            weight: self.cells.weight(point),
-            stress: self.law.stress(state),
-            plastic_strain: self.law.equivalent_plastic_strain(state),
-        };
-        self.old.iter().enumerate().map(state).collect()
+        let mut gradient = [Matrix3::zeros(); MAX_POINTS];
+        for k in 0..self.cells.count() {
+            self.cells.gradient(k, u, &mut gradient[..count]);
+            for (g, gradient) in gradient[..count].iter().enumerate() {
+                sink(&self.point(k * count + g), gradient);
+            }
+        }
+    }
+
+    fn add_stress_stiffness(&self, v: &[f64], force: &mut [f64]) {
+        let count = self.cells.points_per_cell();
+        let mut gradient = [Matrix3::zeros(); MAX_POINTS];
+        let mut of_cell = [0.0; 3 * MAX_POINTS];
+        for k in 0..self.cells.count() {
+            self.cells.gradient(k, v, &mut gradient[..count]);
+            let (mut volume, mut mean, mut stress) = (0.0, Matrix3::zeros(), Sym2::zeros());
+            for (g, gradient) in gradient[..count].iter().enumerate() {
+                let point = k * count + g;
+                let weight = self.cells.weight(point);
+                volume += weight;
+                mean += gradient * weight;
+                stress += self.law.stress(&self.old[point]) * weight;
+            }
+            gradient[..count].fill(mean * to_matrix(&stress) / (volume * volume));
+            let nodes = self.cells.nodes(k);
+            let own = &mut of_cell[..D * nodes.len()];
+            self.cells.gradient_force(k, &gradient[..count], own);
+            for (&a, f) in nodes.iter().zip(own.chunks_exact(D)) {
+                let at = force[D * a..D * a + D].iter_mut();
+                at.zip(f).for_each(|(sum, f)| *sum += f);
+            }
+        }
     }
 
     fn state(&self) -> Vec<f64> {

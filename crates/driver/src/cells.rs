@@ -3,6 +3,7 @@
 
 use moreau_mandel::{Sym2, Sym4};
 use moreau_mesh::{Element, Entry, Hypothesis, Integration, Mesh};
+use nalgebra::Matrix3;
 use pulp::{Arch, Simd, WithSimd};
 
 /// Largest number of quadrature points of a cell.
@@ -28,6 +29,13 @@ pub trait Cells<const D: usize>: Send + Sync {
     /// Strain increments Δε = Σ_a B_a ΔU_a, \[77\], at the points of the k-th cell, from the
     /// displacement increments at every degree of freedom of the mesh \[mm\].
     fn strain(&self, k: usize, d_u: &[f64], d_eps: &mut [Sym2]);
+
+    /// Displacement gradients ∂u_i/∂x_j \[–\] at the points of the k-th cell, from the displacements at every
+    /// degree of freedom of the mesh \[mm\]; around an axis the third stretch is that of the hoops.
+    fn gradient(&self, k: usize, u: &[f64], gradient: &mut [Matrix3<f64>]);
+
+    /// Writes ∫ P : ∂δu/∂x dΩ, node by node \[N\], from P at the points of the k-th cell \[MPa\].
+    fn gradient_force(&self, k: usize, flux: &[Matrix3<f64>], force: &mut [f64]);
 
     /// Writes ∫ Bᵀ σ dΩ, node by node \[N\], from the stresses at the points of the k-th cell.
     fn force(&self, k: usize, stress: &[Sym2], force: &mut [f64]);
@@ -380,6 +388,41 @@ impl<const D: usize, const N: usize> Cells<D> for ElementCells<D, N> {
 
     fn weight(&self, point: usize) -> f64 {
         self.weights[point]
+    }
+
+    fn gradient(&self, k: usize, u: &[f64], gradient: &mut [Matrix3<f64>]) {
+        let nodes = &self.nodes[k];
+        for ((_, fields), gradient) in self.points(k).zip(gradient) {
+            *gradient = Matrix3::zeros();
+            for i in 0..D {
+                let u: [f64; N] = std::array::from_fn(|a| u[D * nodes[a] + i]);
+                for j in 0..D {
+                    gradient[(i, j)] = dot(&fields[j], &u);
+                }
+                if let (0, Some(hoop)) = (i, fields.get(D)) {
+                    gradient[(2, 2)] = dot(hoop, &u);
+                }
+            }
+        }
+    }
+
+    fn gradient_force(&self, k: usize, flux: &[Matrix3<f64>], force: &mut [f64]) {
+        let mut sum = [[0.0; N]; D];
+        for ((weight, fields), flux) in self.points(k).zip(flux) {
+            for (i, sum) in sum.iter_mut().enumerate() {
+                for (j, field) in fields[..D].iter().enumerate() {
+                    add(sum, weight * flux[(i, j)], field);
+                }
+                if let (0, Some(hoop)) = (i, fields.get(D)) {
+                    add(sum, weight * flux[(2, 2)], hoop);
+                }
+            }
+        }
+        for a in 0..N {
+            for i in 0..D {
+                force[D * a + i] = sum[i][a];
+            }
+        }
     }
 
     fn strain(&self, k: usize, d_u: &[f64], d_eps: &mut [Sym2]) {

@@ -2,13 +2,16 @@
 //! how it converged.
 
 use crate::driver::{Driver, State};
+use crate::error::StepError;
 use crate::increment::Candidate;
+use crate::interface::Kinematics;
 use crate::load::Loading;
 use crate::norm::largest;
-use crate::report::{ContactRecord, StepReport};
+use crate::report::{ContactRecord, Energies, StepReport};
 use crate::sparse::Sparse;
 use moreau_contact::Certificate;
 use moreau_laws::{Local, Status};
+use nalgebra::SVector;
 
 impl<const D: usize> Driver<D> {
     pub(crate) fn plastic_fraction(&self) -> f64 {
@@ -19,12 +22,15 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Makes a converged increment the state of the driver.
+    ///
+    /// # Errors
+    /// [`StepError::NotFinite`] for what numbers do not hold; nothing has changed then.
     pub(crate) fn commit(
         &mut self,
         start: &Loading<D>,
         end: &Loading<D>,
         candidate: Candidate<D>,
-    ) -> StepReport {
+    ) -> Result<StepReport, StepError> {
         let Candidate {
             d_u,
             internal,
@@ -96,12 +102,13 @@ impl<const D: usize> Driver<D> {
         let certificate = Certificate::new(&laws, &irreversible, &forces);
         let contact = self.contact_forces(&kinematics, &forces);
         let mut energies = self.state.energies;
-        energies.external_work += self.external_work(start, end, &d_u, &internal, &contact);
+        energies.external_work += self.external_work(start, end, &d_u, &internal, &contact)
+            + self.closing_work(&kinematics, &contacts, &d_u);
         energies.friction_dissipation += friction;
         energies.penalty += penalty;
         energies.stored = 0.0;
         let (mut plastic_volume, mut volume) = (0.0, 0.0);
-        for block in &mut self.blocks {
+        for block in &self.blocks {
             let energy = block.energy();
             energies.stored += energy.stored;
             energies.plastic_dissipation += energy.dissipated;
@@ -109,6 +116,7 @@ impl<const D: usize> Driver<D> {
             volume += energy.volume;
         }
         let plastic_fraction = fraction(plastic_volume, volume);
+        all_finite(&energies, &certificate, &d_u)?;
         for block in &mut self.blocks {
             block.commit();
         }
@@ -134,7 +142,7 @@ impl<const D: usize> Driver<D> {
             farthest: moved.max(self.state.farthest),
             solution: Some(solution),
         };
-        StepReport {
+        Ok(StepReport {
             increment: self.state.increment,
             fraction: 1.0,
             newton_iterations: counts.newton,
@@ -158,7 +166,7 @@ impl<const D: usize> Driver<D> {
             corners,
             out_of_balance,
             residuals: counts.residuals,
-        }
+        })
     }
 
     /// Work over the increment of applied forces and reactions, by the trapezoidal rule.
@@ -179,6 +187,50 @@ impl<const D: usize> Driver<D> {
             work += 0.5 * (before + after) * d_u[dof];
         }
         work
+    }
+
+    /// What the trapezoidal rule makes the normal parts of contact forces do, less what springs of a penalty
+    /// take of it: nothing is done, since a pressure is there only where nothing moves along it.
+    /// Where a gap closes at the end of an increment, the rule has half of the last pressure push across it.
+    fn closing_work(
+        &self,
+        kinematics: &[Kinematics<D>],
+        contacts: &[ContactRecord<D>],
+        d_u: &[f64],
+    ) -> f64 {
+        let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
+        let points = self.footings.iter().zip(kinematics);
+        let points = points.zip(self.state.contacts.iter().zip(contacts));
+        let work = points.map(|((footing, k), (before, now))| {
+            let mean = 0.5 * (k.local_force(&before.force)[0] + now.t[0]);
+            let opened = k.axes.column(0).dot(&footing.relative(moved));
+            mean * (opened + now.spring[0] - before.spring[0])
+        });
+        work.sum()
+    }
+}
+
+/// Every number that is written follows from these.
+fn all_finite(
+    energies: &Energies,
+    certificate: &Certificate,
+    d_u: &[f64],
+) -> Result<(), StepError> {
+    let motion = largest(d_u.iter().copied());
+    let told = [
+        ("largest displacement", motion),
+        ("stored energy", energies.stored),
+        ("energy dissipated", energies.taken()),
+        ("external work", energies.external_work),
+        (
+            "contact force outside of its cone",
+            certificate.excess_force,
+        ),
+        ("bipotential gap", certificate.bipotential_gap),
+    ];
+    match told.into_iter().find(|(_, value)| !value.is_finite()) {
+        None => Ok(()),
+        Some((what, value)) => Err(StepError::NotFinite { what, value }),
     }
 }
 

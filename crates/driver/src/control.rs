@@ -90,8 +90,9 @@ impl<const D: usize> Driver<D> {
         self.system = Some(system);
         let candidate = outcome?;
         self.check_passage(&candidate.d_u)?;
-        Ok((control.factor <= 1.0)
-            .then(|| self.commit(&start, &control.loading(&start), candidate)))
+        (control.factor <= 1.0)
+            .then(|| self.commit(&start, &control.loading(&start), candidate))
+            .transpose()
     }
 
     /// The node that moved most in the last increment; the pivot at hand, if it moved too.

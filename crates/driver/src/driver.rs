@@ -93,7 +93,7 @@ pub struct Driver<const D: usize> {
     /// Where the contact points stand in the increment at hand.
     pub(crate) footings: Vec<Footing<D>>,
     /// Contact points whose multipliers their neighbours have in the increment at hand.
-    handed_over: Vec<usize>,
+    pub(crate) handed_over: Vec<usize>,
     pub(crate) settings: Settings<D>,
     pub(crate) state: State<D>,
     pub(crate) system: Option<System>,

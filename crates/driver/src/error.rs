@@ -293,6 +293,17 @@ pub enum StepError {
         /// The largest that rounding explains \[N\].
         expected: f64,
     },
+    /// A state that numbers do not hold: forces, displacements or energies beyond all bounds.
+    #[error(
+        "the {what} at the end of the increment is {value}: what is prescribed is beyond anything that \
+         can be computed; compare it with the size of the model, and the units"
+    )]
+    NotFinite {
+        /// What overflows.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// The structure does not carry the loads of the step: an answer, not a failure. The state is
     /// that of the mechanism, in equilibrium with what the structure carries.
     #[error("step {step:?}: {collapse}, in parts of its loads: the structure does not carry more")]

@@ -90,7 +90,7 @@ impl<const D: usize> Driver<D> {
         let guess = self.predictor(start, end);
         let candidate = self.balance(system, (start, end), guess, None, watch)?;
         self.check_passage(&candidate.d_u)?;
-        Ok(self.commit(start, end, candidate))
+        self.commit(start, end, candidate)
     }
 
     /// Finds the equilibrium at the end of an increment from a first guess of its displacements.

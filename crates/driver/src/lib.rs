@@ -27,7 +27,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod between;
 mod block;
+mod buckling;
 mod cells;
 mod cholesky;
 mod chord;
@@ -40,6 +42,7 @@ mod control;
 mod dense;
 mod driver;
 mod error;
+mod gaps;
 mod handover;
 mod increment;
 mod increments;
@@ -62,6 +65,7 @@ mod ramp;
 mod report;
 mod saved;
 mod scatter;
+mod smallness;
 mod sparse;
 mod supports;
 mod suspension;
@@ -69,11 +73,14 @@ mod system;
 mod timings;
 mod unsymmetric;
 
+pub use between::Between;
 pub use block::{Block, BlockEnergy, CellResult, PointState, SolidBlock, Stiffness};
+pub use buckling::Buckling;
 pub use cells::Cells;
 pub use collapse::{Collapse, UpperBound};
 pub use driver::{Driver, Nesting, Settings};
 pub use error::{Imbalance, ModelError, StepError};
+pub use gaps::LeastGap;
 pub use increments::Increments;
 pub use load::{Axis, Loading, Step};
 pub use loose::LooseTool;
@@ -81,6 +88,7 @@ pub use model::{Analysis, Model};
 pub use ramp::Ramp;
 pub use report::{ContactRecord, Energies, Iteration, StepReport};
 pub use saved::Reader;
+pub use smallness::{Deformation, Extent};
 pub use sparse::Sparse;
 pub use supports::{RigidMotion, Stopper, Support};
 pub use timings::Timings;

@@ -108,7 +108,7 @@ impl<const D: usize> Driver<D> {
                     },
                     counts,
                 };
-                return Ok(self.commit(start, end, candidate));
+                return self.commit(start, end, candidate);
             }
             let shifted: Vec<Local<D>> = (0..t.len()).map(|i| law(i).shifted(&u[i])).collect();
             if let Some((old_t, old_shifted)) = &before {

@@ -355,6 +355,11 @@ impl System {
         Ok(())
     }
 
+    /// The factor held is of no use to the next increment.
+    pub(crate) fn forget_factor(&mut self) {
+        self.elastic_factor = false;
+    }
+
     /// Whether the factor is one of K itself.
     pub(crate) fn is_direct(&self) -> bool {
         self.coarse.is_none()

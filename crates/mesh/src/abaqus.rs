@@ -2,6 +2,7 @@
 
 mod cells;
 mod keyword;
+mod sections;
 mod sets;
 
 use crate::read::{Cell, Draft, Loss, Place, ReadError, Side};
@@ -19,10 +20,10 @@ use std::collections::{BTreeMap, BTreeSet};
 /// | `*NSET`, `*ELSET` | groups of nodes and cells: numbers, names of earlier sets, `GENERATE`; `*NSET, ELSET=` |
 /// | `*SURFACE` | groups of facets: an element or a set and `S1` … `S6`, or no side for all that belong to one cell only; with `TYPE=NODE` groups of nodes |
 ///
-/// Other keywords are passed over with their data, unless they would change the mesh (`*INCLUDE`,
-/// generated or copied nodes and elements, local systems, a part placed by an instance): those
-/// are errors. Integration and formulation, the letters R, H, I and M after the number of nodes,
-/// are no matter of a mesh and dropped: the hypothesis is chosen elsewhere.
+/// Other keywords are passed over with their data, and [`read_abaqus_noting`] tells which, unless they would
+/// change the mesh (`*INCLUDE`, generated or copied nodes and elements, local systems, a part placed by an
+/// instance): those are errors. Integration and formulation, the letters R, H, I and M after the number of nodes,
+/// are no matter of a mesh and dropped: the hypothesis is chosen elsewhere, and cells of plane stress are noted.
 ///
 /// Keywords and names may be in any case; groups are called as first written. A mesh has one set
 /// of names: a surface called like an element set becomes `"name.boundary"`, a node set called
@@ -89,6 +90,7 @@ pub fn read_abaqus_noting<const D: usize>(text: &str) -> Result<(Mesh<D>, Vec<Lo
             }
         }
     }
+    file.losses = sections::losses(&blocks);
     file.check_numbers()?;
     for block in &blocks {
         match &*block.keyword {

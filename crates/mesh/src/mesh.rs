@@ -149,6 +149,26 @@ impl<const D: usize> Mesh<D> {
         Ok(self)
     }
 
+    /// The cells that displaced nodes turn inside out, those whose Jacobian determinant is not positive
+    /// somewhere among the nodes and the points of the full rule: each with its worst point \[mm\].
+    pub fn inverted(&self, positions: &[[f64; D]]) -> Vec<(usize, [f64; D])> {
+        let mut samples = BTreeMap::new();
+        let mut inverted = Vec::new();
+        for cell in 0..self.cell_count() {
+            let kind = self.kind(cell);
+            let table = samples.entry(kind).or_insert_with(|| cell_samples(kind));
+            let x: Vec<[f64; D]> = (self.cell_nodes(cell).iter())
+                .map(|&a| positions[a])
+                .collect();
+            if let Some((det, point)) = least_determinant(&x, table)
+                && det <= 0.0
+            {
+                inverted.push((cell, point));
+            }
+        }
+        inverted
+    }
+
     /// Coordinates of the nodes of a cell, in its order.
     fn cell_positions(&self, cell: usize) -> Vec<[f64; D]> {
         self.cell_nodes(cell)
@@ -211,20 +231,23 @@ fn check_cell(
     Ok(())
 }
 
+/// The least Jacobian determinant of a cell among its samples, and where that is.
+fn least_determinant<const D: usize>(
+    positions: &[[f64; D]],
+    samples: &CellSamples<D>,
+) -> Option<(f64, [f64; D])> {
+    let det = |sample: &Sample<D>| (sample.det(positions), sample.position(positions));
+    let all = samples.nodes.iter().chain(&samples.rule).map(det);
+    all.min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
 /// Checks the Jacobian determinant of a cell, where it is least among its samples.
 fn check_shape<const D: usize>(
     cell: usize,
     positions: &[[f64; D]],
     samples: &CellSamples<D>,
 ) -> Result<(), MeshError> {
-    let det = |sample: &Sample<D>| (sample.det(positions), sample.position(positions));
-    let least = samples
-        .nodes
-        .iter()
-        .chain(&samples.rule)
-        .map(det)
-        .min_by(|a, b| a.0.total_cmp(&b.0));
-    let Some((det, point)) = least else {
+    let Some((det, point)) = least_determinant(positions, samples) else {
         return Ok(());
     };
     let size = diagonal(positions);

@@ -7,6 +7,7 @@
 
 mod face;
 mod mortar;
+mod overlap;
 mod patches;
 mod polygon;
 mod segments;

@@ -129,3 +129,35 @@ impl CellKind {
         }
     }
 }
+
+impl FacetKind {
+    /// Reference coordinates of the nodes, corners first; an edge has the first coordinate alone.
+    pub fn places(self) -> Vec<[f64; 2]> {
+        let along = |nodes: &[[f64; 1]]| nodes.iter().map(|&[xi]| [xi, 0.0]).collect();
+        match self {
+            Self::Line2 => along(&Line2::NODES),
+            Self::Line3 => along(&Line3::NODES),
+            Self::Tri3 => Tri3::NODES.to_vec(),
+            Self::Tri6 => Tri6::NODES.to_vec(),
+            Self::Quad4 => Quad4::NODES.to_vec(),
+            Self::Quad8 => Quad8::NODES.to_vec(),
+            Self::Quad9 => Quad9::NODES.to_vec(),
+        }
+    }
+
+    /// Shape functions N_a(ξ) \[–\]; those of nodes that a facet of this kind does not have are zero.
+    pub fn shape(self, xi: [f64; 2]) -> [f64; 9] {
+        fn filled<const N: usize>(values: [f64; N]) -> [f64; 9] {
+            std::array::from_fn(|a| values.get(a).copied().unwrap_or(0.0))
+        }
+        match self {
+            Self::Line2 => filled(Line2::shape([xi[0]])),
+            Self::Line3 => filled(Line3::shape([xi[0]])),
+            Self::Tri3 => filled(Tri3::shape(xi)),
+            Self::Tri6 => filled(Tri6::shape(xi)),
+            Self::Quad4 => filled(Quad4::shape(xi)),
+            Self::Quad8 => filled(Quad8::shape(xi)),
+            Self::Quad9 => filled(Quad9::shape(xi)),
+        }
+    }
+}

@@ -66,7 +66,7 @@ pub fn open(text: &str) -> (Deck, Option<Problem>, Findings) {
 /// As [`open`], with the paths in the deck relative to a folder: that of the deck's file.
 pub fn open_in(text: &str, folder: &Path) -> (Deck, Option<Problem>, Findings) {
     let (mut deck, mut findings) = grammar::read(text, folder);
-    let problem = build::build(&mut deck, &mut findings);
+    let mut problem = build::build(&mut deck, &mut findings);
     if let Some(problem) = &problem {
         let columns = match problem {
             Problem::Plane(setup) => columns(setup),
@@ -83,6 +83,13 @@ pub fn open_in(text: &str, folder: &Path) -> (Deck, Option<Problem>, Findings) {
                     .about(Class::Names);
             }
         }
+    }
+    let doubts = findings.iter().filter(|f| f.severity == Severity::Warning);
+    let doubts = doubts.map(|f| f.message.clone()).collect();
+    match &mut problem {
+        Some(Problem::Plane(setup)) => setup.warnings = doubts,
+        Some(Problem::Solid(setup)) => setup.warnings = doubts,
+        None => {}
     }
     (deck, problem.filter(|_| findings.errors() == 0), findings)
 }

@@ -24,6 +24,7 @@ mod under_way;
 mod view;
 mod viewer;
 mod vtu;
+mod warnings;
 
 pub use diagnosis::{Diagnosis, Flip};
 pub use directory::Directory;
@@ -242,6 +243,15 @@ pub fn shown(value: f64, digits: usize) -> String {
         true => format!("{}", rounded + 0.0),
         false => format!("{rounded:e}"),
     }
+}
+
+/// Coordinates for people, with so many significant digits at most: [0.5, 100]. What is rounding beside the
+/// others is zero.
+pub fn place(position: &[f64], digits: usize) -> String {
+    let largest = position.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let clean = |x: &f64| if x.abs() < 1e-9 * largest { 0.0 } else { *x };
+    let list: Vec<String> = position.iter().map(|x| shown(clean(x), digits)).collect();
+    format!("[{}]", list.join(", "))
 }
 
 /// A number as text that is read back exactly.

@@ -6,6 +6,7 @@ mod block;
 mod coarse;
 mod collapse;
 mod corners;
+mod doubts;
 mod increments;
 mod klarbring;
 mod passages;

@@ -109,6 +109,7 @@ fn own(node: usize, edge: Option<[usize; 2]>) -> Vec<(usize, f64)> {
 
 /// The change of basis on a facet: its mid-sides with the corners that take a part of their shape
 /// functions, by local indices.
+#[derive(Default)]
 pub(crate) struct Change(Vec<(usize, [usize; 2])>);
 
 impl Change {

@@ -66,16 +66,7 @@ impl<const D: usize> Face<D> {
 
     /// Reference coordinates of the nodes.
     pub(super) fn places(&self) -> Vec<Xi> {
-        let along = |nodes: &[[f64; 1]]| nodes.iter().map(|&[xi]| [xi, 0.0]).collect();
-        match self.kind {
-            FacetKind::Line2 => along(&Line2::NODES),
-            FacetKind::Line3 => along(&Line3::NODES),
-            FacetKind::Tri3 => Tri3::NODES.to_vec(),
-            FacetKind::Tri6 => Tri6::NODES.to_vec(),
-            FacetKind::Quad4 => Quad4::NODES.to_vec(),
-            FacetKind::Quad8 => Quad8::NODES.to_vec(),
-            FacetKind::Quad9 => Quad9::NODES.to_vec(),
-        }
+        self.kind.places()
     }
 
     /// Length of a side of the reference facet.
@@ -88,15 +79,7 @@ impl<const D: usize> Face<D> {
 
     /// Shape functions N_a.
     pub(super) fn shape(&self, xi: Xi) -> Values {
-        match self.kind {
-            FacetKind::Line2 => filled(&Line2::shape([xi[0]])),
-            FacetKind::Line3 => filled(&Line3::shape([xi[0]])),
-            FacetKind::Tri3 => filled(&Tri3::shape(xi)),
-            FacetKind::Tri6 => filled(&Tri6::shape(xi)),
-            FacetKind::Quad4 => filled(&Quad4::shape(xi)),
-            FacetKind::Quad8 => filled(&Quad8::shape(xi)),
-            FacetKind::Quad9 => filled(&Quad9::shape(xi)),
-        }
+        self.kind.shape(xi)
     }
 
     /// The vectors ∂x/∂ξ; the first is none, and its cofactor the area vector.

@@ -29,6 +29,24 @@ pub enum Loss {
         /// Nodes that it has in the file.
         of: usize,
     },
+    /// Sections of a file that say more than a mesh: materials, steps, conditions.
+    Sections {
+        /// What they are about.
+        about: &'static str,
+        /// Keywords, in alphabetical order, and how often each stands there.
+        keywords: Vec<(String, usize)>,
+        /// Line of the first of them.
+        line: usize,
+    },
+    /// Cells of plane stress: the mesh has their shape, not their hypothesis.
+    PlaneStress {
+        /// Their type.
+        element: String,
+        /// How many.
+        elements: usize,
+        /// Line of the first section with them.
+        line: usize,
+    },
 }
 
 impl fmt::Display for Loss {
@@ -45,6 +63,32 @@ impl fmt::Display for Loss {
             Self::Nodes { name, lost, of } => write!(
                 f,
                 "{lost} of the {of} nodes of the group {name:?} belong to no cell and are left out"
+            ),
+            Self::Sections {
+                about,
+                keywords,
+                line,
+            } => {
+                let counted = |(keyword, count): &(String, usize)| match count {
+                    1 => format!("*{keyword}"),
+                    _ => format!("{count} *{keyword}"),
+                };
+                let list: Vec<String> = keywords.iter().map(counted).collect();
+                write!(
+                    f,
+                    "{about} are not read, from line {line} on: {}",
+                    list.join(", ")
+                )
+            }
+            Self::PlaneStress {
+                element,
+                elements,
+                line,
+            } => write!(
+                f,
+                "{elements} elements of type {element}, from line {line} on, are meant for plane stress, \
+                 which there is not: they are taken as cells of plane strain, which are stiffer, or of \
+                 axial symmetry"
             ),
         }
     }

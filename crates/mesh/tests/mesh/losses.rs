@@ -101,3 +101,74 @@ steel, S1
         "1 of the 2 nodes of the group \"some\" belong to no cell and are left out"
     );
 }
+
+/// Materials, conditions and steps are no mesh, and cells of plane stress none of plane strain: all are noted
+/// with their lines.
+#[test]
+fn of_abaqus_what_is_no_mesh() {
+    let text = "*HEADING
+*NODE
+1, 0., 0.
+2, 3., 0.
+3, 0., 4.
+4, 3., 4.
+*ELEMENT, TYPE=CPS3, ELSET=steel
+1, 1, 2, 3
+2, 2, 4, 3
+*SOLID SECTION, ELSET=steel, MATERIAL=st
+1.,
+*MATERIAL, NAME=st
+*ELASTIC
+210000., 0.3
+*MATERIAL, NAME=al
+*ELASTIC
+70000., 0.3
+*BOUNDARY
+1, 1, 2
+*STEP
+*STATIC
+*BOUNDARY
+4, 1, 1, 0.1
+*NODE PRINT, NSET=all
+U
+*END STEP
+";
+    let (mesh, losses) = read_abaqus_noting::<2>(text).expect("a mesh");
+    assert_eq!(mesh.cell_count(), 2);
+    let sections = |about, line, keywords: &[(&str, usize)]| Loss::Sections {
+        about,
+        keywords: keywords.iter().map(|&(k, n)| (k.to_owned(), n)).collect(),
+        line,
+    };
+    let expected = [
+        Loss::PlaneStress {
+            element: "CPS3".into(),
+            elements: 2,
+            line: 7,
+        },
+        sections("sections of cells", 10, &[("SOLID SECTION", 1)]),
+        sections("materials", 12, &[("ELASTIC", 2), ("MATERIAL", 2)]),
+        sections("conditions and loads", 18, &[("BOUNDARY", 1)]),
+        sections(
+            "steps and all that is in them",
+            20,
+            &[
+                ("BOUNDARY", 1),
+                ("END STEP", 1),
+                ("NODE PRINT", 1),
+                ("STATIC", 1),
+                ("STEP", 1),
+            ],
+        ),
+    ];
+    assert_eq!(losses, expected);
+    assert_eq!(
+        losses[2].to_string(),
+        "materials are not read, from line 12 on: 2 *ELASTIC, 2 *MATERIAL"
+    );
+    assert!(
+        losses[0]
+            .to_string()
+            .starts_with("2 elements of type CPS3, from line 7 on,")
+    );
+}

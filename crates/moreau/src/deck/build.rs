@@ -6,14 +6,15 @@ mod groups;
 mod meshes;
 mod names;
 mod parts;
+mod penetrations;
 mod slips;
 
 use super::entries::{Analysis, Deck, Method};
 use super::finding::{Class, Findings};
 use crate::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
 use crate::driver::{
-    Analysis as Cells, Driver, Increments, ModelError, Nesting, RigidMotion, Settings, Step,
-    Support,
+    Analysis as Cells, Driver, Increments, LeastGap, ModelError, Nesting, RigidMotion, Settings,
+    Step, Support,
 };
 use crate::mesh::{Axisymmetric, CellKind, Mesh, PlaneStrain, Solid};
 use groups::Groups;
@@ -79,6 +80,10 @@ pub struct Setup<const D: usize> {
     pub groups: Vec<GroupFacts>,
     /// Bodies: cells connected through shared nodes.
     pub bodies: Vec<Body>,
+    /// The least gap of every contact before anything moves.
+    pub gaps: Vec<LeastGap<D>>,
+    /// What is doubtful in the deck, a sentence each.
+    pub warnings: Vec<String>,
 }
 
 /// A problem in the plane or in space.
@@ -162,7 +167,9 @@ fn setup<const D: usize, H: Cells<D>>(
     if !possible {
         return None;
     }
-    let supports = supports(&driver, deck, &stages, &groups, findings);
+    let gaps = driver.least_gaps();
+    penetrations::warn(deck, &driver, &gaps, findings);
+    let supports = supports(&driver, (deck, &gaps), &stages, &groups, findings);
     conditions::doubts(deck, findings);
     conditions::inner_surfaces(deck, &groups, findings);
     slips::warn(deck, &groups, surface, findings);
@@ -175,6 +182,8 @@ fn setup<const D: usize, H: Cells<D>>(
         tools: deck.tools.iter().map(|t| t.name.value.clone()).collect(),
         groups: groups.facts(&hypothesis),
         bodies: groups.bodies(&hypothesis, &supports),
+        gaps,
+        warnings: Vec::new(),
     })
 }
 
@@ -260,7 +269,7 @@ fn surfaces(deck: &Deck, held: &[[String; 2]]) -> Vec<String> {
 /// What stops the rigid motions of every body, step by step; motions that nothing stops are errors.
 fn supports<const D: usize>(
     driver: &Driver<D>,
-    deck: &Deck,
+    (deck, gaps): (&Deck, &[LeastGap<D>]),
     stages: &[Stage<D>],
     groups: &Groups<D>,
     findings: &mut Findings,
@@ -275,7 +284,14 @@ fn supports<const D: usize>(
                 motion: support.free.join(", "),
             };
             let (name, _) = groups.origin(deck, support.cell);
-            let message = format!("step \"{}\", body \"{name}\": {error}", entry.name.value);
+            // No contact is found between bodies that lie deep within each other.
+            let unmet = gaps.iter().filter(|g| !g.met);
+            let overlaps = unmet.map(|g| penetrations::sentence(deck, driver, g) + ". Then ");
+            let overlaps: String = overlaps.collect();
+            let message = format!(
+                "step \"{}\", body \"{name}\": {overlaps}{error}",
+                entry.name.value
+            );
             findings
                 .error(&entry.name.span, message, "in this step")
                 .about(Class::Bodies);

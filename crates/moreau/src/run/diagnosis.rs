@@ -146,6 +146,10 @@ fn suggestion(
         (_, StepError::Contact { .. }) if !exact => {
             "set contact = \"exact\" in [solver]: it needs no parameter and no contraction".into()
         }
+        (_, StepError::NotFinite { .. }) => format!(
+            "in step \"{name}\" prescribe what the model can follow: displacements of its size at most, and \
+             loads of the size of its strength, in the units of the deck"
+        ),
         (_, StepError::Mechanism { node, axis, .. }) => {
             format!("hold u_{axis} near node {node}, or bring it into contact: it moves freely")
         }

@@ -4,8 +4,9 @@
 use super::diagnosis::Diagnosis;
 use super::history::History;
 use super::shown;
+use super::warnings::Warnings;
 use crate::contact::Certificate;
-use crate::deck::{Deck, Units};
+use crate::deck::{Deck, Setup, Units};
 use crate::driver::{
     Collapse, Driver, Energies, ModelError, Reader, StepError, StepReport, UpperBound,
 };
@@ -84,6 +85,7 @@ pub(super) struct Tally {
     closed: Vec<bool>,
     /// The largest [`StepReport::criticality`], with its contact point and the increment.
     criticality: Option<(usize, f64, usize)>,
+    pub(super) warnings: Warnings,
     /// The last collapse and the step, from 0, that ended in it.
     pub(super) collapse: Option<(usize, Collapse)>,
 }
@@ -101,11 +103,17 @@ impl Tally {
             relative_gap: 0.0,
             closed: vec![false; contacts.unwrap_or(0)],
             criticality: None,
+            warnings: Warnings::new(),
             collapse: None,
         }
     }
 
-    pub(super) fn add<const D: usize>(&mut self, driver: &Driver<D>, report: &StepReport) {
+    pub(super) fn add<const D: usize>(
+        &mut self,
+        driver: &Driver<D>,
+        report: &StepReport,
+        to_collapse: bool,
+    ) {
         self.factorisations += report.factorisations;
         self.linear += report.linear_iterations;
         self.newton += report.newton_iterations;
@@ -128,6 +136,7 @@ impl Tally {
         {
             self.criticality = Some((point, ratio, report.increment));
         }
+        self.warnings.add(driver, report, to_collapse);
     }
 
     /// Appends all that [`Tally::read`] needs.
@@ -143,6 +152,7 @@ impl Tally {
         if let Some((point, ratio, increment)) = self.criticality {
             out.extend([point as f64, ratio, increment as f64]);
         }
+        self.warnings.write(out);
         out.push(f64::from(u8::from(self.collapse.is_some())));
         if let Some((stage, c)) = &self.collapse {
             out.extend([*stage as f64, c.load_factor, c.growth]);
@@ -171,6 +181,7 @@ impl Tally {
         if from.count()? == 1 {
             self.criticality = Some((from.count()?, from.number()?, from.count()?));
         }
+        self.warnings.read(from)?;
         if from.count()? == 1 {
             let stage = from.count()?;
             let (load_factor, growth) = (from.number()?, from.number()?);
@@ -222,7 +233,7 @@ pub struct Outcome {
     pub threads: usize,
     /// The worst of all increments.
     pub certificate: Certificate,
-    /// The largest gap in parts of the external work.
+    /// The largest gap, see [`StepReport::relative_gap`].
     pub relative_gap: f64,
     /// The largest coefficient of friction over its critical value, see [`StepReport::criticality`].
     pub criticality: Option<f64>,
@@ -237,20 +248,21 @@ pub struct Outcome {
     pub verdicts: Vec<Verdict>,
     /// Collapse, with the name of the step: the last, if more than one collapsed.
     pub collapse: Option<(String, Collapse)>,
-    /// Doubts about the run.
+    /// Doubts about the deck and the run.
     pub warnings: Vec<String>,
     /// Why it did not converge.
     pub diagnosis: Option<Diagnosis>,
 }
 
 pub(super) fn conclude<const D: usize>(
-    driver: &Driver<D>,
+    setup: &Setup<D>,
     deck: &Deck,
     history: &History,
     tally: &Tally,
     (status, diagnosis): (RunStatus, Option<Diagnosis>),
     seconds: f64,
 ) -> Outcome {
+    let driver = &setup.driver;
     let last = |name: &str| history.value(name);
     let count = |status| {
         let points = driver.contacts().iter();
@@ -280,7 +292,10 @@ pub(super) fn conclude<const D: usize>(
             c.node
         ))
     };
-    let never = tally.closed.iter().enumerate().filter_map(never);
+    let mut warnings = setup.warnings.clone();
+    warnings.extend(tally.warnings.sentences(driver, deck));
+    warnings.extend(tally.closed.iter().enumerate().filter_map(never));
+    warnings.extend(tally.criticality.and_then(critical));
     let values = history
         .names()
         .filter(|n| n.starts_with("force.") || n.starts_with("u."))
@@ -304,7 +319,7 @@ pub(super) fn conclude<const D: usize>(
         criticality: tally.criticality.map(|c| c.1),
         values,
         verdicts: deck.expectations.iter().map(verdict).collect(),
-        warnings: never.chain(tally.criticality.and_then(critical)).collect(),
+        warnings,
         contacts: [Status::Open, Status::Stick, Status::Slip].map(count),
         energies: driver.energies(),
         collapse: tally.collapse.map(|(stage, c)| {
@@ -391,7 +406,12 @@ impl fmt::Display for Outcome {
             RunStatus::Collapsed(error) => format!("collapsed: {error}"),
             RunStatus::Interrupted(increment) => format!("interrupted after increment {increment}"),
         };
-        writeln!(f, "  status        {status}")?;
+        let warned = match self.warnings.len() {
+            0 => "",
+            1 => ", with a warning below",
+            _ => ", with warnings below",
+        };
+        writeln!(f, "  status        {status}{warned}")?;
         let linear = match self.linear_iterations {
             0 => String::new(),
             some => format!(" and {some} conjugate gradients"),

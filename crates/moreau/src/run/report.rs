@@ -97,7 +97,7 @@ fn summary(run: &serde_json::Value, deck: &Deck) -> Vec<[String; 2]> {
     rows.splice(0..0, collapse);
     for (name, key, unit) in [
         ("largest bipotential gap", "bipotential_gap", units.energy()),
-        ("the same, over the external work", "relative_gap", "–"),
+        ("the same, over the work", "relative_gap", "–"),
         ("largest penetration", "penetration", units.length()),
         (
             "largest force outside the cone",

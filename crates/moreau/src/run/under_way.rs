@@ -159,7 +159,7 @@ where
 
     fn outcome(&self, how: (RunStatus, Option<Diagnosis>)) -> Outcome {
         outcome::conclude(
-            &self.setup.driver,
+            &self.setup,
             self.deck,
             &self.history,
             &self.tally,
@@ -313,6 +313,7 @@ where
                 }
                 self.reached(Some(&ramp), watch);
             }
+            (self.tally.warnings).end_of_step(&mut self.setup.driver, self.stage);
             if to_collapse && !collapsed {
                 return Ok(Ending::Carried(name));
             }
@@ -337,7 +338,8 @@ where
             out.contact.line(&line)?;
         }
         out.flush()?;
-        self.tally.add(driver, report);
+        let to_collapse = self.setup.stages[self.stage].until_collapse;
+        self.tally.add(driver, report, to_collapse);
         let parts = (self.deck.vtu == Vtu::All, self.deck.points == Vtu::All);
         out.collection.add(driver, self.history.time(), parts)
     }

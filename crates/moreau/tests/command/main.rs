@@ -1,6 +1,7 @@
 //! The command as a person runs it: exit status, what it says, and the files that it leaves.
 
 mod answers;
+mod doubts;
 mod files;
 mod pictures;
 mod processes;

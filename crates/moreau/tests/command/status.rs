@@ -221,7 +221,10 @@ load = [{{ on = "tip", force = [-3.5, -1] }}]
         let warnings = json["warnings"].as_array().expect("a list");
         let told =
             "the friction of \"side\" with \"floor\" is 1.05 times its critical value at node 0";
-        assert_eq!(warnings.len(), usize::from(mu > 2.0), "{warnings:?}");
+        let critical = warnings
+            .iter()
+            .filter(|w| w.to_string().contains("critical value"));
+        assert_eq!(critical.count(), usize::from(mu > 2.0), "{warnings:?}");
         assert_eq!(out.contains(told), mu > 2.0, "{out}");
     }
 }

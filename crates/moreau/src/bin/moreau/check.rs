@@ -3,7 +3,7 @@
 use super::{INPUT_ERROR, folder, read, report, say};
 use moreau::deck::{Action, Deck, Method, Problem, Setup, Shape, open_in};
 use moreau::driver::{Axis, RigidMotion, Stopper};
-use moreau::run::shown;
+use moreau::run::{place, shown};
 use std::path::Path;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -152,6 +152,14 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
                 ""
             }
         );
+        if let Some(gap) = setup.gaps.iter().find(|g| g.contact == k) {
+            say!(
+                "           least gap {} {length}, at node {} at {}",
+                shown(gap.gap, DIGITS),
+                gap.node,
+                place(&gap.position, DIGITS)
+            );
+        }
     }
     let method = match &deck.solver.method {
         _ if deck.solver.outside => "Uzawa around the nonlinear solve".to_owned(),

@@ -4,6 +4,7 @@ use super::groups::Groups;
 use super::parts::Surface;
 use crate::deck::entries::{Action, Deck, FrictionEntry};
 use crate::deck::finding::Findings;
+use crate::run::shown;
 use nalgebra::SVector;
 
 /// Part of Young's modulus that the yield stress of a solid stays below: metals a hundredth, polymers
@@ -102,9 +103,10 @@ fn far<const D: usize>(deck: &Deck, groups: &Groups<D>, findings: &mut Findings)
         let largest = components.iter().fold(0.0, |m: f64, c| c.1.abs().max(m));
         if largest > size {
             let message = format!(
-                "\"{}\" is moved by {largest} {unit}, but the whole mesh is {size:.3} {unit} in size: \
-                 both are in {unit}",
-                condition.on.value
+                "\"{}\" is moved by {} {unit}, but the whole mesh is {size:.3} {unit} in size: both are in \
+                 {unit}",
+                condition.on.value,
+                shown(largest, 6)
             );
             findings.warning(&condition.span, message, "in another unit?");
         }

@@ -1,0 +1,210 @@
+//! Tools within a surface between its nodes, where contact does not act; not how that could be prevented.
+
+use crate::driver::Driver;
+use moreau_contact::Obstacle;
+use moreau_mesh::{Facet, FacetKind};
+use nalgebra::SVector;
+
+/// Where a tool is deepest within a surface between its nodes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Between<const D: usize> {
+    /// Index of the contact, in the order in which contacts and pairs were added to the model.
+    pub contact: usize,
+    /// How far the tool reaches behind the surface, at least \[mm\].
+    pub depth: f64,
+    /// Length of the facet \[mm\].
+    pub facet: f64,
+    /// Where that is now \[mm\].
+    pub position: [f64; D],
+    /// How far the nodes of the surface have been pressed in along the normal of the tool there, against
+    /// each other \[mm\].
+    pub pressed: f64,
+}
+
+impl<const D: usize> Between<D> {
+    /// Depth that counts, in parts of the facet: the bow of a cylinder of 2.5 lengths of a facet.
+    pub const DEEP: f64 = 0.05;
+    /// Depth that counts, in parts of what the nodes are pressed.
+    pub const BESIDE_PRESSED: f64 = 0.2;
+}
+
+/// Times that a facet is divided to look behind it: into 16 in the plane, into 64 in space.
+const DIVISIONS: [usize; 2] = [4, 3];
+
+/// Part of a facet that is nothing beside it.
+const FINE: f64 = 1e-3;
+
+/// A facet where it is now, in the coordinates of the tool, with the gaps that its nodes must keep.
+struct Sheet<'a, const D: usize> {
+    kind: FacetKind,
+    nodes: Vec<SVector<f64, D>>,
+    offsets: Vec<f64>,
+    tool: &'a dyn Obstacle<D>,
+    /// Direction into the cell.
+    inwards: SVector<f64, D>,
+    /// How far it is followed \[mm\].
+    limit: f64,
+    /// Distance of two corners at most \[mm\].
+    size: f64,
+}
+
+impl<'a, const D: usize> Sheet<'a, D> {
+    fn new(
+        kind: FacetKind,
+        (nodes, offsets): (Vec<SVector<f64, D>>, Vec<f64>),
+        middle_of_cell: SVector<f64, D>,
+        tool: &'a dyn Obstacle<D>,
+    ) -> Self {
+        let corners = &nodes[..kind.corner_count()];
+        let apart =
+            |a: &SVector<f64, D>| corners.iter().map(|b| (a - b).norm()).fold(0.0, f64::max);
+        let size = corners.iter().map(apart).fold(0.0, f64::max);
+        let middle = corners.iter().sum::<SVector<f64, D>>() / corners.len() as f64;
+        let half = middle_of_cell - middle;
+        Self {
+            kind,
+            inwards: half.try_normalize(0.0).unwrap_or_else(SVector::zeros),
+            limit: size.min(2.0 * half.norm()),
+            size,
+            nodes,
+            offsets,
+            tool,
+        }
+    }
+
+    /// A point, and the gap that it must keep.
+    fn at(&self, xi: [f64; 2]) -> (SVector<f64, D>, f64) {
+        let shape = self.kind.shape(xi);
+        let x = self.nodes.iter().zip(shape).map(|(x, n)| x * n).sum();
+        (x, self.offsets.iter().zip(shape).map(|(o, n)| o * n).sum())
+    }
+
+    /// How far the tool reaches behind a point, going inwards. No step is longer than the distance, which
+    /// passes nothing by.
+    fn depth(&self, x: &SVector<f64, D>, offset: f64) -> f64 {
+        let (mut gone, mut depth) = (0.0, 0.0);
+        while gone <= self.limit {
+            let gap = self.tool.distance(&(x + self.inwards * gone)) - offset;
+            if gap < 0.0 {
+                depth = (gone - gap).min(self.limit);
+            }
+            gone += gap.abs().max(FINE * self.size);
+        }
+        depth
+    }
+
+    /// How far a node is within the tool \[mm\].
+    fn held_within(&self) -> f64 {
+        let gap = |(x, offset)| self.tool.distance(x) - offset;
+        let gaps = self.nodes.iter().zip(&self.offsets).map(gap);
+        -gaps.fold(0.0, f64::min)
+    }
+
+    /// The point behind which the tool reaches deepest, and how deep.
+    fn deepest(&self) -> (SVector<f64, D>, f64) {
+        let corners = self.kind.places();
+        let whole = corners[..self.kind.corner_count()].to_vec();
+        let mut open = vec![(whole, 0)];
+        let mut best = (SVector::zeros(), 0.0);
+        while let Some((piece, level)) = open.pop() {
+            let mean = |i: usize| piece.iter().map(|xi| xi[i]).sum::<f64>() / piece.len() as f64;
+            let (x, offset) = self.at([mean(0), mean(1)]);
+            let depth = self.depth(&x, offset);
+            if depth > best.1 {
+                best = (x, depth);
+            }
+            let far = piece.iter().map(|&xi| (self.at(xi).0 - x).norm());
+            // Half a facet farther than its corners no facet is curved.
+            let near = self.limit + far.fold(0.5 * self.size, f64::max);
+            if level < DIVISIONS[D - 2] && self.tool.distance(&x) - offset < near {
+                open.extend(quarters(&piece).into_iter().map(|p| (p, level + 1)));
+            }
+        }
+        best
+    }
+}
+
+/// The pieces of a piece, by their corners: halves of an edge, quarters of a face.
+fn quarters(piece: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
+    let middle = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|i| 0.5 * (a[i] + b[i]));
+    match *piece {
+        [a, b] => {
+            let m = middle(a, b);
+            vec![vec![a, m], vec![m, b]]
+        }
+        [a, b, c] => {
+            let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+            vec![
+                vec![a, ab, ca],
+                vec![ab, b, bc],
+                vec![ca, bc, c],
+                vec![ab, bc, ca],
+            ]
+        }
+        [a, b, c, d] => {
+            let (ab, bc, cd, da) = (middle(a, b), middle(b, c), middle(c, d), middle(d, a));
+            let m = middle(ab, cd);
+            let quarter = |p, q, r, s| vec![p, q, r, s];
+            vec![
+                quarter(a, ab, m, da),
+                quarter(ab, b, bc, m),
+                quarter(m, bc, c, cd),
+                quarter(da, m, cd, d),
+            ]
+        }
+        _ => Vec::new(),
+    }
+}
+
+impl<const D: usize> Driver<D> {
+    /// Where a tool is deepest within a surface between its nodes, if that is more than the bow
+    /// of a round tool over a facet: deeper than [`Between::DEEP`] of the facet and than
+    /// [`Between::BESIDE_PRESSED`] of what nodes are pressed in.
+    pub fn between_nodes(&self) -> Option<Between<D>> {
+        let count = (self.points.iter()).fold(0, |most, p| most.max(p.contact + 1));
+        let all = (0..count).filter_map(|k| self.deepest_between(k));
+        all.max_by(|a, b| (a.depth / a.facet).total_cmp(&(b.depth / b.facet)))
+    }
+
+    fn deepest_between(&self, contact: usize) -> Option<Between<D>> {
+        let own = || self.points.iter().filter(|p| p.contact == contact);
+        let tool = own().next()?.tool?;
+        let obstacle = &self.tools[tool].obstacle;
+        let at = self.displacement(self.tool_node(tool));
+        let mut offsets = vec![0.0; self.mesh.nodes().len()];
+        own().for_each(|p| offsets[p.node] = p.offset);
+        let facets = self.mesh.facet_group(self.contact_name(contact).0).ok()?;
+        let deepest = |facet: &Facet| {
+            let nodes = self.mesh.facet_nodes(*facet);
+            let places = nodes.clone().map(|a| self.position(a) - at).collect();
+            let offsets = nodes.map(|a| offsets[a]).collect();
+            let cell = self.mesh.cell_nodes(facet.cell);
+            let middle = cell
+                .iter()
+                .map(|&a| self.position(a) - at)
+                .sum::<SVector<f64, D>>();
+            let middle = middle / cell.len() as f64;
+            let kind = self.mesh.facet_kind(*facet);
+            let sheet = Sheet::new(kind, (places, offsets), middle, obstacle.as_ref());
+            let (x, depth) = sheet.deepest();
+            // Nodes that are held within the tool are another matter.
+            let depth = depth - sheet.held_within();
+            (depth > Between::<D>::DEEP * sheet.size).then_some((x, depth, sheet.size))
+        };
+        let all = facets.iter().filter_map(deepest);
+        let (x, depth, facet) = all.max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)))?;
+        let normal = obstacle.normal(&x);
+        let along = own().map(|p| self.displacement(p.node).dot(&normal));
+        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), u| {
+            (l.min(u), h.max(u))
+        });
+        let pressed = high - low;
+        (depth > Between::<D>::BESIDE_PRESSED * pressed).then(|| Between {
+            contact,
+            depth,
+            facet,
+            position: (x + at).into(),
+            pressed,
+        })
+    }
+}

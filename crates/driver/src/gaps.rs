@@ -1,0 +1,100 @@
+//! Gaps of contacts before anything is solved: the least of each, and bodies that lie within each other;
+//! not what contact makes of them.
+
+use crate::driver::Driver;
+use nalgebra::SVector;
+
+/// The least gap of a contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LeastGap<const D: usize> {
+    /// Index of the contact, in the order in which contacts and pairs were added to the model.
+    pub contact: usize,
+    /// The gap, negative where one is within the other \[mm\].
+    pub gap: f64,
+    /// The node where that is, of either surface.
+    pub node: usize,
+    /// Where that is now \[mm\].
+    pub position: [f64; D],
+    /// Nodes that are within what they are in contact with.
+    pub inside: usize,
+    /// Whether contact is found there: not where bodies are deeper within each other than a facet is long.
+    pub met: bool,
+}
+
+/// Penetrations below this part of the size of the mesh are rounding of a file.
+const ROUNDING: f64 = 1e-6;
+
+impl<const D: usize> Driver<D> {
+    /// The least gap of every contact that meets something, with what displacements there are.
+    pub fn least_gaps(&self) -> Vec<LeastGap<D>> {
+        let count = (self.points.iter()).fold(0, |most, p| most.max(p.contact + 1));
+        (0..count).filter_map(|k| self.least_gap(k)).collect()
+    }
+
+    /// Penetration from which on surfaces are said to be within each other \[mm\].
+    pub fn rounding_of_gaps(&self) -> f64 {
+        ROUNDING * self.mesh.size()
+    }
+
+    fn least_gap(&self, contact: usize) -> Option<LeastGap<D>> {
+        let pairs = self.points.iter().zip(&self.footings);
+        let own = pairs.filter(|(p, _)| p.contact == contact);
+        let gaps = own.filter_map(|(p, footing)| {
+            let gap = match p.tool {
+                Some(tool) => {
+                    let at = self.displacement(self.tool_node(tool));
+                    let obstacle = self.tools[tool].obstacle.as_ref();
+                    p.gap(obstacle, |a| self.position(a) - at)
+                }
+                None => footing.plane(&SVector::zeros())?.1 - p.offset,
+            };
+            Some((gap, p.node))
+        });
+        let gaps: Vec<(f64, usize)> = gaps.collect();
+        let least = gaps.iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        let within = |gap: f64| gap < -self.rounding_of_gaps();
+        let inside = gaps.iter().filter(|g| within(g.0)).count();
+        let found = |&(gap, node): &(f64, usize), inside: usize, met: bool| LeastGap {
+            contact,
+            gap,
+            node,
+            position: self.position(node).into(),
+            inside,
+            met,
+        };
+        let met = least.map(|l| found(l, inside, true));
+        let deeper = self.overlap(contact).filter(|(_, depth, _)| {
+            // A gap that was found is measured along normals, which is what counts.
+            within(-depth) && met.is_none_or(|m| !within(m.gap))
+        });
+        match deeper {
+            Some((node, depth, inside)) => Some(found(&(-depth, node), inside, false)),
+            None => met,
+        }
+    }
+
+    /// The node of either surface of a pair that is deepest within the other body, how deep, and how many
+    /// are within.
+    fn overlap(&self, contact: usize) -> Option<(usize, f64, usize)> {
+        let (surface, opposite) = self.contact_name(contact);
+        let (Ok(surface), Ok(opposite)) = (
+            self.mesh.facet_group(surface),
+            self.mesh.facet_group(opposite),
+        ) else {
+            return None;
+        };
+        if self
+            .points
+            .iter()
+            .any(|p| p.contact == contact && p.tool.is_some())
+        {
+            return None;
+        }
+        let nodes = 0..self.mesh.nodes().len();
+        let positions: Vec<[f64; D]> = nodes.map(|a| self.position(a).into()).collect();
+        let sides = [(surface, opposite), (opposite, surface)];
+        let overlaps = sides.map(|s| self.mesh.overlap(&positions, s));
+        let deepest = overlaps.into_iter().flatten();
+        deepest.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}

@@ -1,0 +1,316 @@
+//! What a run gives reason to doubt although it converged, gathered as it goes: of each kind the worst, with
+//! numbers and place; not what is wrong with a deck.
+
+use super::{place, shown};
+use crate::deck::{Deck, Units};
+use crate::driver::{Between, Buckling, Deformation, Driver, Energies, Extent};
+use crate::driver::{ModelError, Reader, StepReport};
+
+/// What may be doubtful about a converged state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// Strains that are no longer small.
+    Strain,
+    /// Rotations that are no longer small.
+    Rotation,
+    /// Cells turned inside out.
+    Inverted,
+    /// A tool within a surface between its nodes.
+    Between,
+    /// Stresses near to, or beyond, those of buckling.
+    Buckling,
+}
+
+const KINDS: [Kind; 5] = [
+    Kind::Strain,
+    Kind::Rotation,
+    Kind::Inverted,
+    Kind::Between,
+    Kind::Buckling,
+];
+
+/// Where a doubt is worst.
+#[derive(Debug, Clone, PartialEq, Default)]
+struct Worst {
+    /// The cell, node or contact.
+    index: usize,
+    position: Vec<f64>,
+    /// The increment; of a buckling, the step from 0.
+    when: usize,
+    /// By which it is the worst; then what belongs to it.
+    numbers: Vec<f64>,
+}
+
+/// Digits of coordinates.
+const DIGITS: usize = 4;
+
+/// Part of the work, or of the volume, that may be beyond the limits of small strains and rotations: what is
+/// strained at the corners of a punch.
+const LOCAL: f64 = 0.1;
+
+/// Part of what is stored and dissipated by which the balance of energies may be out. Friction counts its slip at
+/// the last pressure, which is twice too much where it first slips: a tenth in a dozen increments.
+const CLOSED: f64 = 0.2;
+
+/// The balance of energies where it is worst.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Balance {
+    /// Imbalance after the last increment.
+    last: f64,
+    /// The largest so far, with the external work and what was stored and dissipated then.
+    worst: [f64; 3],
+    /// The most that was ever stored and dissipated.
+    most: f64,
+    /// The largest change in one increment, and that increment.
+    change: f64,
+    increment: usize,
+}
+
+impl Balance {
+    fn add(&mut self, energies: &Energies, increment: usize) {
+        let imbalance = energies.imbalance();
+        let change = imbalance - self.last;
+        if change.abs() > self.change.abs() {
+            (self.change, self.increment) = (change, increment);
+        }
+        if imbalance.abs() > self.worst[0].abs() {
+            self.worst = [imbalance, energies.external_work, energies.taken()];
+        }
+        self.last = imbalance;
+        self.most = self.most.max(energies.taken());
+    }
+
+    fn sentence(&self, units: Units) -> Option<String> {
+        let unit = units.energy();
+        let [imbalance, work, taken] = self.worst.map(|v| shown(v, 4));
+        let differ = self.worst[0].abs() > CLOSED * self.most;
+        differ.then(|| {
+            format!(
+                "the energies do not balance: {work} {unit} are the external work, {taken} {unit} are stored or \
+                 dissipated, which differ by {imbalance} {unit}, {} {unit} of it from increment {}: too much \
+                 happens in that one to count what it took; take smaller increments there, and bring tools \
+                 to the surface in a step of their own",
+                shown(self.change, 4),
+                self.increment
+            )
+        })
+    }
+}
+
+/// Warnings of a run.
+pub(super) struct Warnings {
+    worst: [Option<Worst>; 5],
+    balance: Balance,
+}
+
+impl Warnings {
+    pub(super) fn new() -> Self {
+        Self {
+            worst: Default::default(),
+            balance: Balance::default(),
+        }
+    }
+
+    /// Takes note of a converged increment. On the way to collapse displacements grow as far as it takes to
+    /// know the load, and their size says nothing.
+    pub(super) fn add<const D: usize>(
+        &mut self,
+        driver: &Driver<D>,
+        report: &StepReport,
+        to_collapse: bool,
+    ) {
+        self.balance.add(&report.energies, report.increment);
+        if !to_collapse {
+            self.deformed(&driver.deformation(), report.increment);
+        }
+        if let Some(Between {
+            contact,
+            depth,
+            facet,
+            position,
+            pressed,
+        }) = driver.between_nodes()
+        {
+            let numbers = vec![depth, facet, pressed];
+            let at = (contact, position.to_vec());
+            self.note(Kind::Between, numbers, at, report.increment);
+        }
+    }
+
+    fn deformed<const D: usize>(&mut self, deformation: &Deformation<D>, when: usize) {
+        let Deformation {
+            strain, rotation, ..
+        } = deformation;
+        for (kind, extent) in [(Kind::Strain, strain), (Kind::Rotation, rotation)] {
+            let Extent {
+                largest,
+                cell,
+                position,
+                beyond,
+            } = *extent;
+            if beyond > LOCAL {
+                let numbers = vec![largest, beyond];
+                self.note(kind, numbers, (cell, position.to_vec()), when);
+            }
+        }
+        if let Some(&(cell, position)) = deformation.inverted.first() {
+            let count = deformation.inverted.len() as f64;
+            match &mut self.worst[Kind::Inverted as usize] {
+                // Where it begins is what counts.
+                Some(worst) => worst.numbers[0] = worst.numbers[0].max(count),
+                None => self.note(Kind::Inverted, vec![count], (cell, position.to_vec()), when),
+            }
+        }
+    }
+
+    /// Takes note of the state at the end of a step: loads grow up to there.
+    pub(super) fn end_of_step<const D: usize>(&mut self, driver: &mut Driver<D>, stage: usize) {
+        if let Some(buckling) = driver.buckling()
+            && buckling.load_factor < Buckling::<D>::NEAR
+        {
+            let mut numbers = vec![1.0 / buckling.load_factor];
+            numbers.extend(buckling.direction);
+            let at = (buckling.node, buckling.position.to_vec());
+            self.note(Kind::Buckling, numbers, at, stage);
+        }
+    }
+
+    fn note(
+        &mut self,
+        kind: Kind,
+        numbers: Vec<f64>,
+        (index, position): (usize, Vec<f64>),
+        when: usize,
+    ) {
+        let worst = &mut self.worst[kind as usize];
+        if worst.as_ref().is_none_or(|w| numbers[0] > w.numbers[0]) {
+            *worst = Some(Worst {
+                index,
+                position,
+                when,
+                numbers,
+            });
+        }
+    }
+
+    /// Appends all that [`Warnings::read`] needs.
+    pub(super) fn write(&self, out: &mut Vec<f64>) {
+        for worst in &self.worst {
+            out.push(f64::from(u8::from(worst.is_some())));
+            if let Some(w) = worst {
+                out.extend([w.index as f64, w.when as f64]);
+                for list in [&w.position, &w.numbers] {
+                    out.push(list.len() as f64);
+                    out.extend(list);
+                }
+            }
+        }
+        let b = &self.balance;
+        out.extend([b.last, b.most, b.change, b.increment as f64]);
+        out.extend(b.worst);
+    }
+
+    /// Takes over what [`Warnings::write`] left.
+    pub(super) fn read(&mut self, from: &mut Reader<'_>) -> Result<(), ModelError> {
+        for worst in &mut self.worst {
+            *worst = match from.count()? {
+                1 => {
+                    let (index, when) = (from.count()?, from.count()?);
+                    let mut list = || {
+                        let count = from.count()?;
+                        from.take(count).map(<[f64]>::to_vec)
+                    };
+                    Some(Worst {
+                        index,
+                        when,
+                        position: list()?,
+                        numbers: list()?,
+                    })
+                }
+                _ => None,
+            };
+        }
+        self.balance = Balance {
+            last: from.number()?,
+            most: from.number()?,
+            change: from.number()?,
+            increment: from.count()?,
+            worst: [from.number()?, from.number()?, from.number()?],
+        };
+        Ok(())
+    }
+
+    /// One sentence a kind.
+    pub(super) fn sentences<const D: usize>(&self, driver: &Driver<D>, deck: &Deck) -> Vec<String> {
+        let of = |kind: Kind| {
+            let worst = self.worst[kind as usize].as_ref()?;
+            Some(worst.sentence(kind, driver, deck))
+        };
+        let kinds = KINDS.into_iter().filter_map(of);
+        kinds.chain(self.balance.sentence(deck.units)).collect()
+    }
+}
+
+impl Worst {
+    fn sentence<const D: usize>(&self, kind: Kind, driver: &Driver<D>, deck: &Deck) -> String {
+        let number = |k: usize| self.numbers.get(k).copied().unwrap_or(0.0);
+        let percent = |v: f64| format!("{} %", shown(100.0 * v, 3));
+        let length = deck.units.length();
+        let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
+        match kind {
+            Kind::Strain => format!(
+                "strains are no longer small: they reach {} in cell {index} at {at} in increment {when}, and \
+                 exceed {} in parts of the body that have {} of the work or of the volume; the analysis is \
+                 linear in strains, and off by about as much as they are: move less, or take this as an \
+                 estimate",
+                percent(number(0)),
+                percent(Deformation::<D>::STRAIN),
+                percent(number(1))
+            ),
+            Kind::Rotation => format!(
+                "rotations are no longer small: they reach {}° in cell {index} at {at} in increment {when}, and \
+                 exceed {}° in parts of the body that have {} of the work or of the volume; the analysis is \
+                 one of small rotations, in the undeformed position: move less, or take this as an estimate",
+                shown(number(0).to_degrees(), 3),
+                shown(Deformation::<D>::ROTATION.to_degrees(), 3),
+                percent(number(1))
+            ),
+            Kind::Inverted => format!(
+                "cells are turned inside out by their displacements: cell {index} at {at} in increment {when} is \
+                 the first, {} are at most; from there on the result means nothing: move less",
+                shown(number(0), 9)
+            ),
+            Kind::Between => {
+                let (surface, tool) = driver.contact_name(index);
+                format!(
+                    "the tool \"{tool}\" is {} {length} within \"{surface}\" between its nodes, at {at} in \
+                     increment {when}, on a facet {} {length} long whose surface is pressed in by {} {length} at \
+                     its nodes: contact acts at nodes, and what is smaller than a facet passes between them; \
+                     use facets of a fifth of that length, or less, where \"{tool}\" touches",
+                    shown(number(0), 3),
+                    shown(number(1), 3),
+                    shown(number(2), 3)
+                )
+            }
+            Kind::Buckling => {
+                let step = deck.steps.get(when).map_or("", |s| s.name.value.as_str());
+                let factor = 1.0 / number(0);
+                let direction = place(self.numbers.get(1..).unwrap_or_default(), 2);
+                let what = match factor < 1.0 {
+                    true => "the structure has buckled before, and the result is not what happens"
+                        .into(),
+                    false => format!(
+                        "deflections that go with it are larger by about {}",
+                        percent(1.0 / (factor - 1.0))
+                    ),
+                };
+                format!(
+                    "buckling, which small displacements do not see: it begins, if not earlier by plastic flow, \
+                     at {} times the stresses at the end of step \"{step}\", with node {index} at {at} moving \
+                     most, along {direction}; {what}: load less, or hold it against that motion",
+                    shown(factor, 3)
+                )
+            }
+        }
+    }
+}
