@@ -263,7 +263,7 @@ impl<const D: usize> Driver<D> {
 
     /// The rigid motions that nothing resists in the committed state, in words: of what touches, the
     /// normals, and the tangents where it sticks.
-    pub(crate) fn free_motions(&self) -> Vec<String> {
+    pub fn free_motions(&self) -> Vec<String> {
         let loading = &self.state.loading;
         let held = loading.displacement.range(..self.mesh_dofs());
         let resists = |driver: &Self, k: usize| match driver.state.contacts[k].status {

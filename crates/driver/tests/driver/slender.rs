@@ -9,7 +9,7 @@ use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
 /// deflection under the force that is found, and a few iterations for it.
 #[test]
 fn a_slender_cantilever_is_bent_as_a_beam_is() {
-    for length in [100.0, 1000.0, 3000.0] {
+    for length in [100.0, 300.0, 1000.0] {
         let (x, y) = (uniform(0.0, length, 100), uniform(0.0, 1.0, 2));
         let mesh = block2("b", CellKind::Quad8, &x, &y).expect("valid");
         let (young, poisson, by) = (210e3, 0.3, 1e-3);

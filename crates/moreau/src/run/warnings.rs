@@ -3,7 +3,7 @@
 
 use super::{place, shown};
 use crate::deck::{Deck, Units};
-use crate::driver::{Between, Buckling, Deformation, Driver, Energies, Extent};
+use crate::driver::{Between, Buckling, ContactRecord, Deformation, Driver, Energies, Extent};
 use crate::driver::{ModelError, Reader, StepReport};
 
 /// What may be doubtful about a converged state.
@@ -19,14 +19,23 @@ enum Kind {
     Between,
     /// Stresses near to, or beyond, those of buckling.
     Buckling,
+    /// Nodes that are held inside of what they are in contact with.
+    Held,
+    /// Nodes at sharp corners of tools.
+    Corner,
+    /// Rigid motions that nothing resists.
+    Free,
 }
 
-const KINDS: [Kind; 5] = [
+const KINDS: [Kind; 8] = [
     Kind::Strain,
     Kind::Rotation,
     Kind::Inverted,
     Kind::Between,
     Kind::Buckling,
+    Kind::Held,
+    Kind::Corner,
+    Kind::Free,
 ];
 
 /// Where a doubt is worst.
@@ -99,7 +108,7 @@ impl Balance {
 
 /// Warnings of a run.
 pub(super) struct Warnings {
-    worst: [Option<Worst>; 5],
+    worst: [Option<Worst>; KINDS.len()],
     balance: Balance,
 }
 
@@ -134,6 +143,30 @@ impl Warnings {
             let numbers = vec![depth, facet, pressed];
             let at = (contact, position.to_vec());
             self.note(Kind::Between, numbers, at, report.increment);
+        }
+        self.undecided(driver, report);
+    }
+
+    /// Takes note of what contact has no say in, or not the only one.
+    fn undecided<const D: usize>(&mut self, driver: &Driver<D>, report: &StepReport) {
+        let when = report.increment;
+        // What carries a force may be inside by the springs of a penalty.
+        let inside = |c: &&ContactRecord<D>| c.u[0] < -driver.rounding_of_gaps() && c.t[0] == 0.0;
+        let held = driver.contacts().iter().filter(inside);
+        if let Some(deepest) = held.clone().min_by(|a, b| a.u[0].total_cmp(&b.u[0])) {
+            let numbers = vec![-deepest.u[0], held.count() as f64, deepest.contact as f64];
+            let at = (deepest.node, deepest.position.to_vec());
+            self.note(Kind::Held, numbers, at, when);
+        }
+        if let Some(&first) = report.corners.first() {
+            let point = &driver.contacts()[first];
+            let numbers = vec![report.corners.len() as f64, point.contact as f64];
+            let at = (point.node, point.position.to_vec());
+            self.note(Kind::Corner, numbers, at, when);
+        }
+        if !report.free_motions.is_empty() {
+            let numbers = vec![report.free_motions.len() as f64];
+            self.note(Kind::Free, numbers, (0, Vec::new()), when);
         }
     }
 
@@ -290,6 +323,37 @@ impl Worst {
                     shown(number(0), 3),
                     shown(number(1), 3),
                     shown(number(2), 3)
+                )
+            }
+            Kind::Held => {
+                let (surface, opposite) = driver.contact_name(number(2) as usize);
+                format!(
+                    "{} nodes of \"{surface}\" are held inside of \"{opposite}\", node {index} at {at} by {} \
+                     {length} in increment {when}: displacement conditions put them there, and contact cannot \
+                     push them out; release them, or move \"{opposite}\"",
+                    shown(number(1), 9),
+                    shown(number(0), 4)
+                )
+            }
+            Kind::Corner => {
+                let (surface, tool) = driver.contact_name(number(1) as usize);
+                format!(
+                    "node {index} of \"{surface}\" at {at} is at a sharp corner of \"{tool}\" in increment {when}: \
+                     the normal there is any between those of both faces, and a finer mesh gives another stress; \
+                     give the corner a radius of a few facets"
+                )
+            }
+            Kind::Free => {
+                let now = driver.free_motions();
+                let now = match now.is_empty() {
+                    true => String::new(),
+                    false => format!(" (at the end: {})", now.join(", ")),
+                };
+                format!(
+                    "in increment {when} neither conditions nor contact decide where a body is: {} rigid motions \
+                     are free{now}; forces and stresses are what they are, positions are the nearest to those \
+                     before; fix what symmetry fixes if they matter",
+                    shown(number(0), 9)
                 )
             }
             Kind::Buckling => {

@@ -318,3 +318,67 @@ fn ordinary_runs_are_not_doubted() {
         );
     }
 }
+
+/// Asserts that exactly one warning of a run that ends well has these words.
+#[track_caller]
+fn tells_once(name: &str, deck: &str, words: &[&str]) {
+    let (status, out, err, results) = run(name, deck, &[]);
+    assert_eq!(status, 0, "{out}{err}");
+    let warnings = warnings(&results);
+    let told = |w: &&String| words.iter().all(|word| w.contains(word));
+    assert_eq!(warnings.iter().filter(told).count(), 1, "{warnings:#?}");
+}
+
+/// A floor that is 0.1 mm inside of a block whose bottom does not move: the gap has its sign in all files.
+#[test]
+fn nodes_that_are_held_inside_of_a_tool_are_told() {
+    let tool = "plane = { point = [0, 0.1], normal = [0, 1] }";
+    let deck = block("quad8", [0.0, 10.0], [4, 2], tool, 0.0).replace("b.top\",", "b.bottom\",");
+    let words = [
+        "9 nodes of \"b.bottom\" are held inside of \"t\"",
+        "by 0.1 mm",
+    ];
+    tells_once("held", &deck, &words);
+    let (_, out, _, results) = run("held", &deck, &[]);
+    assert!(out.contains("penetration 1.0e-1 mm"), "{out}");
+    let contacts = fs::read_to_string(results.join("contact.csv")).expect("a table");
+    assert_eq!(
+        contacts.lines().filter(|l| l.contains(",-0.1")).count(),
+        18,
+        "{contacts}"
+    );
+}
+
+#[test]
+fn a_node_at_a_sharp_corner_of_a_tool_is_told() {
+    let tip = "polyline = [[10, 20], [0, 10], [-10, 20]]";
+    let deck = block("quad8", [-10.0, 10.0], [8, 4], tip, -0.005);
+    let words = [
+        "at a sharp corner of \"t\"",
+        "[0, 10]",
+        "give the corner a radius",
+    ];
+    tells_once("corner", &deck, &words);
+}
+
+/// A block of which every node slips, half to each side.
+#[test]
+fn a_position_that_nothing_decides_is_told() {
+    let deck = r#"
+units = "mm-N-MPa"
+analysis = "plane-strain"
+mesh.block = [{ name = "b", element = "quad4", x = { lines = [0, 1, 3, 4] }, y = [0, 3], cells = [0, 3] }]
+material = [{ on = "b", young = 1000.0, poisson = 0.3, quadrature = "full" }]
+tool = [{ name = "g", plane = { point = [0, 0], normal = [0, 1] } }]
+contact = [{ surface = "b.bottom", against = "g", friction = 0.05 }]
+[[step]]
+name = "press"
+increments = 2
+load = [{ on = "b.top", pressure = 3.0 }]
+"#;
+    tells_once(
+        "free",
+        deck,
+        &["1 rigid motions are free", "translation along x"],
+    );
+}
