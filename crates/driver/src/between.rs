@@ -198,7 +198,11 @@ impl<const D: usize> Driver<D> {
         let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), u| {
             (l.min(u), h.max(u))
         });
-        let pressed = high - low;
+        // What rounding moves is not pressed.
+        let pressed = match high - low > FINE * FINE * facet {
+            true => high - low,
+            false => 0.0,
+        };
         (depth > Between::<D>::BESIDE_PRESSED * pressed).then(|| Between {
             contact,
             depth,

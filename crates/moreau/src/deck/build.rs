@@ -286,7 +286,7 @@ fn supports<const D: usize>(
             let (name, _) = groups.origin(deck, support.cell);
             // No contact is found between bodies that lie deep within each other.
             let unmet = gaps.iter().filter(|g| !g.met);
-            let overlaps = unmet.map(|g| penetrations::sentence(deck, driver, g) + ". Then ");
+            let overlaps = unmet.map(|g| penetrations::sentence(deck, driver, g) + ". Until then ");
             let overlaps: String = overlaps.collect();
             let message = format!(
                 "step \"{}\", body \"{name}\": {overlaps}{error}",
