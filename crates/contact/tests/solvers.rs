@@ -470,3 +470,26 @@ fn a_tolerance_that_cannot_be_met_is_an_error_with_numbers() {
         other => panic!("expected NotConverged, got {other:?}"),
     }
 }
+
+/// Three nodes of a rigid bar, far from where the structure was linearised: the forces of 10⁶ N/mm on
+/// positions of 10³ mm are known to 10⁻⁷ N, however small they are.
+#[test]
+fn forces_far_from_the_origin_are_solved_for_to_their_rounding() {
+    let bend = [1.0, -2.0, 1.0];
+    let s = DMatrix::from_fn(6, 6, |i, j| match (i % 2, j % 2) {
+        (0, 0) => 1e6 * bend[i / 2] * bend[j / 2],
+        _ => f64::from(u8::from(i == j)),
+    });
+    let load = DVector::from_row_slice(&[-1.0, 0.0, -2.0, 0.0, -3.0, 0.0]);
+    let origin = [1000.1, 1000.23, 1000.36].map(|g| Local::<2>::new(-g, 0.0));
+    let law = vec![Coulomb::new(0.0).expect("valid"); 3];
+    let zero = vec![Local::zeros(); 3];
+    let problem = ContactProblem::new(s, load, origin.to_vec(), law, zero).expect("valid");
+    let solution = SemismoothNewton::default()
+        .solve(&problem, None)
+        .expect("solvable");
+    for (k, t) in solution.force.iter().enumerate() {
+        assert!((t[0] - (k + 1) as f64).abs() < 1e-5, "{t}");
+        assert!(solution.displacement[k][0].abs() < 1e-12);
+    }
+}

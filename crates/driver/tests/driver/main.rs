@@ -8,6 +8,7 @@ mod collapse;
 mod corners;
 mod increments;
 mod klarbring;
+mod law;
 mod passages;
 mod refusals;
 mod released;
