@@ -471,3 +471,65 @@ fn a_tolerance_that_cannot_be_met_is_an_error_with_numbers() {
         other => panic!("expected NotConverged, got {other:?}"),
     }
 }
+
+/// Three nodes of a stiff bar on soft springs, far from where it was linearised, the middle one in the
+/// air: its force is none only to the rounding of 10⁶ N/mm on positions of 10³ mm.
+#[test]
+fn forces_far_from_the_origin_are_solved_for_to_their_rounding() {
+    let bend = [1.0, -2.0, 1.0];
+    let s = DMatrix::from_fn(6, 6, |i, j| {
+        let spring = f64::from(u8::from(i == j));
+        match (i % 2, j % 2) {
+            (0, 0) => 1e6 * bend[i / 2] * bend[j / 2] + spring,
+            _ => spring,
+        }
+    });
+    let origin = [1000.1, 999.0, 1000.36].map(|g| Local::<2>::new(-g, 0.0));
+    let law = vec![Coulomb::new(0.3).expect("valid"); 3];
+    let zero = vec![Local::zeros(); 3];
+    let problem = ContactProblem::new(s, DVector::zeros(6), origin.to_vec(), law, zero);
+    let problem = problem.expect("valid");
+    let solution = SemismoothNewton::default()
+        .solve(&problem, None)
+        .expect("solvable");
+    let middle = 2e6 * (1000.1 + 1000.36) / (4e6 + 1.0);
+    let expected = [
+        (0.0, 1000.1 + 0.5 * middle),
+        (middle - 999.0, 0.0),
+        (0.0, 1000.36 + 0.5 * middle),
+    ];
+    for ((u, t), (gap, force)) in solution
+        .displacement
+        .iter()
+        .zip(&solution.force)
+        .zip(expected)
+    {
+        assert!((u[0] - gap).abs() < 1e-9, "{u}");
+        assert!((t[0] - force).abs() < 1e-5, "{t} {force}");
+    }
+}
+
+/// Soft springs take what they are pressed by, stiff ones tend to the law: the step predicts statuses at
+/// the stiffness of the structure and the spring in series, and takes a handful of iterations for all.
+#[test]
+fn springs_of_any_stiffness_take_a_handful_of_iterations() {
+    let entries: Vec<f64> = (0..229).map(|k| ((k * k) as f64 * 0.37).sin()).collect();
+    let n = 12;
+    let a = DMatrix::from_fn(n, n, |i, j| entries[(i * n + j) % entries.len()]);
+    let w = &a * a.transpose() + DMatrix::identity(n, n) * 0.05;
+    let free = |k: usize| Local::<3>::new(-0.4 + (k as f64 * 1.7).sin(), 0.3, -0.2);
+    let q: Vec<_> = (0..4).map(free).collect();
+    let problem = problem(w, &q, 0.3);
+    for k in [1e-6, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 1e3, 1e6, 1e12] {
+        let solution = Penalty::new(k, k).expect("valid").solve(&problem, None);
+        let solution = solution.expect("converges");
+        assert!(solution.iterations <= 5, "{k:e}: {}", solution.iterations);
+        let pressed = |u: &Local<3>| k * (-u[0]).max(0.0);
+        for (u, t) in solution.displacement.iter().zip(&solution.force) {
+            assert!(
+                (t[0] - pressed(u)).abs() <= 1e-4 * (1.0 + k).min(1.0),
+                "{k:e}: {u} {t}"
+            );
+        }
+    }
+}

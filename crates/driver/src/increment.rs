@@ -176,11 +176,7 @@ impl<const D: usize> Driver<D> {
             }
             let imbalance = match arrived {
                 true => out_of_balance,
-                // With the forces of the tangent on what is missing.
-                false => {
-                    let pairs = residual.iter().zip(&now.assembly.coupling);
-                    largest(pairs.map(|(force, coupling)| force - coupling))
-                }
+                false => now.once_arrived(&residual),
             };
             drop(residual);
             counts.newton += 1;

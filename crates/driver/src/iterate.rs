@@ -24,6 +24,13 @@ impl Iterate {
     pub(crate) fn imbalance<const D: usize>(&self, end: &Loading<D>, held: &[usize]) -> Vec<f64> {
         imbalance(&self.assembly.internal, &[&end.force, &self.contact], held)
     }
+
+    /// The largest of a force that nothing balances once missing displacements are made up for, by the
+    /// tangent \[N\].
+    pub(crate) fn once_arrived(&self, imbalance: &[f64]) -> f64 {
+        let pairs = imbalance.iter().zip(&self.assembly.coupling);
+        largest(pairs.map(|(force, coupling)| force - coupling))
+    }
 }
 
 /// Forces less the internal ones, at every degree of freedom \[N\]; zero at those held.

@@ -277,3 +277,36 @@ fn delassus<const D: usize>(
     }
     Ok(BlockMatrix::from_entries(contacts, entries))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Auto;
+    use moreau_laws::Coulomb;
+
+    /// Of bodies that are not the ones factorised: 2 v = 1 is solved where 3 v = 1 is asked for.
+    #[test]
+    fn bodies_that_are_not_in_balance_are_said_to_be() {
+        let law = vec![Coulomb::new(0.3).expect("valid")];
+        let open = vec![Local::<2>::new(1.0, 0.0)];
+        let stiffness = vec![(0, 0, 2.0)];
+        let mut global = GlobalProblem::new(
+            stiffness,
+            vec![(0, 0, 1.0), (0, 1, 1.0)],
+            vec![1.0],
+            open,
+            law,
+        )
+        .expect("valid");
+        let solution = global.solve(&Auto::default()).expect("open");
+        assert_eq!((solution.bodies[0], solution.balance), (0.5, 0.0));
+        global.stiffness[0].2 = 3.0;
+        // 1.5 against 1, over the larger.
+        let solution = global.expand(solution.local);
+        assert!(
+            (solution.balance - 1.0 / 3.0).abs() < 1e-15,
+            "{}",
+            solution.balance
+        );
+    }
+}

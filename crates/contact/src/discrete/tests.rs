@@ -411,3 +411,31 @@ fn bad_data_is_refused() {
         Err(ContactError::Floating { .. })
     ));
 }
+
+/// Contacts on bodies so stiff that a millionth and less of W tells them apart: where forces have far to
+/// go, the centre of the proximal point runs ahead of them.
+#[test]
+fn forces_that_the_bodies_hardly_tell_apart_are_soon_found() {
+    for (apart, contacts) in [(1e-6, 4), (1e-8, 2), (1e-8, 4), (1e-9, 4)] {
+        let n = 2 * contacts;
+        let w = DMatrix::from_fn(n, n, |i, j| {
+            let same = f64::from(u8::from(i == j));
+            match i % 2 == 0 && j % 2 == 0 {
+                true => 1.0 + apart * same,
+                false => same,
+            }
+        });
+        let q = |i: usize| Local::<2>::new(-1.0 - 0.2 * apart * i as f64, 0.1);
+        let problem = problem(&w, &(0..contacts).map(q).collect::<Vec<_>>(), 0.2);
+        let solution = ProximalNewton::default()
+            .solve(&problem, None)
+            .expect("solvable");
+        let whole: f64 = solution.force.iter().map(|r| r[0]).sum();
+        assert!((whole - 1.0).abs() < 1e-5, "{whole}");
+        let iterations = solution.iterations;
+        assert!(
+            iterations <= 40,
+            "{apart:e}, {contacts} contacts: {iterations} iterations"
+        );
+    }
+}

@@ -9,6 +9,11 @@ use nalgebra::{DMatrix, DVector};
 
 /// A block held at its left side and pulled at the other, factorised, with its load.
 fn pulled(memory: Option<u64>) -> (System, Vec<f64>) {
+    pulled_about(memory, None)
+}
+
+/// With a node on the interface, if one is given.
+fn pulled_about(memory: Option<u64>, pivot: Option<usize>) -> (System, Vec<f64>) {
     let (x, y) = (uniform(0.0, 10.0, 6), uniform(0.0, 5.0, 3));
     let mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
     let model = Model::new(mesh, PlaneStrain::default())
@@ -27,7 +32,7 @@ fn pulled(memory: Option<u64>) -> (System, Vec<f64>) {
         .fix("block.left", &[Axis::X, Axis::Y])
         .pressure("block.right", -100.0);
     let end = driver.loading(&step).expect("valid");
-    let mut system = driver.prepare(&end, None).expect("held");
+    let mut system = driver.prepare(&end, pivot).expect("held");
     system.factorise(true).expect("definite");
     let mut load = vec![0.0; 2 * driver.mesh.nodes().len()];
     end.force.add_to(&mut load, 1.0);
@@ -229,4 +234,82 @@ fn a_corrupt_factor_is_told_and_not_used_again() {
         system.factorise(true).expect("definite");
         assert_eq!(system.solve(&load, &mut u), Ok(()));
     }
+}
+
+/// K u − λ q = f and q·u + c λ = m against dense algebra.
+#[test]
+fn a_load_of_unknown_factor_is_solved_for_as_by_dense_algebra() {
+    let (mut system, f) = pulled_about(None, Some(40));
+    assert!(system.interface > 0);
+    let mut q = Sparse::default();
+    let own = system.dofs.clone();
+    own.iter()
+        .step_by(3)
+        .for_each(|&dof| q.add(dof, 1.0 + (dof as f64).sin()));
+    let (compliance, missing) = (2.0, 0.3);
+    let mut condensed = system.condense(f.clone());
+    let border = system.border(&mut condensed, &q, (compliance, missing));
+    let stiffness = condensed.stiffness.clone();
+    let x = stiffness.lu().solve(&condensed.load).expect("regular");
+    let factor = system.factor(&border, &mut condensed, &x);
+    let n = own.len();
+    let mut bordered = DMatrix::zeros(n + 1, n + 1);
+    bordered
+        .view_mut((0, 0), (n, n))
+        .copy_from(&dense(&system.matrix));
+    let mut right = DVector::zeros(n + 1);
+    for (i, &dof) in own.iter().enumerate() {
+        (bordered[(i, n)], bordered[(n, i)]) = (-q.at(dof), q.at(dof));
+        right[i] = f[dof];
+    }
+    (bordered[(n, n)], right[n]) = (compliance, missing);
+    let exact = bordered.lu().solve(&right).expect("regular");
+    assert!(
+        (factor / exact[n] - 1.0).abs() < 1e-9,
+        "{factor} {}",
+        exact[n]
+    );
+    let mut u = vec![0.0; f.len()];
+    let free = (&Sparse::default(), Interface::Held);
+    system.expand(condensed, &x, free, &mut u).expect("solves");
+    let size = largest(u.iter().copied());
+    let off = own
+        .iter()
+        .zip(exact.iter())
+        .map(|(&dof, exact)| u[dof] - exact);
+    assert!(largest(off) < 1e-9 * size);
+}
+
+/// In an elastic body the forces of the tangent on what is missing are those that its motion makes.
+#[test]
+fn missing_displacements_are_out_of_balance_by_the_forces_that_they_make() {
+    let (x, y) = (uniform(0.0, 10.0, 6), uniform(0.0, 5.0, 3));
+    let mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
+    let model = Model::new(mesh, PlaneStrain::default())
+        .material(
+            "block",
+            Elastic::new(210e3, 0.3).expect("valid"),
+            Integration::Reduced,
+        )
+        .expect("valid");
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    // Pulled up by a force and to the side by a displacement.
+    let step = Step::new("pull")
+        .fix("block.left", &[Axis::X, Axis::Y])
+        .displace("block.right", Axis::X, 0.01)
+        .traction("block.right", [0.0, 2e3]);
+    let start = driver.applied().clone();
+    let end = driver.loading(&step).expect("valid");
+    let mut system = driver.prepare(&end, None).expect("held");
+    let at_rest = vec![0.0; 2 * driver.mesh.nodes().len()];
+    let first = driver.first_iterate(&mut system, (&start, &end), at_rest.clone());
+    let imbalance = first.now.imbalance(&end, &first.held);
+    let found = first.now.once_arrived(&imbalance);
+    let mut moved = at_rest;
+    first.missing.add_to(&mut moved, 1.0);
+    let arrived = driver.first_iterate(&mut system, (&start, &end), moved);
+    assert!(arrived.missing.is_zero());
+    let exact = largest(arrived.now.imbalance(&end, &arrived.held));
+    assert!((found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
+    assert!(exact > 1.01 * largest(imbalance));
 }

@@ -9,6 +9,7 @@ mod corners;
 mod doubts;
 mod increments;
 mod klarbring;
+mod law;
 mod passages;
 mod refusals;
 mod released;

@@ -316,3 +316,32 @@ fn a_soil_of_mohr_and_coulomb_has_its_strength_in_triaxial_compression() -> Resu
     }
     Ok(())
 }
+
+/// p = ∫ √(2/3) ‖ε̇ᵖ‖ dt; under axial load and without dilation it is the axial plastic strain.
+#[test]
+fn the_equivalent_plastic_strain_is_the_length_of_the_plastic_path() -> Result<(), LawError> {
+    for dilatancy in [0.0, 0.25, FRICTION] {
+        let law = soil(dilatancy)?;
+        for_all(&path(), |(path, d_eps)| {
+            let (mut state, mut length) = (DruckerPragerState::default(), 0.0);
+            for step in path.iter().chain([&d_eps]) {
+                let new = law.respond(&state, step).state;
+                let flow = new.plastic_strain - state.plastic_strain;
+                length += (2.0f64 / 3.0).sqrt() * flow.norm();
+                state = new;
+                prop_assert!((law.equivalent_plastic_strain(&state) - length).abs() <= 1e-14);
+            }
+            Ok(())
+        });
+    }
+    let pressed = Sym2::from([-0.5, 0.25, 0.25, 0.0, 0.0, 0.0]);
+    let state = soil(0.0)?
+        .respond(&DruckerPragerState::default(), &pressed)
+        .state;
+    assert!(state.plastic_strain[0] < -0.1);
+    assert!(
+        (state.p + state.plastic_strain[0]).abs() < 1e-15,
+        "{state:?}"
+    );
+    Ok(())
+}

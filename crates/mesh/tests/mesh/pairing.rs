@@ -205,3 +205,65 @@ fn a_ring_meets_the_near_side_of_the_ring_within() {
         }
     }
 }
+
+/// Of two layers that face a body the nearer one is met, whatever their order; where it ends, the other.
+#[test]
+fn of_two_layers_the_nearer_is_met() {
+    for (near, far) in [("first", "second"), ("second", "first")] {
+        let layer = |name: &str, width: f64, top: f64| {
+            block2(
+                name,
+                CellKind::Quad8,
+                &uniform(0.0, width, 5),
+                &uniform(top - 0.1, top, 1),
+            )
+        };
+        let upper = block2(
+            "upper",
+            CellKind::Quad8,
+            &uniform(0.0, 6.0, 4),
+            &uniform(0.0, 1.0, 1),
+        );
+        let mut mesh = upper.expect("valid");
+        for name in ["first", "second"] {
+            let (width, top) = if name == near {
+                (3.0, -0.05)
+            } else {
+                (6.0, -0.4)
+            };
+            mesh = mesh
+                .joined(layer(name, width, top).expect("valid"))
+                .expect("valid");
+        }
+        let tops = ["first.top", "second.top"].map(|n| mesh.facet_group(n).expect("named"));
+        let own = mesh.facet_group("upper.bottom").expect("named");
+        let couplings = mesh.couplings(
+            mesh.nodes(),
+            (own, &tops.concat()),
+            Pairing::Mortar,
+            &PlaneStrain::default(),
+        );
+        assert_eq!(couplings.len(), 9);
+        let met = mesh.node_group(&format!("{near}.top")).expect("named");
+        for c in couplings {
+            let share: f64 = c
+                .opposite
+                .iter()
+                .filter(|(b, _)| met.binary_search(b).is_ok())
+                .map(|o| o.1)
+                .sum();
+            let x = mesh.nodes()[c.node][0];
+            let expected = if x < 2.9 {
+                1.0
+            } else if x > 3.1 {
+                0.0
+            } else {
+                share
+            };
+            assert!(
+                (share - expected).abs() < 1e-12,
+                "{far} behind {near} at {x}: {share}"
+            );
+        }
+    }
+}

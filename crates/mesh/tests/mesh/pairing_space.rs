@@ -267,3 +267,52 @@ fn a_tube_meets_the_near_side_of_the_tube_within() {
         }
     }
 }
+
+/// Shares are those of the warped faces themselves, not of what is seen of them along their mean normals.
+#[test]
+fn warped_faces_have_the_area_of_their_surface() {
+    for kind in [CellKind::Hex8, CellKind::Hex20, CellKind::Hex27] {
+        let mesh = body("upper", kind, [2, 2], |x| x)
+            .joined(body("lower", kind, [2, 2], |x| x))
+            .and_then(|m| m.map(|[x, y, z]| [x, y + 0.1 * (x - 3.0) * (z - 2.5), z]))
+            .expect("valid");
+        let facets = mesh.facet_group("upper.bottom").expect("named");
+        let exact: f64 = mesh
+            .facet_shares(facets, &Solid)
+            .iter()
+            .map(|s| s.area)
+            .sum();
+        let flat = SIDES[0] * SIDES[1];
+        assert!(exact > 1.02 * flat, "{kind}: {exact}");
+        let found: f64 = pair(&mesh, Pairing::Mortar).iter().map(|c| c.area).sum();
+        assert!(
+            (found / exact - 1.0).abs() < 1e-4,
+            "{kind}: {found} {exact}"
+        );
+    }
+}
+
+/// Of two layers that face a body the nearer one is met, whatever their order.
+#[test]
+fn of_two_layers_the_nearer_is_met() {
+    let upper = body("upper", CellKind::Hex8, [3, 2], |x| x);
+    for (near, far) in [("first", "second"), ("second", "first")] {
+        let mut mesh = upper.clone();
+        for name in ["first", "second"] {
+            let top = if name == near { -0.1 } else { -0.7 };
+            let [x, z] = [0, 1].map(|i| uniform(0.0, SIDES[i], 4));
+            let layer = block3(name, CellKind::Hex8, &x, &uniform(top - 0.2, top, 1), &z);
+            mesh = mesh.joined(layer.expect("valid")).expect("valid");
+        }
+        let tops = ["first.top", "second.top"].map(|n| mesh.facet_group(n).expect("named"));
+        let own = mesh.facet_group("upper.bottom").expect("named");
+        let couplings =
+            mesh.couplings(mesh.nodes(), (own, &tops.concat()), Pairing::Mortar, &Solid);
+        assert_eq!(couplings.len(), 12);
+        let met = mesh.node_group(&format!("{near}.top")).expect("named");
+        for c in couplings {
+            let only = c.opposite.iter().all(|(b, _)| met.binary_search(b).is_ok());
+            assert!(only, "{far} is met behind {near}");
+        }
+    }
+}
