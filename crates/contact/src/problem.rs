@@ -21,6 +21,8 @@ pub struct ContactProblem<const D: usize> {
     origin: Vec<Local<D>>,
     friction: Vec<Friction>,
     previous: Vec<Local<D>>,
+    /// Whether it has a proximal term.
+    held: bool,
 }
 
 /// The structure seen from its contacts: u = W t + q, with the Delassus operator W \[mm/N\].
@@ -111,6 +113,7 @@ impl<const D: usize> ContactProblem<D> {
             origin,
             friction: friction.into_iter().map(Into::into).collect(),
             previous,
+            held: false,
         })
     }
 
@@ -149,6 +152,12 @@ impl<const D: usize> ContactProblem<D> {
         for k in 0..self.stiffness.nrows() {
             self.stiffness[(k, k)] += c;
         }
+        self.held = true;
+    }
+
+    /// Whether only a proximal term makes S regular: its inverse is then too large to iterate on.
+    pub(crate) fn is_held(&self) -> bool {
+        self.held
     }
 
     /// Number of contacts.

@@ -119,6 +119,9 @@ pub(super) fn newton<const D: usize>(
         part += 1;
         // When all have stalled, sweeps find the statuses; where no inverse exists there are none.
         if part % PARTS.len() == 0 {
+            if problem.is_held() {
+                return Err(ContactError::Singular);
+            }
             // From where Newton got to, and the next time from nothing.
             let first = part == PARTS.len();
             let from = if first {

@@ -266,27 +266,3 @@ fn a_structure_that_runs_away_while_it_hardens_is_refused() {
         "{motion} mm in {size} mm"
     );
 }
-
-/// From increments that are a twentieth of the load as from shorter ones: an increment says how the
-/// structure yields at the mean of its load factors.
-#[test]
-fn the_estimate_of_a_limit_load_needs_no_short_increments() {
-    let outside = || Settings {
-        nesting: Nesting::Outside {
-            tolerance: 1e-8,
-            iterations: 100,
-        },
-        cuts: 0,
-        ..Settings::default()
-    };
-    for (load, increments) in [(1.2, 10), (1.25, 20), (1.1, 7)] {
-        let mut driver = cylinder(outside());
-        match driver.run(&pressed(load * limit()), increments, |_, _| {}) {
-            Err(StepError::Stopped { limit, reached, .. }) => {
-                println!("{load} {increments} {reached} {limit:?} {}", 1.0 / load);
-            }
-            other => panic!("{other:?}"),
-        }
-    }
-    panic!();
-}
