@@ -171,6 +171,11 @@ impl<const D: usize> Driver<D> {
                 };
                 return Ok(candidate);
             }
+            if counts.newton >= self.settings.iterations && counts.undetermined {
+                // The motion that the statuses left free has no end.
+                let (iteration, source) = (counts.newton, ContactError::Singular);
+                return Err(StepError::Contact { iteration, source });
+            }
             if counts.newton >= self.settings.iterations || !out_of_balance.is_finite() {
                 return Err(self.not_converged(&residual, counts.newton, balance));
             }
