@@ -379,8 +379,7 @@ impl<const D: usize> Driver<D> {
             let Ok(solved) = self.settings.contact.solve(problem, guess) else {
                 continue;
             };
-            let pairs = solved.displacement.iter().zip(problem.origin());
-            let motion = largest(pairs.map(|(u, g)| (u - g).amax()));
+            let motion = largest(solved.motion.iter().flatten().copied());
             let carries = soft * motion > CARRIED * problem.force_scale(&solved.force);
             return if carries { Err(error) } else { Ok(solved) };
         }

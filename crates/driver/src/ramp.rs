@@ -47,6 +47,28 @@ struct Yielded {
     stiffness: f64,
 }
 
+impl Yielded {
+    /// The increment from λ = `before` to `after`, in which the loads of the whole step do `work`
+    /// \[N·mm\]; `None` where they do none.
+    fn between(before: f64, after: f64, work: f64) -> Option<Self> {
+        (work > 0.0).then(|| Self {
+            factor: 0.5 * (before + after),
+            stiffness: (after - before) / work,
+        })
+    }
+
+    /// Where two increments in a row tend to if λ = λ∞ − A/(w + w₀) over the work w: the square root of
+    /// the stiffness is then linear in λ, and zero at λ∞. `None` where nothing yields.
+    fn limit(first: Self, last: Self) -> Option<f64> {
+        let roots = [first, last].map(|y| y.stiffness.sqrt());
+        let softer = roots[1] < (1.0 - SOFTER) * roots[0] && last.factor > first.factor;
+        softer.then(|| {
+            let ahead = roots[1] / (roots[0] - roots[1]);
+            last.factor + (last.factor - first.factor) * ahead
+        })
+    }
+}
+
 /// How the path of equilibria is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Path {
@@ -161,32 +183,21 @@ impl<const D: usize> Ramp<D> {
     /// Takes note of an increment from λ = `before`, and of the work that the loads of the whole step
     /// did in it.
     fn converged(&mut self, report: &StepReport, before: f64, work: f64) {
-        let growth = report.fraction - before;
-        let yielded = Yielded {
-            factor: before + 0.5 * growth,
-            stiffness: growth / work,
-        };
-        self.yielded = [(work > 0.0).then_some(yielded), self.yielded[0]];
+        let yielded = Yielded::between(before, report.fraction, work);
+        self.yielded = [yielded, self.yielded[0]];
         self.cuts = 0;
         self.plastic_fraction = report.plastic_fraction;
         self.work += work;
     }
 
-    /// Where the last two increments tend to if λ = λ∞ − A/(w + w₀) over the work w: the square root
-    /// of the stiffness is then linear in λ, and zero at λ∞; no less than what was reached. `None` where
+    /// The load factor that the last two increments tend to, no less than what was reached; `None` where
     /// nothing yields, or something is moved.
     fn estimated_limit(&self) -> Option<f64> {
         let [Some(last), Some(first)] = self.yielded else {
             return None;
         };
-        let moves = self.moves();
-        let roots = [first, last].map(|y| y.stiffness.sqrt());
-        let softer = roots[1] < (1.0 - SOFTER) * roots[0] && last.factor > first.factor;
-        (softer && !moves).then(|| {
-            let ahead = roots[1] / (roots[0] - roots[1]);
-            let limit = last.factor + (last.factor - first.factor) * ahead;
-            limit.max(self.done)
-        })
+        let limit = Yielded::limit(first, last).filter(|_| !self.moves());
+        limit.map(|limit| limit.max(self.done))
     }
 
     /// The error of a step that has been cut as far as allowed.
@@ -444,5 +455,25 @@ impl<const D: usize> Driver<D> {
             reports.push(report);
         }
         Ok(reports)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// λ = 1 − A/(w + w₀) in three steps of λ, whose ends and not whose means would be a hundredth off.
+    #[test]
+    fn two_increments_of_a_hyperbola_tend_to_its_limit() {
+        let (a, w0) = (0.6, 0.9);
+        let work = |factor: f64| a / (1.0 - factor) - w0;
+        let of = |before: f64, after: f64| {
+            Yielded::between(before, after, work(after) - work(before)).expect("work is done")
+        };
+        let limit = Yielded::limit(of(0.70, 0.72), of(0.72, 0.74)).expect("it yields");
+        assert!((limit - 1.0).abs() < 1e-3, "{limit}");
+        assert_eq!(Yielded::between(0.2, 0.4, 0.0), None);
+        let elastic = Yielded::between(0.0, 0.2, 3.0).expect("work is done");
+        assert_eq!(Yielded::limit(elastic, elastic), None);
     }
 }

@@ -1,6 +1,7 @@
 //! Assembly and solves of small systems against dense ones.
 
 use super::*;
+use crate::conjugate::Interface;
 use crate::norm::largest;
 use crate::{Axis, Driver, Model, Settings, Step};
 use moreau_laws::{Elastic, VonMises};
@@ -234,6 +235,55 @@ fn a_corrupt_factor_is_told_and_not_used_again() {
         system.factorise(true).expect("definite");
         assert_eq!(system.solve(&load, &mut u), Ok(()));
     }
+}
+
+/// K u − λ q = f and q·u + c λ = m against dense algebra.
+#[test]
+fn a_load_of_unknown_factor_is_solved_for_as_by_dense_algebra() {
+    let (mut system, f) = pulled_about(None, Some(45));
+    assert!(system.interface > 0);
+    let mut q = Sparse::default();
+    let own = system.dofs.clone();
+    own.iter()
+        .step_by(3)
+        .for_each(|&dof| q.add(dof, 1.0 + (dof as f64).sin()));
+    let (compliance, missing) = (2.0, 0.3);
+    let mut condensed = system.condense(f.clone());
+    let border = system.border(&mut condensed, &q, (compliance, missing));
+    let mut stiffness = condensed.stiffness.clone();
+    stiffness.fill_upper_triangle_with_lower_triangle();
+    let x = stiffness.lu().solve(&condensed.load).expect("regular");
+    let factor = system.factor(&border, &mut condensed, &x);
+    let n = own.len();
+    let mut bordered = DMatrix::zeros(n + 1, n + 1);
+    bordered
+        .view_mut((0, 0), (n, n))
+        .copy_from(&dense(&system.matrix));
+    // What is factorised has σ on the interface, which comes last.
+    for i in n - system.interface..n {
+        bordered[(i, i)] -= system.shift();
+    }
+    let mut right = DVector::zeros(n + 1);
+    for (i, &dof) in own.iter().enumerate() {
+        (bordered[(i, n)], bordered[(n, i)]) = (-q.at(dof), q.at(dof));
+        right[i] = f[dof];
+    }
+    (bordered[(n, n)], right[n]) = (compliance, missing);
+    let exact = bordered.lu().solve(&right).expect("regular");
+    assert!(
+        (factor / exact[n] - 1.0).abs() < 1e-9,
+        "{factor} {}",
+        exact[n]
+    );
+    let mut u = vec![0.0; f.len()];
+    let free = (&Sparse::default(), Interface::Held);
+    system.expand(condensed, &x, free, &mut u).expect("solves");
+    let size = largest(u.iter().copied());
+    let off = own
+        .iter()
+        .zip(exact.iter())
+        .map(|(&dof, exact)| u[dof] - exact);
+    assert!(largest(off) < 1e-9 * size);
 }
 
 /// In an elastic body the forces of the tangent on what is missing are those that its motion makes.
