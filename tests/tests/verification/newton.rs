@@ -96,7 +96,8 @@ fn pressed(
 }
 
 /// Contact that is only as exact as the iteration around it needs leads to the same increments in as
-/// many Newton iterations, and takes at most this part of its own.
+/// many Newton iterations, and takes at most this part of its own: Newton's method, which is exact a step
+/// after it is near, has little to save.
 fn saves<S>(contact: S, cells: [usize; 2], increments: usize, part: f64) -> Fallible
 where
     S: ContactSolver<2> + Copy + 'static,
@@ -129,6 +130,11 @@ where
     assert!(newton(&reports) <= newton(&expected) + 1, "{contact:?}");
     let iterations = |r: &[StepReport]| count(r, |r| r.contact_iterations) as f64;
     let saved = iterations(&reports) / iterations(&expected);
+    println!(
+        "{contact:?} {saved} {} {}",
+        iterations(&reports),
+        iterations(&expected)
+    );
     assert!(saved <= part, "{contact:?}: {saved}");
     for report in &reports {
         let gap = report.relative_gap();
@@ -139,7 +145,7 @@ where
 
 #[test]
 fn contact_is_only_as_exact_as_the_iteration_around_it() -> Fallible {
-    saves(SemismoothNewton::default(), [20, 8], 10, 1.0)?;
-    saves(GaussSeidel::default(), [40, 16], 3, 0.5)?;
-    saves(Uzawa::default(), [20, 8], 8, 0.9)
+    saves(SemismoothNewton::default(), [20, 8], 10, 0.95)?;
+    saves(GaussSeidel::default(), [40, 16], 3, 0.4)?;
+    saves(Uzawa::default(), [20, 8], 8, 0.75)
 }

@@ -70,3 +70,14 @@ fn a_way_through_the_air_is_not_cut() {
     let reports = driver.run(&down(100.2), 1, |_, _| {}).expect("converges");
     assert_eq!((reports.len(), reports[0].cuts), (1, 0));
 }
+
+/// From one side of a round tool to the other a surface that lies against it goes along the arc: the
+/// chord of the way is in the tool, and nothing passes through it.
+#[test]
+fn a_tool_that_slides_along_the_surface_is_not_cut() {
+    let mut driver = above(0.0, 10.0);
+    driver.run(&down(0.5), 2, |_, _| {}).expect("converges");
+    let along = down(0.0).tool("t", [2.0, -0.5]);
+    let reports = driver.run(&along, 1, |_, _| {}).expect("converges");
+    assert_eq!((reports.len(), reports[0].cuts), (1, 0));
+}

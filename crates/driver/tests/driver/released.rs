@@ -3,7 +3,7 @@
 
 use moreau_contact::{Ball, Plane};
 use moreau_driver::{Analysis, Axis, Driver, Model, Settings, Step};
-use moreau_laws::{Coulomb, Elastic};
+use moreau_laws::{Coulomb, Elastic, VonMises};
 use moreau_mesh::{CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform};
 
 const PLANE: [CellKind; 5] = [
@@ -243,5 +243,42 @@ fn a_block_of_which_all_nodes_slip_stays_where_it_is() {
             last.free_motions[0].contains("translation along x"),
             "{last:?}"
         );
+    }
+}
+
+/// On supports that leave it free to shrink: the stress that stays in it is in balance with itself, and
+/// no force is left that its rounding could be measured by.
+#[test]
+fn a_plastic_body_that_is_let_go_keeps_its_stress_and_no_force() {
+    for kind in PLANE {
+        let (x, y) = (uniform(0.0, 20.0, 8), uniform(-10.0, 0.0, 4));
+        let mut mesh = block2("b", kind, &x, &y).expect("valid");
+        for (name, at) in [("pin", 0.0), ("roll", 20.0)] {
+            mesh.node_group_where(name, "b.bottom", |x| (x[0] - at).abs() < 1e-9)
+                .expect("a corner");
+        }
+        let steel = VonMises::new(210e3, 0.3, 250.0).expect("valid");
+        let model = Model::new(mesh, PlaneStrain::default())
+            .material("b", steel, rule(kind))
+            .and_then(|m| m.tool("t", Ball::new([10.0, 5.0], 5.0).expect("valid")))
+            .and_then(|m| m.contact("b.top", "t", coulomb(0.2)))
+            .expect("valid");
+        let mut driver = Driver::new(model, Settings::default()).expect("valid");
+        for (name, y, increments) in [("press", -0.1, 4), ("lift", 1.0, 6), ("wait", 1.0, 2)] {
+            let step = Step::new(name)
+                .fix("pin", &AXES[..2])
+                .fix("roll", &[Axis::Y])
+                .tool("t", [0.0, y]);
+            let reports = driver.run(&step, increments, |_, _| {});
+            let reports = reports.unwrap_or_else(|e| panic!("{kind:?}, {name}: {e}"));
+            let cuts: usize = reports.iter().map(|r| r.cuts).sum();
+            assert_eq!((reports.len(), cuts), (increments, 0), "{kind:?}, {name}");
+        }
+        assert_eq!(pressed(&driver), 0.0, "{kind:?}");
+        let points = driver.points();
+        let stress = points.iter().map(|p| p.stress.amax()).fold(0.0, f64::max);
+        assert!(stress > 50.0, "{kind:?}");
+        let left = driver.reaction("pin").expect("held");
+        assert!(left.iter().all(|f| f.abs() < 1e-7), "{kind:?}: {left:?}");
     }
 }
