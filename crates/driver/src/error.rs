@@ -316,7 +316,7 @@ pub enum StepError {
     /// The step was cut as far as allowed.
     #[error(
         "step {step:?} stopped at {:.4} % of its load: increments were cut to {smallest:.2e} of the \
-         step. {} Last attempt: {cause}", 100.0 * .reached, collapse_hint(*.plastic_fraction, *.limit, *.moves)
+         step. {}Last attempt: {cause}", 100.0 * .reached, collapse_hint(.cause, *.plastic_fraction, *.limit, *.moves)
     )]
     Stopped {
         /// Name of the step.
@@ -350,15 +350,27 @@ fn worst_nodes(worst: &[Imbalance]) -> String {
     worst.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-fn collapse_hint(plastic_fraction: f64, limit: Option<f64>, moves: bool) -> String {
+/// What to look for, and a space; nothing where the cause says it.
+fn collapse_hint(
+    cause: &StepError,
+    plastic_fraction: f64,
+    limit: Option<f64>,
+    moves: bool,
+) -> String {
+    if matches!(
+        cause,
+        StepError::Passage { .. } | StepError::NotFinite { .. }
+    ) {
+        return String::new();
+    }
     if plastic_fraction <= 0.02 {
-        return "Hardly anything flows plastically: look for a contact that opens or a missing support."
+        return "Hardly anything flows plastically: look for a contact that opens or a missing support. "
             .into();
     }
     if moves {
         return "Plastic flow is widespread under motions that are prescribed: the load has probably passed \
                 its limit, and the path of equilibria turns back or breaks off where flow gathers in \
-                bands; allow smaller increments, and compare with another mesh."
+                bands; allow smaller increments, and compare with another mesh. "
             .into();
     }
     let estimate = limit.map_or_else(String::new, |limit| {
@@ -366,6 +378,6 @@ fn collapse_hint(plastic_fraction: f64, limit: Option<f64>, moves: bool) -> Stri
     });
     format!(
         "Plastic flow is widespread: the load is probably at the limit load{estimate}; prescribe \
-         displacements to pass it."
+         displacements to pass it. "
     )
 }

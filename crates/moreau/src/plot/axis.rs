@@ -99,12 +99,53 @@ impl Axis {
     }
 
     /// Decades of a logarithmic axis.
-    pub(super) fn decades(&self) -> f64 {
+    fn decades(&self) -> f64 {
         self.ends[1] - self.ends[0]
     }
 
+    /// Ticks as parts of the axis with their labels: at multiples of the step, or at powers of ten and, if
+    /// these are few, at 2 and 5 times them.
+    pub(super) fn ticks(&self) -> Vec<(f64, String)> {
+        let [low, high] = self.ends;
+        let slack = 1e-9 * (high - low);
+        let candidates: Vec<f64> = match self.scale {
+            Scale::Linear => {
+                let first = ((low - slack) / self.step).ceil();
+                let count = ((high + slack) / self.step).floor() - first;
+                (0..=count as usize)
+                    .map(|k| (first + k as f64) * self.step)
+                    .collect()
+            }
+            Scale::Logarithmic => {
+                let powers = low.floor() as i32..=high.ceil() as i32;
+                let marks = |n| [1.0f64, 2.0, 5.0].map(|m| f64::from(n) + m.log10());
+                powers.flat_map(marks).collect()
+            }
+        };
+        let within = candidates
+            .into_iter()
+            .filter(|&v| v >= low - slack && v <= high + slack);
+        within
+            .map(|v| ((v - low) / (high - low), self.tick(v)))
+            .filter(|(_, label)| !label.is_empty())
+            .collect()
+    }
+
+    /// Parts of a logarithmic axis at 2, 3, … 9 times a power of ten.
+    pub(super) fn minor(&self) -> Vec<f64> {
+        if self.scale == Scale::Linear || self.decades() > 12.0 {
+            return Vec::new();
+        }
+        let powers = self.ends[0].floor() as i32..=self.ends[1].ceil() as i32;
+        powers
+            .flat_map(|n| (2..10).map(move |m| f64::from(n) + f64::from(m).log10()))
+            .map(|v| (v - self.ends[0]) / self.decades())
+            .filter(|t| (0.0..=1.0).contains(t))
+            .collect()
+    }
+
     /// Label of a tick, at the value or at its decimal logarithm; empty if it should have none.
-    pub(super) fn tick(&self, at: f64) -> String {
+    fn tick(&self, at: f64) -> String {
         if self.scale == Scale::Linear {
             // Rounding leaves a multiple of the step near zero where zero is meant.
             return self

@@ -43,6 +43,7 @@ mod clip;
 mod colour;
 mod error;
 mod figure;
+mod look;
 mod nodal;
 mod number;
 mod pen;

@@ -3,8 +3,8 @@
 /// Generic font of all text.
 pub(super) const FONT: &str = "sans-serif";
 
-/// Text without the characters that XML forbids, by [`escape`] or a library yet to be escaped.
-pub(super) fn printable(text: &str) -> String {
+/// Text without the characters that XML forbids.
+fn printable(text: &str) -> String {
     text.chars()
         .map(|c| if c.is_whitespace() { ' ' } else { c })
         .filter(|c| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}'))

@@ -19,8 +19,8 @@ pub(super) fn sentence<const D: usize>(
     };
     let consequence = match gap.met {
         true => {
-            "the first increment pushes them apart, with the stresses that this takes; if that is not \
-             meant, move one of them, or let the contact `adjust` its gaps"
+            "the first increment pushes apart what is free to move, with the stresses that this takes; if \
+             that is not meant, move one of them, or let the contact `adjust` its gaps"
         }
         false => {
             "deeper than a facet is long, so that no contact is found between them: move one of them"
