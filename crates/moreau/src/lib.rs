@@ -30,11 +30,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "decks")]
 pub mod deck;
+#[cfg(feature = "decks")]
 pub mod files;
+#[cfg(feature = "decks")]
 pub mod memory;
 pub mod plot;
 pub mod recovery;
+#[cfg(feature = "decks")]
 pub mod run;
 
 pub use moreau_contact as contact;

@@ -1,9 +1,8 @@
 //! What is found wrong or doubtful in a deck, and where; not the decision to go on or to stop.
 
-use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource};
-use std::fmt;
+use annotate_snippets::renderer::DecorStyle;
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use std::ops::Range;
-use textwrap::{WordSeparator, WordSplitter};
 
 /// A value of a deck and the bytes of the file that it was read from.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,6 +95,23 @@ impl Finding {
     /// Says what it is about; by default an error is about a value.
     pub(super) fn about(&mut self, class: Class) {
         self.class = class;
+    }
+
+    /// What to do, and where to read more.
+    fn advice(&self) -> String {
+        let class = self.class.name();
+        let help = self.help.as_ref();
+        let help = help.map_or_else(String::new, |help| format!("{help}; "));
+        format!("{help}see docs/errors.md#{class}")
+    }
+
+    /// The part of its place on the first line, which is enough, and within the text.
+    fn shown(&self, text: &str) -> Range<usize> {
+        let start = (0..=self.span.start.min(text.len())).rfind(|&k| text.is_char_boundary(k));
+        let start = start.unwrap_or_default();
+        let piece = text.get(start..self.span.end.clamp(start, text.len()));
+        let line = piece.and_then(|piece| piece.lines().next());
+        start..start + line.map_or(0, str::len)
     }
 }
 
@@ -191,81 +207,29 @@ impl Findings {
     /// The findings as text for a terminal, in the order of the file: file, line and column, the
     /// line itself, and what is wrong with it.
     pub fn render(&self, file: &str, text: &str, colour: bool) -> String {
-        let theme = match colour {
-            true => GraphicalTheme::unicode(),
-            false => GraphicalTheme::unicode_nocolor(),
+        let renderer = match colour {
+            true => Renderer::styled(),
+            false => Renderer::plain(),
         };
-        let handler = GraphicalReportHandler::new_themed(theme)
-            .with_links(false)
-            .with_context_lines(1)
-            .with_width(100)
-            // Names and paths stay whole: a reader copies them.
-            .with_word_separator(WordSeparator::AsciiSpace)
-            .with_word_splitter(WordSplitter::NoHyphenation)
-            .with_break_words(false);
-        let source = NamedSource::new(file, text.to_owned());
+        let renderer = renderer.decor_style(DecorStyle::Unicode);
         let mut sorted: Vec<&Finding> = self.list.iter().collect();
         sorted.sort_by_key(|f| f.span.start);
         let mut out = String::new();
         for finding in sorted {
-            let shown = Shown {
-                finding,
-                source: &source,
-                text,
+            let level = match finding.severity {
+                Severity::Error => Level::ERROR,
+                Severity::Warning => Level::WARNING,
             };
-            // Writing to a string does not fail; a place that cannot be shown leaves the message.
-            if handler.render_report(&mut out, &shown).is_err() {
-                out.push_str(&finding.message);
-            }
-            out.push('\n');
+            let place = AnnotationKind::Primary.span(finding.shown(text));
+            let source = Snippet::source(text).path(file);
+            let shown = level
+                .primary_title(finding.message.as_str())
+                .element(source.annotation(place.label(finding.label.as_str())))
+                .element(Level::HELP.message(finding.advice()));
+            out.push_str(&renderer.render(&[shown]));
+            out.push_str("\n\n");
         }
         out
-    }
-}
-
-/// A finding beside the text it is about.
-#[derive(Debug)]
-struct Shown<'a> {
-    finding: &'a Finding,
-    source: &'a NamedSource<String>,
-    text: &'a str,
-}
-
-impl fmt::Display for Shown<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.finding.message)
-    }
-}
-
-impl std::error::Error for Shown<'_> {}
-
-impl Diagnostic for Shown<'_> {
-    fn severity(&self) -> Option<miette::Severity> {
-        Some(match self.finding.severity {
-            Severity::Error => miette::Severity::Error,
-            Severity::Warning => miette::Severity::Warning,
-        })
-    }
-
-    fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        let class = self.finding.class.name();
-        let help = self.finding.help.as_ref();
-        let help = help.map_or_else(String::new, |help| format!("{help}; "));
-        Some(Box::new(format!("{help}see docs/errors.md#{class}")))
-    }
-
-    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
-        Some(self.source)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        // The first line of the place is enough, and it must lie in the text.
-        let start = self.finding.span.start.min(self.text.len());
-        let end = self.finding.span.end.clamp(start, self.text.len());
-        let piece = self.text.get(start..end).unwrap_or_default();
-        let length = piece.find('\n').unwrap_or(piece.len());
-        let label = LabeledSpan::new(Some(self.finding.label.clone()), start, length);
-        Some(Box::new(std::iter::once(label)))
     }
 }
 
