@@ -2,9 +2,12 @@
 //! and by `cargo xtask verify` (full); not the crates' own unit tests.
 
 pub mod cases;
+mod csv;
 pub mod outcome;
 pub mod paper;
 pub mod problems;
+pub mod scratch;
 pub mod siconos;
+pub mod workspace;
 
 pub use outcome::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};

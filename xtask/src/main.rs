@@ -1,13 +1,8 @@
 //! The tasks of the workspace, `cargo xtask …`; not the `moreau` command that users run.
 
-mod bench;
-mod contact_bench;
-mod peers;
-#[cfg(test)]
-mod scratch;
+mod benchmarks;
 mod tidy;
 mod verify;
-mod workspace;
 
 use std::process::ExitCode;
 
@@ -31,11 +26,11 @@ enum Task {
     /// Run the verification cases and write a report
     Verify(verify::Args),
     /// Time the punched block on meshes of growing size
-    Bench(bench::Args),
+    Bench(benchmarks::Args),
     /// Run all contact solvers over a folder of discrete frictional contact problems
-    ContactBench(contact_bench::Args),
+    ContactBench(benchmarks::Args),
     /// Time the punched block by other systems that are installed, beside ours
-    Peers(peers::Args),
+    Peers(benchmarks::Args),
     /// Check the architecture of the workspace from its manifests and sources
     Tidy,
 }
@@ -43,9 +38,9 @@ enum Task {
 fn main() -> ExitCode {
     let done = match Cli::parse().task {
         Task::Verify(args) => verify::run(&args),
-        Task::Bench(args) => bench::run(&args),
-        Task::ContactBench(args) => contact_bench::run(&args),
-        Task::Peers(args) => peers::run(&args),
+        Task::Bench(args) => benchmarks::run("bench", &args),
+        Task::ContactBench(args) => benchmarks::run("contact-bench", &args),
+        Task::Peers(args) => benchmarks::run("peers", &args),
         Task::Tidy => tidy::run(),
     };
     match done {

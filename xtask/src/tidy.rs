@@ -20,8 +20,8 @@ use std::error::Error;
 use std::fmt;
 use std::path::Path;
 
-use crate::workspace;
 use tree::Tree;
+use verification::workspace;
 
 /// Something that is not as it should be, and where.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]

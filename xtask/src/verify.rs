@@ -2,9 +2,8 @@
 //! is computed is the business of the package `verification`.
 
 mod comparison;
-pub mod csv;
 mod execute;
-pub mod files;
+mod files;
 mod groups;
 mod number;
 mod paint;
@@ -26,11 +25,11 @@ use clap::CommandFactory;
 use clap::error::ErrorKind;
 use verification::Case;
 
-use crate::workspace;
 use execute::Run;
 use paint::Paint;
 use progress::Progress;
 use verdict::Verdict;
+use verification::workspace;
 
 /// Arguments of `verify`.
 #[derive(clap::Args)]
@@ -136,7 +135,7 @@ fn write(
             figures.write(&figure.name, run.case.name, &figure.svg)?;
         }
         for table in run.tables() {
-            tables.write(&table.name, run.case.name, &csv::text(table))?;
+            tables.write(&table.name, run.case.name, &table.csv())?;
         }
     }
     figures.prune()?;
@@ -161,7 +160,7 @@ fn threads() -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use verification::scratch::Scratch;
 
     fn verified(names: &[&str], out: &Path) -> (Verdict, String) {
         let known = samples::cases();
@@ -194,7 +193,7 @@ mod tests {
 
     #[test]
     fn a_run_writes_report_summary_figures_and_tables() {
-        let out = Scratch::new();
+        let out = Scratch::new().unwrap();
         let (verdict, text) = verified(&["sound"], out.path());
         assert!(verdict.pass(), "{text}");
         assert_eq!(
@@ -209,7 +208,7 @@ mod tests {
 
     #[test]
     fn files_of_an_earlier_run_do_not_survive() {
-        let out = Scratch::new();
+        let out = Scratch::new().unwrap();
         verified(&["sound"], out.path());
         out.write("figures/foreign.txt", "kept: not a figure");
         verified(&["flawed"], out.path());
@@ -220,7 +219,7 @@ mod tests {
     #[test]
     fn failed_checks_errors_and_panics_fail_the_run() {
         for name in ["flawed", "erring", "panicking"] {
-            let out = Scratch::new();
+            let out = Scratch::new().unwrap();
             let (verdict, text) = verified(&[name], out.path());
             assert!(!verdict.pass(), "{name}: {text}");
             assert!(text.contains('✗'), "{name}: {text}");
@@ -229,7 +228,7 @@ mod tests {
 
     #[test]
     fn one_failure_does_not_hide_the_others() {
-        let out = Scratch::new();
+        let out = Scratch::new().unwrap();
         let (verdict, _) = verified(&[], out.path());
         assert_eq!((verdict.passed, verdict.failed, verdict.erred), (4, 2, 2));
     }

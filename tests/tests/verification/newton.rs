@@ -130,11 +130,6 @@ where
     assert!(newton(&reports) <= newton(&expected) + 1, "{contact:?}");
     let iterations = |r: &[StepReport]| count(r, |r| r.contact_iterations) as f64;
     let saved = iterations(&reports) / iterations(&expected);
-    println!(
-        "{contact:?} {saved} {} {}",
-        iterations(&reports),
-        iterations(&expected)
-    );
     assert!(saved <= part, "{contact:?}: {saved}");
     for report in &reports {
         let gap = report.relative_gap();

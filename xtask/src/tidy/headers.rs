@@ -20,7 +20,7 @@ pub fn violations(sources: &[Source]) -> Vec<Violation> {
         .collect()
 }
 
-/// Whether a file is one of `crates/*/src`, `tests/src` and `xtask/src`.
+/// Whether a file is one of `crates/*/src`, `tests/src`, `xtask/src` and `xtask/benchmarks/src`.
 fn of_package(path: &str) -> bool {
     let in_crate = path
         .strip_prefix("crates/")
@@ -28,6 +28,7 @@ fn of_package(path: &str) -> bool {
     let rest = in_crate.map(|(_, rest)| rest);
     let rest = rest
         .or_else(|| path.strip_prefix("tests/"))
+        .or_else(|| path.strip_prefix("xtask/benchmarks/"))
         .or_else(|| path.strip_prefix("xtask/"));
     rest.is_some_and(|rest| rest.starts_with("src/"))
 }
@@ -47,6 +48,7 @@ mod tests {
             "crates/a/src/b/c.rs",
             "tests/src/b.rs",
             "xtask/src/b.rs",
+            "xtask/benchmarks/src/b.rs",
         ] {
             assert_eq!(count(path, "//! A thing; not another.\n"), 0);
             assert_eq!(count(path, "use std::fmt;\n//! A thing.\n"), 1);

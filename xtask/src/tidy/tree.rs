@@ -74,11 +74,11 @@ impl Tree {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use verification::scratch::Scratch;
 
     #[test]
     fn build_products_and_hidden_folders_are_not_read() {
-        let scratch = Scratch::new();
+        let scratch = Scratch::new().unwrap();
         for path in [
             "a.md",
             "crates/x/src/lib.rs",
@@ -87,7 +87,7 @@ mod tests {
             ".ci/run",
             "crates/x/target/d",
         ] {
-            scratch.write(path, "text");
+            scratch.write(path, "text").unwrap();
         }
         let tree = Tree::read(scratch.path()).unwrap();
         let paths: Vec<&str> = tree.texts.iter().map(|text| text.path.as_str()).collect();

@@ -124,11 +124,11 @@ fn file_name(stem: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use verification::scratch::Scratch;
 
     #[test]
     fn a_file_is_replaced_and_leaves_nothing_behind() {
-        let scratch = Scratch::new();
+        let scratch = Scratch::new().unwrap();
         let path = scratch.path().join("a.txt");
         write(&path, "one").unwrap();
         write(&path, "two").unwrap();
@@ -138,8 +138,8 @@ mod tests {
 
     #[test]
     fn an_error_names_the_path() {
-        let scratch = Scratch::new();
-        scratch.write("file", "");
+        let scratch = Scratch::new().unwrap();
+        scratch.write("file", "").unwrap();
         let error = prepare(&scratch.path().join("file"))
             .unwrap_err()
             .to_string();
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn cases_that_chose_the_same_name_do_not_overwrite_each_other() {
-        let scratch = Scratch::new();
+        let scratch = Scratch::new().unwrap();
         let mut folder = Folder::open(scratch.path(), "tables", "csv").unwrap();
         for (case, text) in [("one", "1"), ("two", "2"), ("two", "3")] {
             folder.write("curve", case, text).unwrap();
@@ -166,10 +166,10 @@ mod tests {
 
     #[test]
     fn what_this_run_did_not_write_is_removed() {
-        let scratch = Scratch::new();
-        scratch.write("figures/old.svg", "");
-        scratch.write("figures/half.svg.part", "");
-        scratch.write("figures/readme.txt", "");
+        let scratch = Scratch::new().unwrap();
+        scratch.write("figures/old.svg", "").unwrap();
+        scratch.write("figures/half.svg.part", "").unwrap();
+        scratch.write("figures/readme.txt", "").unwrap();
         let mut folder = Folder::open(scratch.path(), "figures", "svg").unwrap();
         folder.write("new", "case", "").unwrap();
         folder.prune().unwrap();

@@ -120,10 +120,7 @@ fn ranges_cut_off_what_is_outside() {
         .y_range(0.0, 5.0)
         .with("", Style::LinePoints, line);
     let svg = chart.to_svg().expect("a chart");
-    assert_eq!(
-        (pieces(&svg), svg.matches("<circle").count()),
-        (2, 2)
-    );
+    assert_eq!((pieces(&svg), svg.matches("<circle").count()), (2, 2));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use serde::Deserialize;
 use verification::siconos::Form;
 
 use super::clock::REPEAT;
-use crate::workspace;
+use verification::workspace;
 
 /// What a solver of Siconos came to.
 #[derive(Debug, Deserialize)]
@@ -88,12 +88,12 @@ impl Siconos {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use verification::scratch::Scratch;
 
     /// Where Siconos is not installed the error says what to install.
     #[test]
     fn a_single_contact_is_solved_or_the_package_named() {
-        let scratch = Scratch::new();
+        let scratch = Scratch::new().unwrap();
         let siconos = match Siconos::new(scratch.path()) {
             Ok(siconos) => siconos,
             Err(error) => {
@@ -107,7 +107,7 @@ mod tests {
         };
         // u = r + q, pressed by 1 and dragged by 0.1: it sticks.
         let text = "3\n1\n0\n3\n3\n3 3\n1 0 0\n0 1 0\n0 0 1\n-1 0.1 0\n0.3\n";
-        scratch.write("one.dat", text);
+        scratch.write("one.dat", text).unwrap();
         let file = scratch.path().join("one.dat");
         let answers = siconos.solve(&file, Form::Local, 2.0).unwrap();
         let sweeps = answers

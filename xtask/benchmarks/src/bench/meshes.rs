@@ -110,7 +110,7 @@ mod tests {
         // 25 nodes, of which five are held; a factor has at least its matrix's lower triangle.
         assert_eq!(figures.unknowns, 40);
         assert!(figures.entries > 40 && figures.entries < 40 * 40);
-        let scratch = crate::scratch::Scratch::new();
+        let scratch = verification::scratch::Scratch::new().unwrap();
         let file = scratch.path().join("mesh.msh");
         fs::create_dir_all(scratch.path())?;
         fs::write(&file, write_gmsh(&mesh))?;

@@ -17,11 +17,10 @@ use moreau::contact::{
 use moreau::laws::Local;
 use verification::siconos::{self, Form, Global, Problem, SiconosError};
 
-use crate::verify::{csv, files};
-use crate::workspace;
 use clock::Clock;
 use outcome::Run;
 use peer::{Answer, Siconos};
+use verification::workspace;
 
 /// Arguments of `contact-bench`.
 #[derive(clap::Args)]
@@ -55,7 +54,7 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
         .out
         .clone()
         .unwrap_or_else(|| workspace::root().join("target/contact-bench"));
-    files::prepare(&out)?;
+    fs::create_dir_all(&out)?;
     let names = names(&args.folder, args.only.as_deref())?;
     let bench = Bench {
         args,
@@ -83,7 +82,7 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
         outcome::manifest(&args.folder)
     };
     let table = outcome::table(&runs, &known);
-    fs::write(out.join("contact-bench.csv"), csv::text(&table))?;
+    fs::write(out.join("contact-bench.csv"), table.csv())?;
     println!("\nprocessor seconds of one thread");
     let mut methods: Vec<&str> = Vec::new();
     for run in &runs {
@@ -320,11 +319,11 @@ fn names(folder: &Path, only: Option<&str>) -> Result<Vec<String>, Box<dyn Error
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use verification::scratch::Scratch;
 
     #[test]
     fn every_method_is_run_and_the_answer_is_written() {
-        let scratch = Scratch::new();
+        let scratch = Scratch::new().unwrap();
         let folder = scratch.path().join("problems");
         fs::create_dir_all(&folder).unwrap();
         // One contact in the plane, pressed and dragged.

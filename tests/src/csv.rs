@@ -1,17 +1,19 @@
 //! A table as comma-separated values (RFC 4180, lines ended by a line feed); not a CSV reader.
 
-use verification::Table;
+use crate::Table;
 
-/// The whole file: header, then rows.
-pub fn text(table: &Table) -> String {
-    let line = |cells: &Vec<String>| {
-        let cells: Vec<String> = cells.iter().map(|cell| field(cell)).collect();
-        cells.join(",") + "\n"
-    };
-    std::iter::once(&table.header)
-        .chain(&table.rows)
-        .map(line)
-        .collect()
+impl Table {
+    /// The whole file: header, then rows.
+    pub fn csv(&self) -> String {
+        let line = |cells: &Vec<String>| {
+            let cells: Vec<String> = cells.iter().map(|cell| field(cell)).collect();
+            cells.join(",") + "\n"
+        };
+        std::iter::once(&self.header)
+            .chain(&self.rows)
+            .map(line)
+            .collect()
+    }
 }
 
 /// A field, quoted if it could be misread.
@@ -38,6 +40,6 @@ mod tests {
             rows: vec![row(&["1.5", "slip, then stick"]), row(&["", "two\nlines"])],
         };
         let expected = "x [mm],\"the \"\"state\"\"\"\n1.5,\"slip, then stick\"\n,\"two\nlines\"\n";
-        assert_eq!(text(&table), expected);
+        assert_eq!(table.csv(), expected);
     }
 }

@@ -6,7 +6,8 @@ use std::process::Command;
 
 use serde::{Deserialize, Serialize};
 
-use crate::{bench, workspace};
+use crate::bench;
+use verification::workspace;
 
 /// Arguments of `peers`.
 #[derive(clap::Args)]
