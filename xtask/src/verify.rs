@@ -210,7 +210,8 @@ mod tests {
     fn files_of_an_earlier_run_do_not_survive() {
         let out = Scratch::new().unwrap();
         verified(&["sound"], out.path());
-        out.write("figures/foreign.txt", "kept: not a figure");
+        out.write("figures/foreign.txt", "kept: not a figure")
+            .unwrap();
         verified(&["flawed"], out.path());
         assert_eq!(listing(&out.path().join("figures")), ["foreign.txt"]);
         assert!(listing(&out.path().join("tables")).is_empty());
