@@ -15,6 +15,9 @@
 //! | their results | | [`run`] |
 //! | memory that there is | | [`memory`] |
 //!
+//! Problems in text files, mesh files and results are behind the feature `decks`, the command behind
+//! `command`, both on unless `default-features = false` says otherwise; `png` is off.
+//!
 //! ```
 //! use moreau::{contact::*, driver::*, laws::*, mesh::*};
 //!
