@@ -2,7 +2,6 @@
 //! sources; neither a formatter nor a linter of Rust.
 
 mod arrows;
-mod confined;
 mod documents;
 mod elements;
 mod equations;
@@ -88,7 +87,6 @@ fn violations(root: &Path) -> Result<(Tree, Vec<Violation>), Box<dyn Error>> {
     let tree = Tree::read(root)?;
     let exists = |path: &str| root.join(path).exists();
     let mut found = arrows::violations(&arrows::packages(root)?, &tree);
-    found.extend(confined::violations(&tree.sources));
     found.extend(quiet::violations(&tree.sources));
     found.extend(forbidden::violations(&tree.sources));
     found.extend(headers::violations(&tree.sources));

@@ -26,14 +26,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod dense;
 mod discrete;
 mod error;
 mod obstacle;
 mod polyline;
 mod problem;
 mod solvers;
-mod sparse;
 
 pub use discrete::{
     Admm, Auto, BlockMatrix, GlobalProblem, GlobalSolution, LocalProblem, LocalSolution,

@@ -2,9 +2,9 @@
 //! corners, far from the interface; not the iteration that uses it.
 
 use crate::block::{Block, CellResult};
-use crate::matrix::Matrix;
 use crate::numbering::Numbering;
 use crate::scatter::FIXED;
+use moreau_algebra::Matrix;
 use moreau_mesh::Mesh;
 use std::collections::BTreeMap;
 

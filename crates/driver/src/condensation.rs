@@ -1,10 +1,10 @@
 //! The contact problem condensed from the interface unknowns, and the way back to them; not how
 //! it is solved.
 
-use crate::dense::DenseCholesky;
 use crate::interface::{ContactPoint, Footing, Kinematics};
 use crate::suspension::Suspended;
 use crate::system::System;
+use moreau_algebra::DenseCholesky;
 use moreau_contact::{ContactError, ContactProblem};
 use moreau_laws::{Local, Status};
 use nalgebra::{DMatrix, DVector};

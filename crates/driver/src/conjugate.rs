@@ -1,8 +1,8 @@
 //! Conjugate gradients for a system that has no factor of its own; not its coarse space.
 
-use crate::cholesky::Cholesky;
 use crate::coarse::Coarse;
-use crate::matrix::Matrix;
+use moreau_algebra::Cholesky;
+use moreau_algebra::Matrix;
 use nalgebra::DVector;
 
 /// Part of the residual, in the norm of the preconditioner, at which the iteration ends: Newton's

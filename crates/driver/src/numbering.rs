@@ -1,8 +1,8 @@
 //! Which displacement is which unknown, and which unknowns share a cell; no values.
 
-use crate::cholesky::Pattern;
-use crate::ordering::nested_dissection;
 use crate::scatter::FIXED;
+use moreau_algebra::Pattern;
+use moreau_algebra::nested_dissection;
 use moreau_mesh::Mesh;
 
 /// The unknowns of a mesh, in the order of their elimination.

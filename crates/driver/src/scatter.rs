@@ -1,7 +1,7 @@
 //! Where the forces and stiffness of the cells of a block go; not what they are.
 
 use crate::block::{Block, CellResult};
-use crate::cholesky::Pattern;
+use moreau_algebra::Pattern;
 
 /// Marks a degree of freedom whose displacement is prescribed.
 pub(crate) const FIXED: u32 = u32::MAX;

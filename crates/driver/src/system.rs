@@ -3,14 +3,14 @@
 
 use crate::ModelError;
 use crate::block::{Block, Stiffness};
-use crate::cholesky::{Cholesky, NotPositiveDefinite, Pattern, TooLarge};
 use crate::coarse::Coarse;
 use crate::iterate::imbalance;
-use crate::matrix::Matrix;
 use crate::numbering::Numbering;
 use crate::scatter::{FIXED, Scatter, couplings};
 use crate::sparse::Sparse;
 use crate::timings::{Timings, timed};
+use moreau_algebra::Matrix;
+use moreau_algebra::{Cholesky, NotPositiveDefinite, Pattern, TooLarge};
 use moreau_mesh::Mesh;
 use std::time::Instant;
 

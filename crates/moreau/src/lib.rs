@@ -3,6 +3,7 @@
 //!
 //! | layer | crate | here |
 //! |---|---|---|
+//! | sparse systems | `moreau-algebra` | [`algebra`] |
 //! | tensors | `moreau-mandel` | [`mandel`] |
 //! | elements, meshes | `moreau-mesh` | [`mesh`] |
 //! | laws, bipotentials | `moreau-laws` | [`laws`] |
@@ -44,6 +45,7 @@ pub mod recovery;
 #[cfg(feature = "decks")]
 pub mod run;
 
+pub use moreau_algebra as algebra;
 pub use moreau_contact as contact;
 pub use moreau_driver as driver;
 pub use moreau_laws as laws;

@@ -10,14 +10,19 @@ use super::Violation;
 use super::tree::Tree;
 
 /// Each package of the workspace, and those it may import.
-const ALLOWED: [(&str, &[&str]); 9] = [
+const ALLOWED: [(&str, &[&str]); 10] = [
+    ("moreau-algebra", &[]),
     ("moreau-mandel", &[]),
     ("moreau-mesh", &["moreau-mandel"]),
     ("moreau-laws", &["moreau-mandel"]),
-    ("moreau-contact", &["moreau-laws", "moreau-mandel"]),
+    (
+        "moreau-contact",
+        &["moreau-algebra", "moreau-laws", "moreau-mandel"],
+    ),
     (
         "moreau-driver",
         &[
+            "moreau-algebra",
             "moreau-contact",
             "moreau-laws",
             "moreau-mandel",
@@ -27,6 +32,7 @@ const ALLOWED: [(&str, &[&str]); 9] = [
     (
         "moreau",
         &[
+            "moreau-algebra",
             "moreau-contact",
             "moreau-driver",
             "moreau-laws",
@@ -40,7 +46,7 @@ const ALLOWED: [(&str, &[&str]); 9] = [
 ];
 
 /// Foreign packages that some packages only may import.
-const CONFINED: [(&str, &[&str]); 1] = [("faer", &["moreau-contact", "moreau-driver"])];
+const CONFINED: [(&str, &[&str]); 1] = [("faer", &["moreau-algebra"])];
 
 /// A package of the workspace, as cargo tells it.
 #[derive(Debug, Deserialize)]

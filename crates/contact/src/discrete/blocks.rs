@@ -1,9 +1,9 @@
 //! Square matrices of D×D blocks, compressed by block rows, and their factorisation; the libraries
 //! that factorise are behind `dense` and `sparse`.
 
-use crate::dense::Lu;
 use crate::problem::{split, stack};
-use crate::sparse::{Rows, SparseLu};
+use moreau_algebra::Lu;
+use moreau_algebra::{Rows, SparseLu};
 use moreau_laws::Local;
 use nalgebra::{DMatrix, SMatrix};
 

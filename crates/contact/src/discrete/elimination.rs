@@ -200,8 +200,8 @@ fn merge(a: &[usize], b: &[usize], without: [usize; 2], merged: &mut Vec<usize>)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dense::Lu;
     use crate::problem::stack;
+    use moreau_algebra::Lu;
     use nalgebra::{DMatrix, Matrix2};
     use proptest::prelude::*;
 

@@ -1,7 +1,7 @@
 //! The linear equations of a Newton step on the natural map; not the map.
 
 use crate::ContactProblem;
-use crate::dense::Lu;
+use moreau_algebra::Lu;
 use moreau_laws::Local;
 use nalgebra::{DMatrix, DVector, SMatrix};
 

@@ -3,10 +3,10 @@
 
 use super::System;
 use crate::conjugate::{Conjugate, Interface};
-use crate::dense::square;
 use crate::norm::largest;
 use crate::sparse::Sparse;
 use crate::timings::timed;
+use moreau_algebra::square;
 use nalgebra::{DMatrix, DVector};
 use std::time::Instant;
 

@@ -1,113 +1,44 @@
-//! Sparse Cholesky factorisation with kept symbolic work and buffers; the only file that names
-//! the sparse library.
+//! Sparse Cholesky factorisation with kept symbolic work and buffers; not the order of the unknowns.
 
 use faer::Par;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError;
+use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::cholesky::{simplicial, supernodal};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use nalgebra::{DMatrix, DVector};
 use std::fmt;
 
-/// Lower triangle of a symmetric sparse matrix by columns: pattern without values. The diagonal
-/// is the first entry of every column.
-#[derive(Debug, Clone)]
-pub(crate) struct Pattern {
-    lower: SymbolicSparseColMat<u32>,
-}
-
-impl Pattern {
-    /// From where the columns start and the rows of their entries, ascending.
-    pub(crate) fn new(column_start: Vec<u32>, row: Vec<u32>) -> Self {
-        let n = column_start.len() - 1;
-        Self {
-            lower: SymbolicSparseColMat::new_checked(n, n, column_start, None, row),
-        }
-    }
-
-    pub(crate) fn size(&self) -> usize {
-        self.lower.nrows()
-    }
-
-    /// Number of entries.
-    pub(crate) fn entries(&self) -> usize {
-        self.lower.row_idx().len()
-    }
-
-    /// Position of entry (row, column), row ≥ column, among the values.
-    pub(crate) fn slot(&self, row: u32, column: u32) -> Option<u32> {
-        let range = self.range(column as usize);
-        self.lower.row_idx()[range.clone()]
-            .binary_search(&row)
-            .ok()
-            .map(|k| (range.start + k) as u32)
-    }
-
-    /// Position of a diagonal entry among the values.
-    pub(crate) fn diagonal(&self, row: usize) -> usize {
-        self.lower.col_ptr()[row] as usize
-    }
-
-    /// Positions of the entries of a column among the values.
-    pub(crate) fn range(&self, column: usize) -> std::ops::Range<usize> {
-        let start = self.lower.col_ptr();
-        start[column] as usize..start[column + 1] as usize
-    }
-
-    /// Rows of the entries of all columns.
-    pub(crate) fn rows(&self) -> &[u32] {
-        self.lower.row_idx()
-    }
-
-    fn transposed(&self) -> SymbolicSparseColMat<u32> {
-        let n = self.size();
-        let mut column_start = vec![0u32; n + 1];
-        for &i in self.rows() {
-            column_start[i as usize + 1] += 1;
-        }
-        for j in 0..n {
-            column_start[j + 1] += column_start[j];
-        }
-        let mut next = column_start.clone();
-        let mut row = vec![0u32; self.entries()];
-        for j in 0..n {
-            for &i in &self.rows()[self.range(j)] {
-                let slot = &mut next[i as usize];
-                row[*slot as usize] = j as u32;
-                *slot += 1;
-            }
-        }
-        SymbolicSparseColMat::new_checked(n, n, column_start, None, row)
-    }
-}
+use crate::pattern::Pattern;
 
 /// A pivot that is not positive: the matrix is not positive definite.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct NotPositiveDefinite {
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("the pivot of row {row} is not positive")]
+pub struct NotPositiveDefinite {
     /// Row of the pivot in the order of the matrix.
-    pub(crate) row: usize,
+    pub row: usize,
 }
 
 /// What a factor takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Cost {
+pub struct Cost {
     /// Entries.
-    pub(crate) entries: f64,
+    pub entries: f64,
     /// Multiplications of a factorisation.
-    pub(crate) operations: f64,
+    pub operations: f64,
 }
 
 /// A factor that is not made, or that there is no room for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TooLarge {
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("the factor has {entries:.3e} entries, and there is room for {room:.3e}")]
+pub struct TooLarge {
     /// Entries of the factor.
-    pub(crate) entries: f64,
+    pub entries: f64,
     /// Entries that there is room for.
-    pub(crate) room: f64,
+    pub room: f64,
 }
 
 /// L Lᵀ = A, in the order in which A is given.
-pub(crate) struct Cholesky {
+pub struct Cholesky {
     size: usize,
     symbolic: supernodal::SymbolicSupernodalCholesky<u32>,
     factor: Vec<f64>,
@@ -137,7 +68,7 @@ impl Cholesky {
     ///
     /// # Errors
     /// [`TooLarge`] if it takes more, more than a 32-bit index counts, or more than is `accepted`.
-    pub(crate) fn analyse(
+    pub fn analyse(
         pattern: &Pattern,
         memory: Option<u64>,
         accepted: impl FnOnce(Cost) -> bool,
@@ -222,17 +153,17 @@ impl Cholesky {
     }
 
     /// Entries stored of the factor, with the zeros that make its columns alike.
-    pub(crate) fn entries(&self) -> usize {
+    pub fn entries(&self) -> usize {
         self.factor.len()
     }
 
     /// Multiplications of a factorisation.
-    pub(crate) fn operations(&self) -> f64 {
+    pub fn operations(&self) -> f64 {
         self.operations
     }
 
     /// Factorises the matrix with these values on the pattern that was analysed.
-    pub(crate) fn factorise(
+    pub fn factorise(
         &mut self,
         pattern: &Pattern,
         values: &[f64],
@@ -265,7 +196,7 @@ impl Cholesky {
     }
 
     /// x ← L⁻¹ x.
-    pub(crate) fn forward(&mut self, x: &mut [f64]) {
+    pub fn forward(&mut self, x: &mut [f64]) {
         let mut below = std::mem::take(&mut self.below);
         for s in 0..self.symbolic.n_supernodes() {
             let (start, width, rows, values) = self.supernode(s);
@@ -290,7 +221,7 @@ impl Cholesky {
     }
 
     /// x ← L⁻ᵀ x.
-    pub(crate) fn backward(&mut self, x: &mut [f64]) {
+    pub fn backward(&mut self, x: &mut [f64]) {
         let mut below = std::mem::take(&mut self.below);
         for s in (0..self.symbolic.n_supernodes()).rev() {
             let (start, width, rows, values) = self.supernode(s);
@@ -331,31 +262,29 @@ impl Cholesky {
     }
 
     /// The last `size` rows and columns of L, lower triangular.
-    pub(crate) fn trailing(&self, size: usize) -> DMatrix<f64> {
+    pub fn trailing(&self, size: usize) -> DMatrix<f64> {
         let mut block = DMatrix::zeros(size, size);
         self.trailing_entries(size, |i, j, l| block[(i, j)] = l);
         block
     }
 
     /// L_cc x with the last rows and columns of L, as many as x has.
-    pub(crate) fn trailing_times(&self, x: &[f64]) -> DVector<f64> {
+    pub fn trailing_times(&self, x: &[f64]) -> DVector<f64> {
         let mut product = DVector::zeros(x.len());
         self.trailing_entries(x.len(), |i, j, l| product[i] += l * x[j]);
         product
     }
 
     /// L_ccᵀ x with the last rows and columns of L, as many as x has.
-    pub(crate) fn trailing_transposed_times(&self, x: &[f64]) -> DVector<f64> {
+    pub fn trailing_transposed_times(&self, x: &[f64]) -> DVector<f64> {
         let mut product = DVector::zeros(x.len());
         self.trailing_entries(x.len(), |i, j, l| product[j] += l * x[i]);
         product
     }
 
-    /// Multiplies an entry of the factor, as a fault of memory or of a kernel would.
-    #[cfg(test)]
-    pub(crate) fn corrupt(&mut self, entry: usize, by: f64) {
-        let count = self.factor.len();
-        self.factor[entry % count] *= by;
+    /// Entries of the factor: to make in a test the faults that memory and kernels make.
+    pub fn factor_mut(&mut self) -> &mut [f64] {
+        &mut self.factor
     }
 }
 
@@ -381,7 +310,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ordering::nested_dissection;
+    use crate::nested_dissection;
     use nalgebra::DVector;
     use proptest::prelude::*;
 

@@ -12,7 +12,7 @@ const LEAF: usize = 8;
 /// eliminating a half never touches the other. Returns the nodes in their order of elimination.
 ///
 /// `adjacency(a)` lists the neighbours of node a, as they list a; those outside `nodes` are ignored.
-pub(crate) fn nested_dissection<'a, const D: usize>(
+pub fn nested_dissection<'a, const D: usize>(
     nodes: &[usize],
     coordinates: &[[f64; D]],
     adjacency: impl Fn(usize) -> &'a [usize],

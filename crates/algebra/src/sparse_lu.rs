@@ -9,14 +9,17 @@ use nalgebra::DVector;
 
 /// Entries of a square matrix, compressed by rows; the columns of a row in increasing order.
 #[derive(Debug, Default, Clone)]
-pub(crate) struct Rows {
-    pub(crate) starts: Vec<usize>,
-    pub(crate) columns: Vec<usize>,
-    pub(crate) values: Vec<f64>,
+pub struct Rows {
+    /// Where the rows start, and where the last one ends.
+    pub starts: Vec<usize>,
+    /// Columns of the entries.
+    pub columns: Vec<usize>,
+    /// The entries.
+    pub values: Vec<f64>,
 }
 
 /// L U = P A Q with partial pivoting and a fill-reducing order of the columns.
-pub(crate) struct SparseLu {
+pub struct SparseLu {
     symbolic: SymbolicLu<usize>,
     numeric: NumericLu<usize, f64>,
     size: usize,
@@ -24,7 +27,7 @@ pub(crate) struct SparseLu {
 
 impl SparseLu {
     /// Factorises a square matrix; `None` if it is singular.
-    pub(crate) fn new(a: &Rows) -> Option<Self> {
+    pub fn new(a: &Rows) -> Option<Self> {
         let size = a.starts.len() - 1;
         // Rows of A are columns of its transpose: that is what is factorised.
         let pattern = SymbolicSparseColMatRef::new_checked(size, size, &a.starts, None, &a.columns);
@@ -49,7 +52,7 @@ impl SparseLu {
     }
 
     /// x of A x = b; `None` where A was singular to rounding.
-    pub(crate) fn solve(&self, mut b: DVector<f64>) -> Option<DVector<f64>> {
+    pub fn solve(&self, mut b: DVector<f64>) -> Option<DVector<f64>> {
         let request = self
             .symbolic
             .solve_transpose_in_place_scratch::<f64>(1, Par::Seq);

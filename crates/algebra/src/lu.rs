@@ -11,18 +11,18 @@ use nalgebra::{DMatrix, DVector};
 const SINGULAR: f64 = 1e-14;
 
 /// L U = P A with partial pivoting.
-pub(crate) struct Lu {
+pub struct Lu {
     factors: DMatrix<f64>,
     forward: Vec<usize>,
     inverse: Vec<usize>,
     memory: MemBuffer,
     /// The least pivot over the largest.
-    pub(crate) least_pivot: f64,
+    pub least_pivot: f64,
 }
 
 impl Lu {
     /// Factorises a square matrix; `None` if it is singular to rounding or holds NaN.
-    pub(crate) fn new(mut a: DMatrix<f64>) -> Option<Self> {
+    pub fn new(mut a: DMatrix<f64>) -> Option<Self> {
         let n = a.nrows();
         let (mut forward, mut inverse) = (vec![0usize; n], vec![0usize; n]);
         let request = StackReq::or(
@@ -55,7 +55,7 @@ impl Lu {
     }
 
     /// x of A x = b.
-    pub(crate) fn solve(&mut self, mut b: DVector<f64>) -> DVector<f64> {
+    pub fn solve(&mut self, mut b: DVector<f64>) -> DVector<f64> {
         let n = b.len();
         let factors = MatRef::from_column_major_slice(self.factors.as_slice(), n, n);
         solve::solve_in_place(

@@ -1,18 +1,19 @@
 //! A symmetric matrix that cells are added to, its products and its sweeps; not its factor.
 
-use crate::cholesky::Pattern;
+use crate::pattern::Pattern;
 
-/// A stiffness, and what it goes back to.
+/// A symmetric matrix of which the lower triangle is held, and what it goes back to.
 #[derive(Debug)]
-pub(crate) struct Matrix {
-    pub(crate) pattern: Pattern,
+pub struct Matrix {
+    /// Where its entries are.
+    pub pattern: Pattern,
     values: Vec<f64>,
     kept: Option<Vec<f64>>,
 }
 
 impl Matrix {
     /// All zero.
-    pub(crate) fn new(pattern: Pattern) -> Self {
+    pub fn new(pattern: Pattern) -> Self {
         Self {
             values: vec![0.0; pattern.entries()],
             pattern,
@@ -21,17 +22,17 @@ impl Matrix {
     }
 
     /// Where it is added up.
-    pub(crate) fn values_mut(&mut self) -> (&Pattern, &mut [f64]) {
+    pub fn values_mut(&mut self) -> (&Pattern, &mut [f64]) {
         (&self.pattern, &mut self.values)
     }
 
     /// Keeps it as it is now, to go back to.
-    pub(crate) fn keep(&mut self) {
+    pub fn keep(&mut self) {
         self.kept = Some(self.values.clone());
     }
 
     /// Goes back to what was kept, or to zero.
-    pub(crate) fn reset(&mut self) {
+    pub fn reset(&mut self) {
         match &self.kept {
             Some(kept) => self.values.copy_from_slice(kept),
             None => self.values.fill(0.0),
@@ -39,16 +40,19 @@ impl Matrix {
     }
 
     /// The entries, in the order of the pattern.
-    pub(crate) fn values(&self) -> &[f64] {
+    #[inline]
+    pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    pub(crate) fn diagonal(&self, row: usize) -> f64 {
+    /// The entry on the diagonal of a row.
+    #[inline]
+    pub fn diagonal(&self, row: usize) -> f64 {
         self.values[self.pattern.diagonal(row)]
     }
 
     /// Adds to the last diagonals, so many.
-    pub(crate) fn shift(&mut self, last: usize, by: f64) {
+    pub fn shift(&mut self, last: usize, by: f64) {
         let size = self.pattern.size();
         for row in size - last..size {
             self.values[self.pattern.diagonal(row)] += by;
@@ -63,14 +67,14 @@ impl Matrix {
     }
 
     /// b − A x.
-    pub(crate) fn residual(&self, x: &[f64], b: &[f64]) -> Vec<f64> {
+    pub fn residual(&self, x: &[f64], b: &[f64]) -> Vec<f64> {
         let mut r = b.to_vec();
         self.subtract_product(x, &mut r);
         r
     }
 
     /// r ← r − A x.
-    pub(crate) fn subtract_product(&self, x: &[f64], r: &mut [f64]) {
+    pub fn subtract_product(&self, x: &[f64], r: &mut [f64]) {
         for j in 0..x.len() {
             let (diagonal, below, values) = self.column(j);
             let mut sum = diagonal * x[j];
@@ -85,7 +89,7 @@ impl Matrix {
 
     /// x of (D + L) x = b on the first `rows`, zero on the others, with D the diagonal and L what is
     /// below it: a sweep of Gauss and Seidel from nothing. Writes to `left` what that leaves of b.
-    pub(crate) fn sweep_down(&self, b: &[f64], rows: usize, x: &mut [f64], left: &mut [f64]) {
+    pub fn sweep_down(&self, b: &[f64], rows: usize, x: &mut [f64], left: &mut [f64]) {
         x.copy_from_slice(b);
         for j in 0..rows {
             let (diagonal, below, values) = self.column(j);
@@ -104,7 +108,7 @@ impl Matrix {
 
     /// A sweep of Gauss and Seidel over the first `rows` of A x = b, from the last to the first;
     /// `b` is overwritten.
-    pub(crate) fn sweep_up(&self, b: &mut [f64], rows: usize, x: &mut [f64]) {
+    pub fn sweep_up(&self, b: &mut [f64], rows: usize, x: &mut [f64]) {
         for j in 0..rows {
             let (_, below, values) = self.column(j);
             let own = x[j];

@@ -8,7 +8,7 @@ use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::{DMatrix, DVector};
 
 /// L Lᵀ = A.
-pub(crate) struct DenseCholesky {
+pub struct DenseCholesky {
     /// L, and above it what A had there.
     factor: DMatrix<f64>,
 }
@@ -16,7 +16,7 @@ pub(crate) struct DenseCholesky {
 impl DenseCholesky {
     /// Factorises a symmetric matrix, of which the lower triangle is read; `None` if it is not
     /// positive definite.
-    pub(crate) fn new(mut a: DMatrix<f64>) -> Option<Self> {
+    pub fn new(mut a: DMatrix<f64>) -> Option<Self> {
         let n = a.nrows();
         let request = factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, Default::default());
         let mut memory = MemBuffer::try_new(request).ok()?;
@@ -34,7 +34,7 @@ impl DenseCholesky {
 
     /// Whether all pivots are stiffnesses beside the largest diagonal of A: one at rounding level is a
     /// rigid motion.
-    pub(crate) fn holds(&self, stiffest: f64) -> bool {
+    pub fn holds(&self, stiffest: f64) -> bool {
         let pivots = self.factor.diagonal();
         pivots.iter().all(|pivot| pivot.powi(2) > 1e-13 * stiffest)
     }
@@ -45,7 +45,7 @@ impl DenseCholesky {
     }
 
     /// X ← L⁻¹ X.
-    pub(crate) fn forward(&self, x: &mut DMatrix<f64>) {
+    pub fn forward(&self, x: &mut DMatrix<f64>) {
         let (rows, columns) = x.shape();
         triangular_solve::solve_lower_triangular_in_place(
             self.view(),
@@ -55,19 +55,19 @@ impl DenseCholesky {
     }
 
     /// x ← L⁻¹ x.
-    pub(crate) fn forward_one(&self, x: &mut DVector<f64>) {
+    pub fn forward_one(&self, x: &mut DVector<f64>) {
         // L is regular: its pivots are positive.
         self.factor.solve_lower_triangular_mut(x);
     }
 
     /// x ← L⁻ᵀ x.
-    pub(crate) fn backward_one(&self, x: &mut DVector<f64>) {
+    pub fn backward_one(&self, x: &mut DVector<f64>) {
         self.factor.tr_solve_lower_triangular_mut(x);
     }
 }
 
 /// L Lᵀ of a lower triangular L.
-pub(crate) fn square(l: &DMatrix<f64>) -> DMatrix<f64> {
+pub fn square(l: &DMatrix<f64>) -> DMatrix<f64> {
     let n = l.nrows();
     let mut out = DMatrix::zeros(n, n);
     let view = MatRef::from_column_major_slice(l.as_slice(), n, n);
