@@ -3,7 +3,7 @@
 use crate::contract::{Samples, check, for_all};
 use crate::coulomb::{flux, force_in_cone};
 use crate::samples::{normal, unit_tangent, vector};
-use moreau_laws::{AnisotropicCoulomb, Bipotential, Coulomb, LawError, Local};
+use moreau_laws::{AnisotropicCoulomb, Bipotential, Coulomb, Friction, LawError, Local};
 use proptest::prelude::*;
 
 const MU: [f64; 2] = [0.2, 0.6];
@@ -88,5 +88,27 @@ fn equal_coefficients_are_isotropic() -> Result<(), LawError> {
         prop_assert!(a == b || (a - b).abs() <= 1e-12 * (1.0 + a.abs()));
         Ok(())
     });
+    Ok(())
+}
+
+/// A body in a plane sees the cone cut along one tangent: a force on its border there is on the border
+/// of the cone itself, whatever the length of the direction.
+#[test]
+fn along_one_tangent_it_is_coulombs_law() -> Result<(), LawError> {
+    let law = AnisotropicCoulomb::new(0.4, 0.15)?;
+    assert!((law.along([1.0, 0.0]).friction() - 0.4).abs() < 1e-15);
+    assert!((law.along([0.0, -2.0]).friction() - 0.15).abs() < 1e-15);
+    for [c, s] in [[0.3, 0.4], [-3.0, 4.0], [5.0, 1e-3]] {
+        let mu = law.along([c, s]).friction();
+        let moved = |share: f64| {
+            let tangential = 2.0 * share * mu / f64::hypot(c, s);
+            let t = Local::<3>::new(2.0, tangential * c, tangential * s);
+            (Friction::from(law).project(&t) - t).norm()
+        };
+        assert!(
+            moved(1.0 - 1e-9) < 1e-15 && moved(1.0 + 1e-6) > 1e-8,
+            "{c} {s}"
+        );
+    }
     Ok(())
 }
