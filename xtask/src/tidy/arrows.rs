@@ -172,7 +172,14 @@ mod tests {
 
     #[test]
     fn arrows_that_point_down_pass() {
-        assert!(found("moreau-driver", &["moreau-contact", "moreau-mesh", "faer"]).is_empty());
+        assert!(
+            found(
+                "moreau-driver",
+                &["moreau-contact", "moreau-mesh", "moreau-algebra"]
+            )
+            .is_empty()
+        );
+        assert!(found("moreau-algebra", &["faer"]).is_empty());
         assert!(found("verification", &["moreau", "nalgebra"]).is_empty());
     }
 
@@ -182,6 +189,7 @@ mod tests {
             ("moreau-laws", "moreau-mesh"),
             ("moreau-mesh", "moreau-laws"),
             ("moreau-contact", "moreau-mesh"),
+            ("moreau-algebra", "moreau-mesh"),
             ("moreau-mandel", "moreau-laws"),
             ("moreau", "verification"),
             ("verification", "moreau-driver"),
@@ -197,6 +205,7 @@ mod tests {
     #[test]
     fn foreign_packages_are_confined() {
         assert_eq!(found("moreau-laws", &["faer"]).len(), 1);
+        assert_eq!(found("moreau-driver", &["faer"]).len(), 1);
     }
 
     #[test]
