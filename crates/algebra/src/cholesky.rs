@@ -83,6 +83,20 @@ impl Cholesky {
         Self::analyse_for(pattern, threads, (memory, accepted))
     }
 
+    /// What the factor of a pattern takes.
+    pub fn cost(pattern: &Pattern) -> Cost {
+        let mut cost = None;
+        let _ = Self::analyse(pattern, None, |found| {
+            cost = Some(found);
+            false
+        });
+        // There is none where not even the indices have room.
+        cost.unwrap_or(Cost {
+            entries: f64::INFINITY,
+            operations: f64::INFINITY,
+        })
+    }
+
     /// The threads may depend on the number of operations.
     fn analyse_for(
         pattern: &Pattern,
@@ -200,18 +214,20 @@ impl Cholesky {
         let mut below = std::mem::take(&mut self.below);
         for s in 0..self.symbolic.n_supernodes() {
             let (start, width, rows, values) = self.supernode(s);
-            let sum = &mut below[..rows.len()];
-            sum.fill(0.0);
+            let height = width + rows.len();
             let own = &mut x[start..start + width];
-            for (j, column) in values.chunks_exact(width + rows.len()).enumerate() {
+            for (j, column) in values.chunks_exact(height).enumerate() {
                 let solved = own[j] / column[j];
                 own[j] = solved;
                 for (x, l) in own[j + 1..].iter_mut().zip(&column[j + 1..width]) {
                     *x -= l * solved;
                 }
-                for (sum, l) in sum.iter_mut().zip(&column[width..]) {
-                    *sum += l * solved;
-                }
+            }
+            let sum = &mut below[..rows.len()];
+            sum.fill(0.0);
+            let columns = values.chunks(TOGETHER * height);
+            for (columns, own) in columns.zip(own.chunks(TOGETHER)) {
+                add_product(columns, (width, height), own, sum);
             }
             for (&i, sum) in rows.iter().zip(sum) {
                 x[i as usize] -= *sum;
@@ -225,14 +241,18 @@ impl Cholesky {
         let mut below = std::mem::take(&mut self.below);
         for s in (0..self.symbolic.n_supernodes()).rev() {
             let (start, width, rows, values) = self.supernode(s);
+            let height = width + rows.len();
             let known = &mut below[..rows.len()];
             for (&i, known) in rows.iter().zip(known.iter_mut()) {
                 *known = x[i as usize];
             }
             let own = &mut x[start..start + width];
-            let columns = values.chunks_exact(width + rows.len()).enumerate();
-            for (j, column) in columns.rev() {
-                let sum = dot(&column[width..], known) + dot(&column[j + 1..width], &own[j + 1..]);
+            let columns = values.chunks(TOGETHER * height);
+            for (columns, own) in columns.zip(own.chunks_mut(TOGETHER)) {
+                subtract_products(columns, (width, height), known, own);
+            }
+            for (j, column) in values.chunks_exact(height).enumerate().rev() {
+                let sum = dot(&column[j + 1..width], &own[j + 1..]);
                 own[j] = (own[j] - sum) / column[j];
             }
         }
@@ -286,6 +306,74 @@ impl Cholesky {
     pub fn factor_mut(&mut self) -> &mut [f64] {
         &mut self.factor
     }
+}
+
+/// Columns that are read at once: what they are added to, or multiplied by, is read once for all.
+const TOGETHER: usize = 4;
+
+/// sum ← sum + Σ column x below the first `width` entries of some columns of this height.
+fn add_product(columns: &[f64], (width, height): (usize, usize), x: &[f64], sum: &mut [f64]) {
+    if let ([a, b, c, d], 4) = (x, columns.len() / height) {
+        let (p, rest) = columns.split_at(height);
+        let (q, rest) = rest.split_at(height);
+        let (r, s) = rest.split_at(height);
+        let (p, q, r, s) = (&p[width..], &q[width..], &r[width..], &s[width..]);
+        for ((((sum, p), q), r), s) in sum.iter_mut().zip(p).zip(q).zip(r).zip(s) {
+            *sum += (p * a + q * b) + (r * c + s * d);
+        }
+        return;
+    }
+    for (column, x) in columns.chunks_exact(height).zip(x) {
+        for (sum, l) in sum.iter_mut().zip(&column[width..]) {
+            *sum += l * x;
+        }
+    }
+}
+
+/// x ← x − column·known for some columns, below their first `width` entries.
+fn subtract_products(
+    columns: &[f64],
+    (width, height): (usize, usize),
+    known: &[f64],
+    x: &mut [f64],
+) {
+    if let ([a, b, c, d], 4) = (&mut *x, columns.len() / height) {
+        let (p, rest) = columns.split_at(height);
+        let (q, rest) = rest.split_at(height);
+        let (r, s) = rest.split_at(height);
+        let [p, q, r, s] = dots([&p[width..], &q[width..], &r[width..], &s[width..]], known);
+        *a -= p;
+        *b -= q;
+        *c -= r;
+        *d -= s;
+        return;
+    }
+    for (column, x) in columns.chunks_exact(height).zip(x) {
+        *x -= dot(&column[width..], known);
+    }
+}
+
+/// The products of four columns with one, each in an order that lets a processor add several at once.
+fn dots(columns: [&[f64]; 4], known: &[f64]) -> [f64; 4] {
+    const LANES: usize = 4;
+    let mut sums = [[0.0; LANES]; 4];
+    let whole = known.len() - known.len() % LANES;
+    let [p, q, r, s] = columns.map(|c| c[..whole].chunks_exact(LANES));
+    let known_lanes = known[..whole].chunks_exact(LANES);
+    for ((((x, p), q), r), s) in known_lanes.zip(p).zip(q).zip(r).zip(s) {
+        for k in 0..LANES {
+            sums[0][k] += p[k] * x[k];
+            sums[1][k] += q[k] * x[k];
+            sums[2][k] += r[k] * x[k];
+            sums[3][k] += s[k] * x[k];
+        }
+    }
+    let mut out = [0.0; 4];
+    for ((out, sums), column) in out.iter_mut().zip(sums).zip(columns) {
+        let rest = column[whole..].iter().zip(&known[whole..]);
+        *out = sums.iter().sum::<f64>() + rest.map(|(l, x)| l * x).sum::<f64>();
+    }
+    out
 }
 
 /// Σ a b in an order that lets a processor add several at once.

@@ -32,6 +32,7 @@ mod obstacle;
 mod polyline;
 mod problem;
 mod solvers;
+mod tied;
 
 pub use discrete::{
     Admm, Auto, BlockMatrix, GlobalProblem, GlobalSolution, LocalProblem, LocalSolution,
@@ -43,5 +44,6 @@ pub use polyline::Polyline;
 pub use problem::{Certificate, ContactProblem, Delassus};
 pub use solvers::{
     Anderson, ContactSolution, ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Tolerance,
-    Uzawa, uzawa_steps,
+    Uzawa, solve_tied, uzawa_steps,
 };
+pub use tied::{Structure, TiedProblem};

@@ -408,11 +408,12 @@ impl<const D: usize> Driver<D> {
         let before = self.timings();
         // Two factors at once may not fit.
         self.system = None;
+        let coupled = self.coupled();
         let mut system = System::new(
             &self.mesh,
             &self.blocks,
             fixed,
-            &interface,
+            (&interface, coupled.as_deref()),
             pivot,
             self.tools.len(),
             self.settings.memory,

@@ -3,12 +3,11 @@
 
 use crate::block::Stiffness;
 use crate::chord::Chord;
-use crate::condensation::Condensation;
-use crate::conjugate::Interface;
 use crate::control::Control;
 use crate::driver::Driver;
 use crate::error::{Imbalance, ModelError, StepError};
 use crate::interface::Kinematics;
+use crate::linearised::Linearised;
 use crate::iterate::{Iterate, slack};
 use crate::line_search::Line;
 use crate::load::{Loading, axis_letter};
@@ -16,10 +15,8 @@ use crate::norm::largest;
 use crate::report::{Iteration, StepReport};
 use crate::sparse::Sparse;
 use crate::system::System;
-use moreau_contact::{ContactError, ContactProblem, ContactSolution};
-use nalgebra::DVector;
+use moreau_contact::{ContactError, ContactSolution};
 use std::borrow::Cow;
-use std::time::Instant;
 
 /// What an increment has counted.
 #[derive(Debug, Default)]
@@ -65,14 +62,6 @@ pub(crate) struct Start {
 /// How far an increment may move anything, in sizes of the mesh, of what it prescribes and of the
 /// widest gap.
 const FARTHEST: f64 = 10.0;
-
-/// Stiffness against motions that the statuses leave free, over that of the interface: softer than any
-/// body and stiffer than rounding; more of it where forces that are as small keep the statuses from
-/// settling.
-const SOFT: [f64; 2] = [1e-10, 1e-6];
-
-/// Part of the forces in play that it may carry where nothing else needs to.
-const CARRIED: f64 = 1e-2;
 
 /// Parts of what flow adds to the stiffness that are tried in turn where the tangent is a mechanism.
 const BLENDS: [f64; 4] = [1.0 - 1e-4, 0.99, 0.8, 0.0];
@@ -191,7 +180,7 @@ impl<const D: usize> Driver<D> {
             let symmetric = self.is_symmetric();
             let fresh = !(symmetric && arrived && chord.serves(out_of_balance, balance, worth));
             if fresh {
-                self.factorise(system, &mut now, &missing)?;
+                self.linearise(system, &mut now, &missing)?;
             }
             chord.begin(out_of_balance, fresh);
             let mut load = now.assembly.load(&[&end.force]);
@@ -201,80 +190,37 @@ impl<const D: usize> Driver<D> {
             let moved = counts.newton == 1
                 && !(start.displacement.range(tools.clone())).eq(end.displacement.range(tools));
             let complete = !moved && arrived;
+            // Where the step is linear it may be the last; what a tool has moved is no imbalance yet.
+            let exact = !now.assembly.flows || moved || control.is_some();
+            let enough = match exact {
+                true => 0.0,
+                false => chord.contact_residual(imbalance, balance),
+            };
             let accuracy = (chord.contact_residual(imbalance, balance), balance);
             let mut unsymmetric = self.unsymmetric(system, &now, imbalance, accuracy);
-            let (step, growth, target, slack) = loop {
-                let mut condensed = system.condense(match &unsymmetric {
+            let (step, growth, target) = loop {
+                let linearised = Linearised {
+                    kinematics: &kinematics,
+                    missing: &missing,
+                    guess: solution.as_ref(),
+                    border: control
+                        .as_ref()
+                        .map(|c| (c.load, c.compliance, c.missing(&now.d_u))),
+                    enough,
+                };
+                let load = match &unsymmetric {
                     None => std::mem::take(&mut load),
                     Some(u) => u.load(&load),
-                });
-                let border = control.as_ref().map(|c| {
-                    let equation = (c.compliance, c.missing(&now.d_u));
-                    system.border(&mut condensed, c.load, equation)
-                });
-                let iteration = counts.newton;
-                let contact = |source: ContactError| StepError::Contact { iteration, source };
-                let previous = self.previous_forces(&kinematics);
-                let clock = Instant::now();
-                let points = (self.points.as_slice(), self.footings.as_slice());
-                let stiffness = std::mem::take(&mut condensed.stiffness);
-                let seam = (stiffness, &condensed.load);
-                let force = match &solution {
-                    Some(s) if counts.newton > 1 => s.force.clone(),
-                    _ => previous.clone(),
                 };
-                let mut condensation =
-                    Condensation::new(system, seam, points, &kinematics, (previous, &force))
-                        .map_err(contact)?;
-                // Where the step is linear it may be the last; what a tool has moved is no imbalance yet.
-                let exact = !now.assembly.flows || moved || control.is_some();
-                let enough = match exact {
-                    true => 0.0,
-                    false => chord.contact_residual(imbalance, balance),
-                };
-                let problem = &mut condensation.problem;
-                let solved = self
-                    .settings
-                    .contact
-                    .approach(problem, solution.as_ref(), enough)
-                    .or_else(|error| {
-                        counts.undetermined = true;
-                        self.nearest(system, problem, solution.as_ref(), error)
-                    })
-                    .map_err(contact)?;
-                system.timings.contact += clock.elapsed();
-                counts.contact += solved.iterations;
-                counts.last_contact = solved.iterations;
-                // On a path the stiffness is not that of the structure alone.
-                counts.criticality = control
-                    .is_none()
-                    .then(|| condensation.problem.criticality(&solved.status))
-                    .flatten();
-                let mut step = vec![0.0; now.d_u.len()];
-                missing.add_to(&mut step, 1.0);
-                let x = condensation.interface(&solved.motion);
-                let growth = border.map_or(0.0, |b| system.factor(&b, &mut condensed, &x));
-                let target = self.contact_forces(&kinematics, &solved.force);
-                // A load of unknown factor is found with the interface.
-                let yielding = (!system.is_direct() && control.is_none())
-                    .then(|| condensation.yielding(&solved.status))
-                    .flatten();
-                let give = yielding
-                    .as_ref()
-                    .map(|y| |g: &DVector<f64>| y.displacement(g));
-                let interface = match &give {
-                    Some(give) => Interface::Yields(give),
-                    None => Interface::Held,
-                };
-                system.expand(condensed, &x, (&target, interface), &mut step)?;
-                let slack = slack(&solved);
-                solution = Some(solved);
-                drop(condensation);
-                if self.settles(&mut unsymmetric, &now, &step, &held) {
-                    break (step, growth, target, slack);
+                let answer = self.answer(system, &linearised, load, &mut counts)?;
+                let target = self.contact_forces(&kinematics, &answer.solution.force);
+                solution = Some(answer.solution);
+                if self.settles(&mut unsymmetric, &now, &answer.step, &held) {
+                    break (answer.step, answer.growth, target);
                 }
                 counts.linear += 1;
             };
+            let slack = solution.as_ref().map_or(0.0, slack);
             let elastic = system.holds_elastic_factor() && !now.assembly.flows;
             let line = Line {
                 tangent: !(elastic || symmetric && chord.may_serve(balance, worth)),
@@ -361,29 +307,22 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// A contact problem that is singular, as where all that touches slips or nothing is left to press:
-    /// of its solutions, which differ by a rigid motion, the one nearest to where the bodies are. There is
-    /// none where a body falls or slides away: what holds it here would have to carry its load.
-    fn nearest(
-        &self,
-        system: &System,
-        problem: &mut ContactProblem<D>,
-        guess: Option<&ContactSolution<D>>,
-        error: ContactError,
-    ) -> Result<ContactSolution<D>, ContactError> {
-        if error != ContactError::Singular {
-            return Err(error);
+    /// Makes the system that of the tangent at an iterate: factorised, where contacts are not tied in its
+    /// factor.
+    pub(crate) fn linearise(
+        &mut self,
+        system: &mut System,
+        now: &mut Iterate,
+        missing: &Sparse,
+    ) -> Result<(), StepError> {
+        if !system.is_tied() {
+            return self.factorise(system, now, missing);
         }
-        for soft in SOFT.map(|part| part * system.shift()) {
-            problem.hold(soft);
-            let Ok(solved) = self.settings.contact.solve(problem, guess) else {
-                continue;
-            };
-            let motion = largest(solved.motion.iter().flatten().copied());
-            let carries = soft * motion > CARRIED * problem.force_scale(&solved.force);
-            return if carries { Err(error) } else { Ok(solved) };
+        if !now.assembly.stiffness {
+            let tangent = Stiffness::Plastic(1.0);
+            now.assembly = system.assemble(&mut self.blocks, &now.d_u, missing, tangent);
         }
-        Err(error)
+        Ok(())
     }
 
     /// Factorises the tangent at an iterate. Where that is a mechanism, as a plastic tangent may be

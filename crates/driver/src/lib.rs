@@ -48,6 +48,7 @@ mod interface;
 mod iterate;
 mod kinematics;
 mod line_search;
+mod linearised;
 mod load;
 mod loading;
 mod loose;
@@ -66,6 +67,7 @@ mod sparse;
 mod supports;
 mod suspension;
 mod system;
+mod tied;
 mod timings;
 mod unsymmetric;
 

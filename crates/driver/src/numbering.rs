@@ -19,16 +19,18 @@ pub(crate) struct Numbering {
 
 impl Numbering {
     /// By nested dissection of the nodes, and with those of the interface, the pivot and the tools
-    /// last; the tools are nodes after those of the mesh.
+    /// last; the tools are nodes after those of the mesh. Nodes are neighbours where they share a cell, or
+    /// are in one of the `coupled` lists.
     pub(crate) fn new<const D: usize>(
         mesh: &Mesh<D>,
         fixed: impl Fn(usize) -> bool,
         interface_nodes: &[usize],
         pivot: Option<usize>,
         tools: usize,
+        coupled: &[Vec<usize>],
     ) -> Self {
         let nodes = mesh.nodes().len() + tools;
-        let adjacency = adjacency(mesh, nodes);
+        let adjacency = adjacency(mesh, nodes, coupled);
         let neighbours = |a: usize| &adjacency.entries[adjacency.start[a]..adjacency.start[a + 1]];
         let mut is_interface = vec![false; nodes];
         for &a in interface_nodes.iter().chain(&pivot) {
@@ -38,7 +40,11 @@ impl Numbering {
         let free = |a: usize| (D * a..D * a + D).any(|dof| !fixed(dof));
         let interior = (0..nodes).filter(|&a| !is_interface[a] && free(a));
         let interior: Vec<usize> = interior.collect();
-        let mut order = nested_dissection(&interior, mesh.nodes(), neighbours);
+        let of_the_mesh = |a: usize| {
+            let all = neighbours(a);
+            &all[..all.partition_point(|&b| b < mesh.nodes().len())]
+        };
+        let mut order = nested_dissection(&interior, mesh.nodes(), of_the_mesh);
         order.extend((0..nodes).filter(|&a| is_interface[a]));
         let mut position = vec![FIXED; D * nodes];
         let mut dofs = Vec::new();
@@ -81,12 +87,18 @@ struct Adjacency {
     entries: Vec<usize>,
 }
 
-/// Nodes that share a cell with each node, without the node itself, sorted.
-fn adjacency<const D: usize>(mesh: &Mesh<D>, nodes: usize) -> Adjacency {
+/// Nodes that share a cell or a coupling with each node, without the node itself, sorted.
+fn adjacency<const D: usize>(mesh: &Mesh<D>, nodes: usize, coupled: &[Vec<usize>]) -> Adjacency {
     // Cells of node a: of[first[a]..first[a + 1]], written from the back.
     let mut first = vec![0u32; nodes + 1];
-    let all =
-        || (0..mesh.cell_count()).flat_map(|c| mesh.cell_nodes(c).iter().map(move |&a| (c, a)));
+    let group = |c: usize| match c.checked_sub(mesh.cell_count()) {
+        None => mesh.cell_nodes(c),
+        Some(k) => &coupled[k],
+    };
+    let all = || {
+        (0..mesh.cell_count() + coupled.len())
+            .flat_map(|c| group(c).iter().map(move |&a| (c, a)))
+    };
     all().for_each(|(_, a)| first[a] += 1);
     let mut sum = 0;
     for first in &mut first {
@@ -105,7 +117,7 @@ fn adjacency<const D: usize>(mesh: &Mesh<D>, nodes: usize) -> Adjacency {
     for a in 0..nodes {
         row.clear();
         for &cell in &of[first[a] as usize..first[a + 1] as usize] {
-            let cell = mesh.cell_nodes(cell as usize).iter();
+            let cell = group(cell as usize).iter();
             row.extend(cell.copied().filter(|&b| b != a));
         }
         row.sort_unstable();

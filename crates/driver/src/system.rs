@@ -47,6 +47,11 @@ pub(crate) struct System {
     matrix: Matrix,
     /// What is factorised instead where the factor of K is too large.
     coarse: Option<Coarse>,
+    /// Where contacts are tied in the factor instead of condensed: room for K and what ties add to it.
+    tied: Option<Vec<f64>>,
+    /// Counts the stiffnesses that were assembled; 0 of the elastic one.
+    version: usize,
+    versions: usize,
     shift: f64,
     stiffest: f64,
     cholesky: Cholesky,
@@ -92,11 +97,39 @@ const KEPT: usize = 1 << 21;
 /// Operations of a factorisation in the time in which a step takes up an entry of the factor.
 const OPERATIONS: f64 = 200.0;
 
+/// Operations of a factorisation in the time in which a solve takes up an entry of the factor.
+const SOLVE: f64 = 30.0;
+
 /// Operations of a factorisation in about the time of the conjugate gradients of a Newton step: ten
 /// iterations, each of which reads the matrix five times and the factor of its coarse space twice; an
 /// entry is read in the time of eighty operations.
 fn conjugate_operations(pattern: &Pattern, coarse: usize) -> f64 {
     10.0 * 80.0 * (5.0 * pattern.entries() as f64 + 2.0 * coarse as f64)
+}
+
+/// Solves of a contact problem through the factor, and factorisations.
+const TIED: (f64, f64) = (25.0, 1.5);
+
+/// Newton iterations of a contact problem that is condensed, each of which factorises its matrix.
+const CONDENSED: f64 = 6.0;
+
+/// The numbering of a system in which contacts are tied, where their problem costs less so than condensed:
+/// by operations.
+fn ties_are_cheaper(condensed: &Numbering, tied: impl Fn() -> Numbering) -> Option<Numbering> {
+    let interface = condensed.interface as f64;
+    let dense = CONDENSED * 2.0 / 3.0 * interface.powi(3);
+    let (solves, factorisations) = TIED;
+    // A factor has more entries than its matrix.
+    if dense < solves * SOLVE * 2.0 * condensed.pattern.entries() as f64 {
+        return None;
+    }
+    let tied = tied();
+    let (own, other) = (
+        Cholesky::cost(&tied.pattern),
+        Cholesky::cost(&condensed.pattern),
+    );
+    let through = factorisations * own.operations + solves * SOLVE * own.entries;
+    (through < other.operations + dense).then_some(tied)
 }
 
 impl System {
@@ -110,18 +143,24 @@ impl System {
         mesh: &Mesh<D>,
         blocks: &[Box<dyn Block<D>>],
         fixed: impl Fn(usize) -> bool,
-        interface_nodes: &[usize],
+        (interface_nodes, coupled): (&[usize], Option<&[Vec<usize>]>),
         pivot: Option<usize>,
         tools: usize,
         memory: Option<u64>,
     ) -> Result<Self, ModelError> {
         let clock = Instant::now();
+        let condensed = Numbering::new(mesh, &fixed, interface_nodes, pivot, tools, &[]);
+        let tied = coupled.and_then(|coupled| {
+            let own = || Numbering::new(mesh, &fixed, &[], None, tools, coupled);
+            ties_are_cheaper(&condensed, own)
+        });
+        let is_tied = tied.is_some();
         let Numbering {
             position,
             dofs,
             interface,
             pattern,
-        } = Numbering::new(mesh, &fixed, interface_nodes, pivot, tools);
+        } = tied.unwrap_or(condensed);
         let scatter = blocks
             .iter()
             .map(|b| Scatter::new(b.as_ref(), &position, &pattern))
@@ -135,7 +174,7 @@ impl System {
         let mut other = None;
         let own = Cholesky::analyse(&pattern, memory, |cost| {
             // In the plane a factor is small, and linear cells in plastic flow are a poor coarse space.
-            if D == 3 && conjugate_operations(&pattern, 0) < cost.operations {
+            if D == 3 && !is_tied && conjugate_operations(&pattern, 0) < cost.operations {
                 other = coarse().filter(|other| {
                     other.as_ref().is_ok_and(|(factor, _)| {
                         let solution = conjugate_operations(&pattern, factor.entries());
@@ -166,6 +205,9 @@ impl System {
             keeps_elastic: pattern.entries() <= KEPT,
             matrix: Matrix::new(pattern),
             coarse,
+            tied: is_tied.then(Vec::new),
+            version: 0,
+            versions: 0,
             shift: 0.0,
             stiffest: 0.0,
             cholesky,
@@ -264,6 +306,8 @@ impl System {
         }
         if with_stiffness {
             self.current = self.elastic_factor && !flows;
+            self.versions += usize::from(flows);
+            self.version = if flows { self.versions } else { 0 };
         }
         self.timings.assembly += clock.elapsed();
         Assembly {
@@ -306,10 +350,10 @@ impl System {
         let first = self.size() - self.interface;
         let diagonal = |p: usize| self.matrix.diagonal(p);
         self.stiffest = (0..self.size()).map(diagonal).fold(0.0, f64::max);
-        self.shift = if shifted {
-            (first..self.size()).map(diagonal).fold(0.0, f64::max)
-        } else {
-            0.0
+        self.shift = match (shifted, &self.tied) {
+            (false, _) => 0.0,
+            (true, Some(_)) => self.stiffest,
+            (true, None) => (first..self.size()).map(diagonal).fold(0.0, f64::max),
         };
         self.timings.assembly += clock.elapsed();
     }
@@ -323,6 +367,11 @@ impl System {
     /// what the others read of the factor.
     pub(crate) fn steps_per_factorisation(&self) -> f64 {
         self.cholesky.operations() / (OPERATIONS * self.cholesky.entries() as f64)
+    }
+
+    /// How many solves take about as long as a factorisation.
+    pub(crate) fn solves_per_factorisation(&self) -> f64 {
+        self.cholesky.operations() / (SOLVE * self.cholesky.entries() as f64)
     }
 
     /// Largest diagonal of the elastic stiffness \[N/mm\].
@@ -353,6 +402,47 @@ impl System {
         self.elastic_factor = elastic;
         self.current = true;
         Ok(())
+    }
+
+    /// Whether contacts are tied in the factor.
+    pub(crate) fn is_tied(&self) -> bool {
+        self.tied.is_some()
+    }
+
+    /// Which of the stiffnesses assembled so far is the last: the elastic one is always the same.
+    pub(crate) fn version(&self) -> usize {
+        self.version
+    }
+
+    /// Factorises K and what `ties` adds to its values.
+    ///
+    /// # Errors
+    /// The degree of freedom at which the sum is not positive definite.
+    pub(crate) fn tie(
+        &mut self,
+        ties: impl FnOnce(&Pattern, &mut [f64]),
+    ) -> Result<(), usize> {
+        let mut sum = self.tied.take().unwrap_or_default();
+        sum.clear();
+        sum.extend_from_slice(self.matrix.values());
+        ties(&self.matrix.pattern, &mut sum);
+        self.elastic_factor = false;
+        self.factorisations += 1;
+        let outcome = timed(&mut self.timings.factorisation, || {
+            self.cholesky.factorise(&self.matrix.pattern, &sum)
+        });
+        self.tied = Some(sum);
+        outcome.map_err(|NotPositiveDefinite { row }| self.dofs[row])
+    }
+
+    /// Position of a degree of freedom among the unknowns; `None` if it is prescribed.
+    pub(crate) fn unknown(&self, dof: usize) -> Option<u32> {
+        Some(self.position[dof]).filter(|&p| p != FIXED)
+    }
+
+    /// Entry of K on the diagonal of an unknown \[N/mm\].
+    pub(crate) fn diagonal(&self, unknown: u32) -> f64 {
+        self.matrix.diagonal(unknown as usize)
     }
 
     /// The factor held is of no use to the next increment.

@@ -3,6 +3,7 @@
 
 mod meshes;
 mod micro;
+mod plate;
 mod shaken;
 
 use std::error::Error;
@@ -24,12 +25,12 @@ pub struct Args {
     /// Contact methods; may be given again [default: exact and penalty, and all on 20x8]
     #[arg(long = "method", value_name = "METHOD")]
     methods: Vec<Method>,
-    /// Increments to run, the first of ten
-    #[arg(long, default_value_t = INCREMENTS)]
-    increments: usize,
-    /// Coefficient of friction
-    #[arg(long, default_value_t = FRICTION)]
-    friction: f64,
+    /// Increments to run, the first of ten [default: 10]; of a plate [default: 1 and 4]
+    #[arg(long)]
+    increments: Option<usize>,
+    /// Coefficient of friction [default: 0.1]; of a plate [default: 0, 0.1, 0.3, 0.6]
+    #[arg(long)]
+    friction: Option<f64>,
     /// Penalty factor of the regularised law [N/mm]
     #[arg(long, default_value_t = PENALTY)]
     penalty: f64,
@@ -42,6 +43,16 @@ pub struct Args {
     /// Gmsh file to order and factorise instead, elastic; may be given again
     #[arg(long = "mesh", value_name = "FILE")]
     meshes: Vec<PathBuf>,
+    /// A plate of so many cells along and across, contact on both its faces, instead, beside the same
+    /// plate moved without contact; may be given again
+    #[arg(long = "plate", value_name = "N")]
+    plates: Vec<usize>,
+    /// What presses the plate [default: both]
+    #[arg(long = "punch", value_name = "PUNCH")]
+    punches: Vec<plate::Punch>,
+    /// What the plate is made of [default: both]
+    #[arg(long = "law", value_name = "LAW")]
+    laws: Vec<plate::Law>,
     /// Runs of each, and more of those below a second; the fastest counts
     #[arg(long, default_value_t = 1)]
     runs: usize,
@@ -145,7 +156,11 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     if !args.meshes.is_empty() {
         return meshes::run(&args.meshes, args.runs);
     }
-    let load = (args.friction, args.increments.clamp(1, INCREMENTS));
+    if !args.plates.is_empty() {
+        return plate::run(&args.family());
+    }
+    let increments = args.increments.unwrap_or(INCREMENTS).clamp(1, INCREMENTS);
+    let load = (args.friction.unwrap_or(FRICTION), increments);
     if let Some(runs) = args.shaken {
         return shaken::run(&sizes, load, runs);
     }
@@ -186,6 +201,23 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
         std::fs::write(file, serde_json::to_string_pretty(&all)?)?;
     }
     Ok(true)
+}
+
+/// What was given, or all there is.
+fn given<'a, T>(some: &'a [T], all: &'a [T]) -> &'a [T] {
+    if some.is_empty() { all } else { some }
+}
+
+impl Args {
+    fn family(&self) -> plate::Family<'_> {
+        plate::Family {
+            sizes: &self.plates,
+            punches: given(&self.punches, &[plate::Punch::Flat, plate::Punch::Sphere]),
+            frictions: given(self.friction.as_slice(), &[0.0, 0.1, 0.3, 0.6]),
+            laws: given(&self.laws, &[plate::Law::Elastic, plate::Law::VonMises]),
+            increments: given(self.increments.as_slice(), &[1, 4]),
+        }
+    }
 }
 
 /// Most runs of what is over within a second.

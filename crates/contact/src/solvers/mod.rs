@@ -4,13 +4,16 @@ mod anderson;
 mod gauss_seidel;
 mod linearised;
 mod penalty;
+mod recycled;
 mod semismooth;
+mod tied;
 mod uzawa;
 
 pub use anderson::Anderson;
 pub use gauss_seidel::GaussSeidel;
 pub use penalty::Penalty;
 pub use semismooth::SemismoothNewton;
+pub use tied::solve_tied;
 pub use uzawa::{Uzawa, uzawa_steps};
 
 use crate::problem::{split, stack};
@@ -84,6 +87,13 @@ pub trait ContactSolver<const D: usize>: std::fmt::Debug + Send + Sync {
         guess: Option<&ContactSolution<D>>,
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError>;
+
+    /// Springs of compliance C \[mm/N\] in series with the law, and the tolerance, of a method that is
+    /// Newton's on the natural map: [`solve_tied`] does the same without a condensed stiffness. `None` of
+    /// other methods.
+    fn springs(&self) -> Option<(Local<D>, Tolerance)> {
+        None
+    }
 }
 
 /// Iterates t ← T(t), extrapolated, on u = W t + q until the residual common to all methods is met.

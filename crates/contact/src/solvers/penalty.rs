@@ -43,6 +43,12 @@ impl Penalty {
             },
         })
     }
+
+    fn compliance<const D: usize>(&self) -> Local<D> {
+        let mut compliance = Local::repeat(1.0 / self.tangent);
+        compliance[0] = 1.0 / self.normal;
+        compliance
+    }
 }
 
 impl<const D: usize> ContactSolver<D> for Penalty {
@@ -52,9 +58,11 @@ impl<const D: usize> ContactSolver<D> for Penalty {
         guess: Option<&ContactSolution<D>>,
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
-        let mut compliance = Local::<D>::repeat(1.0 / self.tangent);
-        compliance[0] = 1.0 / self.normal;
-        let compliance = vec![compliance; problem.contacts()];
+        let compliance = vec![self.compliance(); problem.contacts()];
         semismooth::newton(problem, &compliance, guess, (self.tolerance, enough))
+    }
+
+    fn springs(&self) -> Option<(Local<D>, Tolerance)> {
+        Some((self.compliance(), self.tolerance))
     }
 }

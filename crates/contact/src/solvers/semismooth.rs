@@ -41,6 +41,10 @@ impl<const D: usize> ContactSolver<D> for SemismoothNewton {
         let rigid = vec![Local::zeros(); problem.contacts()];
         newton(problem, &rigid, guess, (self.tolerance, enough))
     }
+
+    fn springs(&self) -> Option<(Local<D>, Tolerance)> {
+        Some((Local::zeros(), self.tolerance))
+    }
 }
 
 /// α of the map, in parts of the stiffness of the contact's own components, and the parts to try

@@ -183,6 +183,32 @@ impl System {
         outcome
     }
 
+    /// x ← (K + what is tied)⁻¹ x, at the unknowns.
+    pub(crate) fn solve_tied(&mut self, x: &mut [f64]) {
+        let clock = Instant::now();
+        self.cholesky.forward(x);
+        self.cholesky.backward(x);
+        self.timings.solution += clock.elapsed();
+    }
+
+    /// f at the unknowns.
+    pub(crate) fn at_unknowns(&self, f: &[f64]) -> Vec<f64> {
+        self.dofs.iter().map(|&dof| f[dof]).collect()
+    }
+
+    /// f − K u at the unknowns, and what rounding leaves of it, with f a sum of forces as large as `given`.
+    pub(crate) fn left(&self, f: &[f64], u: &[f64], given: f64) -> (Vec<f64>, f64) {
+        let rounding = given + self.stiffest * largest(u.iter().copied());
+        (self.matrix.residual(u, f), ACCURATE * rounding)
+    }
+
+    /// Writes displacements of the unknowns to `d_u` at every degree of freedom.
+    pub(crate) fn spread(&self, u: &[f64], d_u: &mut [f64]) {
+        for (&dof, u) in self.dofs.iter().zip(u) {
+            d_u[dof] = *u;
+        }
+    }
+
     /// A load on the unknowns that are factorised.
     fn restricted(&self, load: &[f64]) -> Vec<f64> {
         let coarse = self.coarse.as_ref();

@@ -1,0 +1,482 @@
+//! Semismooth Newton method through the factor of a structure: its linear steps by a Krylov iteration on
+//! vectors of the interface; not the structure.
+
+use super::recycled::{LeastSquares, Recycled};
+use super::{ContactSolution, Tolerance};
+use crate::problem::{split, stack};
+use crate::tied::TiedProblem;
+use crate::ContactError;
+use moreau_laws::{Local, Status};
+use nalgebra::{DVector, SMatrix};
+
+/// Ties over the stiffness of a contact: from a thousand to a million times, an iteration takes the
+/// same steps, and forces round off in proportion.
+const TIGHT: f64 = 1e3;
+
+/// α of the map, in parts of the stiffness of a contact, and the parts to try where Newton stalls.
+const PARTS: [f64; 3] = [0.1, 1.0, 0.01];
+
+/// Iterates of which the worst bounds the merit of the next.
+const MEMORY: usize = 6;
+
+/// How far below the worst of them it has to be.
+const CLEARLY: f64 = 0.7;
+
+/// Least part of a step that is worth taking before its equations are solved better.
+const WORTH_TAKING: f64 = 0.3;
+
+/// Accuracies to which the equations of a step are solved in turn, over the first, where it is of no use.
+const ACCURACIES: [f64; 3] = [1.0, 1e-2, 1e-5];
+
+/// The first accuracy at most.
+const INACCURATE: f64 = 0.01;
+
+/// Halvings of a step.
+const HALVINGS: usize = 7;
+
+/// Directions of one step at most.
+const LONGEST: usize = 120;
+
+/// Compliance of the structure between the ties of a contact, over the inverse of its stiffness there: an
+/// estimate that the Krylov iteration starts from.
+const SOFTENED: f64 = 0.3;
+
+/// Newton's method on the natural map of a tied problem.
+///
+/// With statuses come ties R: nothing where a contact is open, stiff springs across a closed gap and along
+/// what sticks, and the stiffness of friction across the direction of slip. One factorisation of
+/// K + BᵀRB answers them; the unknown left is z = t + R v, of which the map has about a unit derivative,
+/// and what that lacks a Krylov iteration finds, with a solve for each of its directions. A new factor is
+/// made where the statuses have changed and the directions that this has taken cost as much. It is the
+/// augmented Lagrangian \[83\]–\[90\], its correction solved for instead of repeated: neither the ties
+/// nor the accuracy of the iteration enter the result.
+struct Tied<'a, 'b, const D: usize> {
+    problem: &'a mut TiedProblem<'b, D>,
+    /// C of every contact, diagonal: springs in series \[mm/N\].
+    compliance: Local<D>,
+    /// α over the stiffness of a contact.
+    part: f64,
+    ties: Vec<SMatrix<f64, D, D>>,
+    /// The statuses that the ties are of.
+    tied: Vec<Status>,
+    /// Solves since the factorisation.
+    used: usize,
+    /// Whether more is tied than the statuses tell.
+    propped: bool,
+    directions: Recycled,
+}
+
+/// Where the iteration stands.
+struct At<const D: usize> {
+    z: DVector<f64>,
+    v: DVector<f64>,
+    u: Vec<Local<D>>,
+    t: Vec<Local<D>>,
+    /// u + C (t − t₀*): the part that obeys the law.
+    irreversible: Vec<Local<D>>,
+    map: Vec<Local<D>>,
+    residual: f64,
+    merit: f64,
+}
+
+/// The linearised map of a contact: E dt + A du = −G.
+struct Row<const D: usize> {
+    elastic: SMatrix<f64, D, D>,
+    shift: SMatrix<f64, D, D>,
+    value: Local<D>,
+}
+
+/// A pair (u, t) that obeys the law, of which the statuses are expected.
+struct Guess<const D: usize> {
+    u: Vec<Local<D>>,
+    irreversible: Vec<Local<D>>,
+    t: Vec<Local<D>>,
+}
+
+/// Solves a tied problem, with springs of compliance C \[mm/N\] in series with the law (zero: the law itself).
+///
+/// # Errors
+/// [`ContactError::NotConverged`], and [`ContactError::Singular`] where nothing holds the structure.
+pub fn solve_tied<const D: usize>(
+    problem: &mut TiedProblem<'_, D>,
+    compliance: Local<D>,
+    guess: Option<&ContactSolution<D>>,
+    (tolerance, enough): (Tolerance, f64),
+) -> Result<ContactSolution<D>, ContactError> {
+    let guess = Guess::new(problem, guess);
+    let mut newton = Tied {
+        ties: Vec::new(),
+        tied: Vec::new(),
+        part: PARTS[0],
+        compliance,
+        used: 0,
+        propped: false,
+        directions: Recycled::default(),
+        problem,
+    };
+    let mut now = newton.begin(&guess)?;
+    let mut first = Some(guess);
+    let mut merits: Vec<f64> = Vec::new();
+    let mut part = 0;
+    let mut iterations = 0;
+    loop {
+        let scale = newton.force_scale(&now);
+        let target = newton.part * tolerance.relative * scale;
+        let target = target.max(newton.rounding(&now));
+        if std::env::var("TRACE").is_ok() {
+            eprintln!("  it {iterations} res {:.2e} target {target:.1e} enough {enough:.1e} merit {:.2e} used {} part {} ; {:?}", now.residual, now.merit, newton.used, newton.part, { let s = newton.statuses(&now); (s.iter().filter(|s| **s==Status::Open).count(), s.iter().filter(|s| **s==Status::Stick).count(), s.iter().zip(&newton.tied).filter(|(a,b)| a!=b).count()) });
+        }
+        if now.residual <= target.max(newton.part * enough) {
+            let exact = now.residual <= target;
+            return Ok(newton.solution(now, iterations, exact));
+        }
+        if iterations >= tolerance.iterations || !now.residual.is_finite() {
+            break;
+        }
+        iterations += 1;
+        let status = newton.statuses(&now);
+        let stale = status != newton.tied;
+        if first.is_none() && stale && newton.used as f64 >= newton.problem.structure.worth() {
+            now = newton.renew(now, &status)?;
+        }
+        let rows = match first.take() {
+            Some(guess) => newton.rows_of_guess(&now, &guess),
+            None => newton.rows(&now),
+        };
+        merits.push(now.merit);
+        let recent = &merits[merits.len().saturating_sub(MEMORY)..];
+        let allowed = match iterations {
+            1 => f64::INFINITY,
+            _ => now.merit.max(CLEARLY * recent.iter().copied().fold(0.0, f64::max)),
+        };
+        match newton.step(&rows, &now, allowed) {
+            Some(next) => now = next,
+            None if newton.used > 1 && stale => now = newton.renew(now, &status)?,
+            None => {
+                part += 1;
+                if part % PARTS.len() == 0 {
+                    break;
+                }
+                newton.part = PARTS[part % PARTS.len()];
+                now = newton.at(now.z, now.v);
+                merits.clear();
+            }
+        }
+    }
+    if newton.propped {
+        return Err(ContactError::Singular);
+    }
+    Err(ContactError::NotConverged {
+        solver: "semismooth Newton through the factor",
+        iterations,
+        residual: now.residual,
+        tolerance: tolerance.relative * newton.force_scale(&now),
+    })
+}
+
+impl<const D: usize> Guess<D> {
+    /// The last solution; without one, what is closed before anything has moved sticks.
+    fn new(problem: &TiedProblem<'_, D>, solution: Option<&ContactSolution<D>>) -> Self {
+        if let Some(s) = solution {
+            return Self {
+                u: s.displacement.clone(),
+                irreversible: s.irreversible.clone(),
+                t: s.force.clone(),
+            };
+        }
+        let closed = |(i, g): (usize, &Local<D>)| {
+            let mut pair = (Local::zeros(), Local::zeros());
+            match g[0] <= 0.0 {
+                true => pair.1[0] = problem.structure.stiffness(i),
+                false => pair.0[0] = g[0],
+            }
+            pair
+        };
+        let pairs = problem.origin.iter().enumerate().map(closed);
+        let (u, t): (Vec<Local<D>>, Vec<Local<D>>) = pairs.unzip();
+        Self {
+            irreversible: u.clone(),
+            u,
+            t,
+        }
+    }
+}
+
+impl<const D: usize> Tied<'_, '_, D> {
+    fn alpha(&self, i: usize) -> f64 {
+        let alpha = self.part * self.problem.structure.stiffness(i);
+        alpha / (1.0 + alpha * self.compliance.mean())
+    }
+
+    /// The ties of a status at (u, t).
+    fn tie(&self, i: usize, status: Status, u: &Local<D>, t: &Local<D>) -> SMatrix<f64, D, D> {
+        let tight = TIGHT * self.problem.structure.stiffness(i);
+        let mut tie = match status {
+            Status::Open => return SMatrix::zeros(),
+            Status::Stick => SMatrix::identity() * tight,
+            Status::Slip => {
+                let mut across = SMatrix::<f64, D, D>::zeros();
+                across[(0, 0)] = tight;
+                let (mut slip, mut shear) = (*u, *t);
+                (slip[0], shear[0]) = (0.0, 0.0);
+                let (length, force) = (slip.norm(), shear.norm());
+                if D == 3 && force > 0.0 && length > 0.0 {
+                    let d = slip / length;
+                    let stiffness = (force / length).min(tight);
+                    for j in 1..D {
+                        for k in 1..D {
+                            let one = f64::from(u8::from(j == k));
+                            across[(j, k)] += stiffness * (one - d[j] * d[k]);
+                        }
+                    }
+                }
+                across
+            }
+        };
+        if self.compliance.amax() > 0.0 {
+            // In series with the springs: R (1 + C R)⁻¹.
+            let series = SMatrix::identity() + SMatrix::from_diagonal(&self.compliance) * tie;
+            tie = series.try_inverse().map_or(tie, |inverse| tie * inverse);
+            tie = (tie + tie.transpose()) * 0.5;
+        }
+        tie
+    }
+
+    /// Factorises with the ties of statuses at (u, t). Where that leaves the structure free to move, the
+    /// smallest gaps are tied as well.
+    fn factorise(
+        &mut self,
+        status: &[Status],
+        (u, t): (&[Local<D>], &[Local<D>]),
+    ) -> Result<(), ContactError> {
+        let count = status.len();
+        self.ties = (0..count)
+            .map(|i| self.tie(i, status[i], &u[i], &t[i]))
+            .collect();
+        self.tied = status.to_vec();
+        self.used = 0;
+        self.directions.clear();
+        self.propped = false;
+        let mut open: Vec<usize> = (0..count).filter(|&i| status[i] == Status::Open).collect();
+        open.sort_by(|&a, &b| u[a][0].total_cmp(&u[b][0]));
+        let mut more = 3 * D;
+        let mut open = open.into_iter();
+        while !self.problem.structure.tie(&self.ties) {
+            self.propped = true;
+            let mut some = open.by_ref().take(more).peekable();
+            if some.peek().is_none() {
+                return Err(ContactError::Singular);
+            }
+            for i in some {
+                self.ties[i] =
+                    SMatrix::identity() * (TIGHT * self.problem.structure.stiffness(i));
+            }
+            more *= 4;
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self, guess: &Guess<D>) -> Result<At<D>, ContactError> {
+        let (u, t) = (&guess.irreversible, &guess.t);
+        let status: Vec<Status> = (0..u.len())
+            .map(|i| self.problem.friction[i].status(&u[i], &t[i], self.alpha(i)))
+            .collect();
+        self.factorise(&status, (u, t))?;
+        let z: Vec<Local<D>> = (0..u.len())
+            .map(|i| t[i] + self.ties[i] * (guess.u[i] - self.problem.origin[i]))
+            .collect();
+        Ok(self.solve(stack(&z)))
+    }
+
+    /// Where z leads.
+    fn solve(&mut self, z: DVector<f64>) -> At<D> {
+        self.used += 1;
+        let v = self.problem.structure.displacement(&z, true);
+        self.at(z, v)
+    }
+
+    /// A new factor, with the ties of now.
+    fn renew(&mut self, now: At<D>, status: &[Status]) -> Result<At<D>, ContactError> {
+        self.factorise(status, (&now.u, &now.t))?;
+        let v = split::<D>(&now.v);
+        let z: Vec<Local<D>> = (0..v.len()).map(|i| now.t[i] + self.ties[i] * v[i]).collect();
+        Ok(self.solve(stack(&z)))
+    }
+
+    fn at(&self, z: DVector<f64>, v: DVector<f64>) -> At<D> {
+        let p = &*self.problem;
+        let count = p.friction.len();
+        let local = |all: &DVector<f64>, i: usize| -> Local<D> { all.fixed_rows::<D>(D * i).into() };
+        let mut at = At {
+            u: Vec::with_capacity(count),
+            t: Vec::with_capacity(count),
+            irreversible: Vec::with_capacity(count),
+            map: Vec::with_capacity(count),
+            residual: 0.0,
+            merit: 0.0,
+            z,
+            v,
+        };
+        for i in 0..count {
+            let v = local(&at.v, i);
+            let t = local(&at.z, i) - self.ties[i] * v;
+            let u = p.origin[i] + v;
+            let mut before = p.previous[i];
+            before[0] = 0.0;
+            let irreversible = u + self.compliance.component_mul(&(t - before));
+            let map = p.friction[i].natural_map(&irreversible, &t, self.alpha(i));
+            at.residual = at.residual.max(map.norm());
+            at.merit += map.norm_squared() / self.alpha(i);
+            at.u.push(u);
+            at.t.push(t);
+            at.irreversible.push(irreversible);
+            at.map.push(map);
+        }
+        at
+    }
+
+    fn statuses(&self, at: &At<D>) -> Vec<Status> {
+        let p = &*self.problem;
+        (0..at.u.len())
+            .map(|i| p.friction[i].status(&at.irreversible[i], &at.t[i], self.alpha(i)))
+            .collect()
+    }
+
+    /// Derivatives E and A of the map of a contact at (u, t).
+    fn derivatives(&self, i: usize, u: &Local<D>, t: &Local<D>) -> [SMatrix<f64, D, D>; 2] {
+        let law = &self.problem.friction[i];
+        let (projector, shift) = law.correct_jacobian(u, t, self.alpha(i));
+        let springs = SMatrix::from_diagonal(&self.compliance);
+        [SMatrix::identity() - projector + shift * springs, shift]
+    }
+
+    fn rows(&self, now: &At<D>) -> Vec<Row<D>> {
+        let row = |i: usize| {
+            let [elastic, shift] = self.derivatives(i, &now.irreversible[i], &now.t[i]);
+            Row {
+                elastic,
+                shift,
+                value: -now.map[i],
+            }
+        };
+        (0..now.u.len()).map(row).collect()
+    }
+
+    /// The map linearised where the last solution was, on the same side of its kinks.
+    fn rows_of_guess(&self, now: &At<D>, guess: &Guess<D>) -> Vec<Row<D>> {
+        let row = |i: usize| {
+            let [elastic, shift] = self.derivatives(i, &guess.irreversible[i], &guess.t[i]);
+            let (force, moved) = (now.t[i] - guess.t[i], now.u[i] - guess.u[i]);
+            Row {
+                value: -(elastic * force + shift * moved),
+                elastic,
+                shift,
+            }
+        };
+        (0..now.u.len()).map(row).collect()
+    }
+
+    /// The next iterate; `None` if no step along what the Krylov iteration finds makes the merit smaller than
+    /// allowed.
+    fn step(&mut self, rows: &[Row<D>], now: &At<D>, allowed: f64) -> Option<At<D>> {
+        let count = rows.len();
+        // P of every contact, and P (E z + (A − E R) W z).
+        let preconditioners: Vec<SMatrix<f64, D, D>> = (0..count)
+            .map(|i| {
+                let soft = SOFTENED * self.problem.structure.stiffness(i);
+                let own = (self.ties[i] + SMatrix::identity() * soft).try_inverse();
+                let left = rows[i].shift - rows[i].elastic * self.ties[i];
+                let sum = rows[i].elastic + left * own.unwrap_or_else(SMatrix::zeros);
+                sum.try_inverse().unwrap_or_else(SMatrix::identity)
+            })
+            .collect();
+        let image = |z: &DVector<f64>, answer: &DVector<f64>, ties: &[SMatrix<f64, D, D>]| {
+            let mut out = DVector::zeros(z.len());
+            for (i, row) in rows.iter().enumerate() {
+                let z: Local<D> = z.fixed_rows::<D>(D * i).into();
+                let w: Local<D> = answer.fixed_rows::<D>(D * i).into();
+                let own = row.elastic * (z - ties[i] * w) + row.shift * w;
+                out.fixed_rows_mut::<D>(D * i)
+                    .copy_from(&(preconditioners[i] * own));
+            }
+            out
+        };
+        let values: Vec<Local<D>> = (0..count)
+            .map(|i| preconditioners[i] * rows[i].value)
+            .collect();
+        let b = stack(&values);
+        let size = b.norm();
+        let mut least = LeastSquares::new(b);
+        for k in 0..self.directions.len() {
+            let (z, answer) = self.directions.pair(k);
+            least.add(image(z, answer, &self.ties));
+        }
+        let scale = self.force_scale(now);
+        let coarse = INACCURATE.min((now.residual / scale).sqrt());
+        let mut taken = 0;
+        let mut best: Option<At<D>> = None;
+        for accuracy in ACCURACIES {
+            while least.left.norm() > coarse * accuracy * size && taken < LONGEST {
+                let mut z = least.left.clone();
+                let length = z.norm();
+                z /= length;
+                let answer = self.problem.structure.displacement(&z, false);
+                self.used += 1;
+                taken += 1;
+                let independent = least.add(image(&z, &answer, &self.ties));
+                self.directions.add(z, answer);
+                if !independent {
+                    taken = LONGEST;
+                }
+            }
+            let (dz, dv) = self.directions.combined(&least.solution(), now.z.len());
+            let mut part = 1.0;
+            for _ in 0..HALVINGS {
+                let trial = self.at(&now.z + &dz * part, &now.v + &dv * part);
+                if trial.merit < (1.0 - 1e-4 * part) * allowed {
+                    if part > WORTH_TAKING {
+                        return Some(trial);
+                    }
+                    best = Some(trial);
+                    break;
+                }
+                part *= 0.5;
+            }
+            if taken >= LONGEST {
+                break;
+            }
+        }
+        best
+    }
+
+    /// Size of the forces in play \[N\].
+    fn force_scale(&self, at: &At<D>) -> f64 {
+        let forces = at.t.iter().chain(&self.problem.previous);
+        forces.map(|t| t.norm()).fold(f64::MIN_POSITIVE, f64::max)
+    }
+
+    /// Rounding of the map \[N\]: of displacements in the stiffness of a contact.
+    fn rounding(&self, at: &At<D>) -> f64 {
+        let count = at.u.len();
+        let stiffest = (0..count).map(|i| self.problem.structure.stiffness(i));
+        let stiffest = stiffest.fold(0.0, f64::max);
+        4.0 * f64::EPSILON * ((D * count) as f64).sqrt() * stiffest * at.v.amax()
+    }
+
+    fn solution(&self, now: At<D>, iterations: usize, exact: bool) -> ContactSolution<D> {
+        let status = self.statuses(&now);
+        // The projection of the last iterate lies in the cone exactly; it differs from t by less than the
+        // residual.
+        let force = now.t.iter().zip(&now.map).map(|(t, g)| t - g).collect();
+        ContactSolution {
+            residual: now.residual,
+            motion: split(&now.v),
+            displacement: now.u,
+            irreversible: now.irreversible,
+            force,
+            status,
+            iterations,
+            exact,
+        }
+    }
+}

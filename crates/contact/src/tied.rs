@@ -1,0 +1,43 @@
+//! The contact problem of a structure that is known by a factor of its stiffness; not how it is solved.
+
+use moreau_laws::{Friction, Local};
+use nalgebra::{DVector, SMatrix};
+
+/// A structure seen from its contacts through a factor.
+///
+/// B takes the displacement increments Δu of the structure to those of its contacts, in their local
+/// frames: v = B Δu. Ties R, a symmetric positive semi-definite matrix a contact, add springs there,
+/// and what is factorised is K + BᵀRB.
+pub trait Structure<const D: usize> {
+    /// Stiffness of a contact's own components \[N/mm\], that of K between the nodes there: a measure.
+    fn stiffness(&self, contact: usize) -> f64;
+
+    /// Factorises K + BᵀRB; false if that is not positive definite.
+    fn tie(&mut self, ties: &[SMatrix<f64, D, D>]) -> bool;
+
+    /// v = B (K + BᵀRB)⁻¹ (f + Bᵀ z), in the order of the contacts' components \[mm\], with the load f
+    /// of the structure or without it.
+    fn displacement(&mut self, z: &DVector<f64>, loaded: bool) -> DVector<f64>;
+
+    /// How many of these take as long as a factorisation.
+    fn worth(&self) -> f64;
+}
+
+/// The contact problem of one linearised increment of a structure:
+///
+/// ```text
+/// K Δu = f + Bᵀ t,   u = g + B Δu,   (−u, t) extremal for [38] at every contact.
+/// ```
+///
+/// It is the one of [`ContactProblem`](crate::ContactProblem), not condensed on the contacts: what it takes does not grow
+/// with the square of their number.
+pub struct TiedProblem<'a, const D: usize> {
+    /// K, f and B.
+    pub structure: &'a mut dyn Structure<D>,
+    /// Displacement g about which the structure was linearised \[mm\].
+    pub origin: Vec<Local<D>>,
+    /// The law of every contact.
+    pub friction: Vec<Friction>,
+    /// Contact forces t₀ at the start of the step \[N\].
+    pub previous: Vec<Local<D>>,
+}
