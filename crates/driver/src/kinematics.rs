@@ -33,6 +33,7 @@ impl<const D: usize> Driver<D> {
         d_u: &[f64],
     ) -> Vec<Kinematics<D>> {
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
+        let size = self.mesh.size();
         let at = |(p, footing): (&ContactPoint<D>, &Footing<D>)| {
             let free = footing.free(p.node, |dof| system.is_free(dof));
             let slip = footing.relative(moved);
@@ -40,7 +41,7 @@ impl<const D: usize> Driver<D> {
                 let kinematics = match footing.plane(&slip) {
                     Some((n, gap)) => Kinematics::new(p, &n, gap - p.offset, &slip, free),
                     // Opposite to nothing: as far away as anything can be.
-                    None => Kinematics::apart(p.law, self.mesh.size()),
+                    None => Kinematics::apart(p.law, size),
                 };
                 return kinematics.between_forces(footing.area);
             };
@@ -51,7 +52,7 @@ impl<const D: usize> Driver<D> {
                 false => tool,
             };
             let x = footing.relative(now);
-            let Some(corner) = obstacle.corner(&x, AHEAD * self.mesh.size()) else {
+            let Some(corner) = obstacle.corner(&x, AHEAD * size) else {
                 let gap = p.gap(obstacle.as_ref(), |a| now(a) - tool);
                 let kinematics = Kinematics::new(p, &obstacle.normal(&x), gap, &slip, free);
                 return kinematics.between_forces(footing.area);

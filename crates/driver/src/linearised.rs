@@ -85,10 +85,10 @@ impl<const D: usize> Driver<D> {
             previous: self.previous_forces(kinematics),
         };
         let asked = (tolerance, linearised.enough);
-        let solution =
+        let (solution, z) =
             solve_tied(&mut problem, compliance, linearised.guess, asked).map_err(contact)?;
         counts.linear += tied.solves;
-        tied.expand(&solution, &mut step)?;
+        tied.expand(&z, &mut step)?;
         Ok(Answer {
             solution,
             step,

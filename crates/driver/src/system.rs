@@ -12,6 +12,7 @@ use crate::timings::{Timings, timed};
 use moreau_algebra::Matrix;
 use moreau_algebra::{Cholesky, NotPositiveDefinite, Pattern, TooLarge};
 use moreau_mesh::Mesh;
+use std::collections::BTreeSet;
 use std::time::Instant;
 
 mod solve;
@@ -98,7 +99,7 @@ const KEPT: usize = 1 << 21;
 const OPERATIONS: f64 = 200.0;
 
 /// Operations of a factorisation in the time in which a solve takes up an entry of the factor.
-const SOLVE: f64 = 30.0;
+const SOLVE: f64 = 60.0;
 
 /// Operations of a factorisation in about the time of the conjugate gradients of a Newton step: ten
 /// iterations, each of which reads the matrix five times and the factor of its coarse space twice; an
@@ -114,22 +115,33 @@ const TIED: (f64, f64) = (25.0, 1.5);
 const CONDENSED: f64 = 6.0;
 
 /// The numbering of a system in which contacts are tied, where their problem costs less so than condensed:
-/// by operations.
-fn ties_are_cheaper(condensed: &Numbering, tied: impl Fn() -> Numbering) -> Option<Numbering> {
-    let interface = condensed.interface as f64;
-    let dense = CONDENSED * 2.0 / 3.0 * interface.powi(3);
+/// by operations. `interface` are its unknowns, `entries` about as many as the matrix has, or more.
+fn ties_are_cheaper(
+    interface: usize,
+    entries: usize,
+    tied: impl Fn() -> Numbering,
+    condensed: impl Fn() -> Numbering,
+) -> Option<Numbering> {
+    let dense = CONDENSED * 2.0 / 3.0 * (interface as f64).powi(3);
     let (solves, factorisations) = TIED;
-    // A factor has more entries than its matrix.
-    if dense < solves * SOLVE * 2.0 * condensed.pattern.entries() as f64 {
+    if dense < solves * SOLVE * entries as f64 {
         return None;
     }
     let tied = tied();
-    let (own, other) = (
-        Cholesky::cost(&tied.pattern),
-        Cholesky::cost(&condensed.pattern),
-    );
+    let own = Cholesky::cost(&tied.pattern);
     let through = factorisations * own.operations + solves * SOLVE * own.entries;
-    (through < other.operations + dense).then_some(tied)
+    let cheaper =
+        through < dense || through < dense + Cholesky::cost(&condensed().pattern).operations;
+    cheaper.then_some(tied)
+}
+
+/// Pairs of nodes of all cells, each node with itself among them.
+fn pairs<const D: usize>(blocks: &[Box<dyn Block<D>>]) -> usize {
+    let of = |b: &Box<dyn Block<D>>| {
+        let nodes = if b.cells().is_empty() { 0 } else { b.nodes(0).len() };
+        b.cells().len() * nodes * (nodes + 1) / 2
+    };
+    blocks.iter().map(of).sum()
 }
 
 impl System {
@@ -149,10 +161,13 @@ impl System {
         memory: Option<u64>,
     ) -> Result<Self, ModelError> {
         let clock = Instant::now();
-        let condensed = Numbering::new(mesh, &fixed, interface_nodes, pivot, tools, &[]);
+        let condensed = || Numbering::new(mesh, &fixed, interface_nodes, pivot, tools, &[]);
         let tied = coupled.and_then(|coupled| {
-            let own = || Numbering::new(mesh, &fixed, &[], None, tools, coupled);
-            ties_are_cheaper(&condensed, own)
+            let tied = || Numbering::new(mesh, &fixed, &[], None, tools, coupled);
+            let free = |a: &usize| (D * a..D * a + D).filter(|&dof| !fixed(dof)).count();
+            let nodes: BTreeSet<usize> = interface_nodes.iter().copied().collect();
+            let interface = nodes.iter().map(free).sum::<usize>();
+            ties_are_cheaper(interface, pairs(blocks) * D * D, tied, condensed)
         });
         let is_tied = tied.is_some();
         let Numbering {
@@ -160,7 +175,7 @@ impl System {
             dofs,
             interface,
             pattern,
-        } = tied.unwrap_or(condensed);
+        } = tied.unwrap_or_else(condensed);
         let scatter = blocks
             .iter()
             .map(|b| Scatter::new(b.as_ref(), &position, &pattern))

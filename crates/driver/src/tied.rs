@@ -6,7 +6,7 @@ use crate::driver::{Driver, Nesting};
 use crate::interface::Kinematics;
 use crate::norm::largest;
 use crate::system::{Inaccurate, System};
-use moreau_contact::{ContactSolution, Structure};
+use moreau_contact::Structure;
 use moreau_laws::Local;
 use nalgebra::{DVector, SMatrix};
 
@@ -68,44 +68,54 @@ impl<'a, const D: usize> Tied<'a, D> {
         }
     }
 
-    /// The displacement increments of all unknowns under the load and the forces of a solution, written to
-    /// `step` at every degree of freedom.
+    /// The displacement increments of all unknowns, (K + BᵀRB) Δu = f + Bᵀ z, written to `step` at every
+    /// degree of freedom.
     ///
     /// # Errors
     /// [`Inaccurate`] where the factor does not solve the system.
-    pub(crate) fn expand(
-        mut self,
-        solution: &ContactSolution<D>,
-        step: &mut [f64],
-    ) -> Result<(), Inaccurate> {
+    pub(crate) fn expand(mut self, z: &DVector<f64>, step: &mut [f64]) -> Result<(), Inaccurate> {
         let mut f = std::mem::take(&mut self.load);
-        let given = largest(f.iter().copied());
-        let forces = solution.force.iter().flat_map(|t| (0..D).map(|j| t[j]));
-        self.spread(forces, &mut f);
+        self.spread(z.iter().copied(), &mut f);
         let mut x = f.clone();
-        let held: Vec<Local<D>> = (self.ties.iter().zip(&solution.motion))
-            .map(|(tie, v)| tie * v)
-            .collect();
-        let held = held.iter().flat_map(|t| (0..D).map(|j| t[j]));
-        self.spread(held, &mut x);
         self.system.solve_tied(&mut x);
         self.solves += 1;
-        // The ties round off more than K does.
-        for last in [false, true] {
+        let mut before = f64::INFINITY;
+        loop {
+            let held = self.held(&x);
+            let given = largest(f.iter().chain(held.iter()).copied());
             let (mut left, expected) = self.system.left(&f, &x, given);
+            self.spread(held.iter().map(|t| -t), &mut left);
             let found = largest(left.iter().copied());
             if found <= expected {
                 break;
             }
-            if last {
+            if !(found < 0.5 * before) {
                 return Err(Inaccurate { found, expected });
             }
+            before = found;
             self.system.solve_tied(&mut left);
             self.solves += 1;
             x.iter_mut().zip(left).for_each(|(x, c)| *x += c);
         }
         self.system.spread(&x, step);
         Ok(())
+    }
+
+    /// R B x.
+    fn held(&self, x: &[f64]) -> DVector<f64> {
+        let v = self.relative(x);
+        let mut held = DVector::zeros(v.len());
+        for (i, tie) in self.ties.iter().enumerate() {
+            let own: Local<D> = v.fixed_rows::<D>(D * i).into();
+            held.fixed_rows_mut::<D>(D * i).copy_from(&(tie * own));
+        }
+        held
+    }
+
+    /// B x.
+    fn relative(&self, x: &[f64]) -> DVector<f64> {
+        let sum = |row: &Vec<(u32, f64)>| row.iter().map(|&(p, c)| c * x[p as usize]).sum();
+        DVector::from_iterator(self.rows.len(), self.rows.iter().map(sum))
     }
 }
 
@@ -143,8 +153,7 @@ impl<const D: usize> Structure<D> for Tied<'_, D> {
         self.spread(z.iter().copied(), &mut x);
         self.system.solve_tied(&mut x);
         self.solves += 1;
-        let sum = |row: &Vec<(u32, f64)>| row.iter().map(|&(p, c)| c * x[p as usize]).sum();
-        DVector::from_iterator(self.rows.len(), self.rows.iter().map(sum))
+        self.relative(&x)
     }
 
     fn worth(&self) -> f64 {

@@ -94,6 +94,8 @@ struct Guess<const D: usize> {
 }
 
 /// Solves a tied problem, with springs of compliance C \[mm/N\] in series with the law (zero: the law itself).
+/// Returns with the solution z = t + R v of the ties R that were the last, for which
+/// (K + BᵀRB) Δu = f + Bᵀ z.
 ///
 /// # Errors
 /// [`ContactError::NotConverged`], and [`ContactError::Singular`] where nothing holds the structure.
@@ -102,7 +104,7 @@ pub fn solve_tied<const D: usize>(
     compliance: Local<D>,
     guess: Option<&ContactSolution<D>>,
     (tolerance, enough): (Tolerance, f64),
-) -> Result<ContactSolution<D>, ContactError> {
+) -> Result<(ContactSolution<D>, DVector<f64>), ContactError> {
     let guess = Guess::new(problem, guess);
     let mut newton = Tied {
         ties: Vec::new(),
@@ -463,12 +465,17 @@ impl<const D: usize> Tied<'_, '_, D> {
         4.0 * f64::EPSILON * ((D * count) as f64).sqrt() * stiffest * at.v.amax()
     }
 
-    fn solution(&self, now: At<D>, iterations: usize, exact: bool) -> ContactSolution<D> {
+    fn solution(
+        &self,
+        now: At<D>,
+        iterations: usize,
+        exact: bool,
+    ) -> (ContactSolution<D>, DVector<f64>) {
         let status = self.statuses(&now);
         // The projection of the last iterate lies in the cone exactly; it differs from t by less than the
         // residual.
         let force = now.t.iter().zip(&now.map).map(|(t, g)| t - g).collect();
-        ContactSolution {
+        let solution = ContactSolution {
             residual: now.residual,
             motion: split(&now.v),
             displacement: now.u,
@@ -477,6 +484,7 @@ impl<const D: usize> Tied<'_, '_, D> {
             status,
             iterations,
             exact,
-        }
+        };
+        (solution, now.z)
     }
 }
