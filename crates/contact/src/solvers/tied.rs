@@ -137,8 +137,10 @@ pub fn solve_tied<const D: usize>(
         }
         iterations += 1;
         let status = newton.statuses(&now);
-        let stale = status != newton.tied;
-        if first.is_none() && stale && newton.used as f64 >= newton.problem.structure.worth() {
+        let stale = status.iter().zip(&newton.tied).filter(|(a, b)| a != b).count();
+        let expected = (newton.used + stale) as f64;
+        let stale = stale > 0;
+        if first.is_none() && stale && expected >= newton.problem.structure.worth() {
             now = newton.renew(now, &status)?;
         }
         let rows = match first.take() {
@@ -436,7 +438,8 @@ impl<const D: usize> Tied<'_, '_, D> {
             for _ in 0..HALVINGS {
                 let trial = self.at(&now.z + &dz * part, &now.v + &dv * part);
                 if trial.merit < (1.0 - 1e-4 * part) * allowed {
-                    if part > WORTH_TAKING {
+                    let better = trial.merit < now.merit || allowed.is_infinite();
+                    if part > WORTH_TAKING && better {
                         return Some(trial);
                     }
                     best = Some(trial);
