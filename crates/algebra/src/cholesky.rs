@@ -197,6 +197,20 @@ impl Cholesky {
         .map_err(|LltError::NonPositivePivot { index }| NotPositiveDefinite { row: index })
     }
 
+    /// The least pivot over what the diagonal of the matrix was there: of the size of rounding where the
+    /// matrix is singular.
+    pub fn least_pivot(&self, pattern: &Pattern, values: &[f64]) -> f64 {
+        let mut least = f64::INFINITY;
+        for s in 0..self.symbolic.n_supernodes() {
+            let (start, width, rows, factor) = self.supernode(s);
+            for (j, column) in factor.chunks_exact(width + rows.len()).enumerate() {
+                let pivot = column[j] * column[j];
+                least = least.min(pivot / values[pattern.diagonal(start + j)]);
+            }
+        }
+        least
+    }
+
     /// First column, number of columns, rows below and values, column by column, of supernode s.
     fn supernode(&self, s: usize) -> (usize, usize, &[u32], &[f64]) {
         let all = &self.symbolic;

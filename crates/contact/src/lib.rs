@@ -46,4 +46,4 @@ pub use solvers::{
     Anderson, ContactSolution, ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Tolerance,
     Uzawa, solve_tied, uzawa_steps,
 };
-pub use tied::{Structure, TiedProblem};
+pub use tied::{Springs, Structure, TiedProblem};

@@ -23,6 +23,15 @@ pub trait Structure<const D: usize> {
     fn worth(&self) -> f64;
 }
 
+/// Springs in series with a contact: the law holds between its force t and u + C (t − t*).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Springs<const D: usize> {
+    /// C of every component \[mm/N\].
+    pub compliance: Local<D>,
+    /// t*, the force at which they have their length \[N\].
+    pub force: Local<D>,
+}
+
 /// The contact problem of one linearised increment of a structure:
 ///
 /// ```text
@@ -38,6 +47,10 @@ pub struct TiedProblem<'a, const D: usize> {
     pub origin: Vec<Local<D>>,
     /// The law of every contact.
     pub friction: Vec<Friction>,
+    /// Springs in series with every contact, zero for the law itself.
+    pub springs: Vec<Springs<D>>,
+    /// The largest force of the load f \[N\].
+    pub load: f64,
     /// Contact forces t₀ at the start of the step \[N\].
     pub previous: Vec<Local<D>>,
 }

@@ -31,6 +31,19 @@ pub enum Nesting {
     },
 }
 
+/// How the contacts of a linearised increment are seen: as their laws and their unknowns are the same, so
+/// is the solution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Seam {
+    /// As takes fewer operations, which are counted before anything is solved.
+    Cheaper,
+    /// On the stiffness condensed on all nodes that may touch, a dense matrix.
+    Condensed,
+    /// Through a factor of the stiffness with the contacts tied in it, see
+    /// [`solve_tied`](moreau_contact::solve_tied): where much touches.
+    Tied,
+}
+
 /// How increments are solved. The defaults need no change: no number here decides the answer.
 #[derive(Debug)]
 pub struct Settings<const D: usize> {
@@ -38,6 +51,8 @@ pub struct Settings<const D: usize> {
     pub contact: Box<dyn ContactSolver<D>>,
     /// Where the contact problem is solved.
     pub nesting: Nesting,
+    /// How contacts are seen. Only Newton's methods work on tied ones; the others condense.
+    pub seam: Seam,
     /// Out-of-balance force at which an increment is accepted, over the largest nodal force.
     pub tolerance: f64,
     /// Newton iterations after which an increment is cut.
@@ -54,6 +69,7 @@ impl<const D: usize> Default for Settings<D> {
         Self {
             contact: Box::new(SemismoothNewton::default()),
             nesting: Nesting::Inside,
+            seam: if std::env::var("SEAM").is_ok() { Seam::Tied } else { Seam::Cheaper },
             tolerance: 1e-10,
             iterations: 40,
             cuts: 10,
@@ -384,10 +400,16 @@ impl<const D: usize> Driver<D> {
     ) -> Result<System, ModelError> {
         let fixed = |dof: usize| loading.displacement.contains_key(&dof);
         let dofs = self.state.displacement.len();
-        if let Some(system) = self
-            .system
-            .take_if(|s| s.pivot == pivot && (0..dofs).all(|d| s.is_free(d) != fixed(d)))
-        {
+        let paired = self.points.iter().zip(&self.footings);
+        let paired: Vec<Vec<usize>> = paired
+            .filter(|(p, _)| p.tool.is_none())
+            .map(|(_, footing)| footing.nodes())
+            .collect();
+        if let Some(system) = self.system.take_if(|s| {
+            s.pivot == pivot
+                && (0..dofs).all(|d| s.is_free(d) != fixed(d))
+                && (!s.is_tied() || paired.iter().all(|nodes| s.couples::<D>(nodes)))
+        }) {
             return Ok(system);
         }
         self.check_rigid_motions(loading)?;
@@ -413,12 +435,13 @@ impl<const D: usize> Driver<D> {
             &self.mesh,
             &self.blocks,
             fixed,
-            (&interface, coupled.as_deref()),
+            (&interface, coupled.as_deref().map(|c| (self.settings.seam, c))),
             pivot,
             self.tools.len(),
             self.settings.memory,
         )?;
         system.timings += before;
+        system.floats = self.floats(loading);
         system.learn(&mut self.blocks, self.settings.nesting == Nesting::Inside);
         Ok(system)
     }

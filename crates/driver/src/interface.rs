@@ -153,6 +153,11 @@ impl<const D: usize> Footing<D> {
         self.own.iter().copied().chain(opposite)
     }
 
+    /// The nodes on both sides.
+    pub(crate) fn nodes(&self) -> Vec<usize> {
+        self.weights().map(|(a, _)| a).collect()
+    }
+
     /// Normal and gap after a relative displacement; `None` on a tool and opposite to nothing.
     pub(crate) fn plane(&self, slip: &SVector<f64, D>) -> Option<(SVector<f64, D>, f64)> {
         let (normal, gap) = self.plane?;

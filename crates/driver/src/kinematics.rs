@@ -100,16 +100,10 @@ impl<const D: usize> Driver<D> {
         solution: &ContactSolution<D>,
         scale: f64,
     ) -> bool {
-        let reach = largest(
-            self.mesh
-                .bounds()
-                .0
-                .iter()
-                .chain(&self.mesh.bounds().1)
-                .copied(),
-        );
         let stiffness = system.shift();
         // Below this the difference of two positions is rounding.
+        let (low, high) = self.mesh.bounds();
+        let reach = largest(low.iter().chain(&high).copied());
         let rounding = 16.0 * f64::EPSILON * reach * stiffness;
         let tolerance = self.settings.tolerance * scale + slack(solution) + rounding;
         let holds = |i: usize| {

@@ -76,7 +76,7 @@ pub use block::{Block, BlockEnergy, CellResult, PointState, SolidBlock, Stiffnes
 pub use buckling::Buckling;
 pub use cells::Cells;
 pub use collapse::{Collapse, UpperBound};
-pub use driver::{Driver, Nesting, Settings};
+pub use driver::{Driver, Nesting, Seam, Settings};
 pub use error::{Imbalance, ModelError, StepError};
 pub use gaps::LeastGap;
 pub use increments::Increments;

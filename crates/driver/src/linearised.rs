@@ -7,11 +7,13 @@ use crate::driver::Driver;
 use crate::error::StepError;
 use crate::increment::Counts;
 use crate::interface::Kinematics;
+use crate::load::Loading;
 use crate::norm::largest;
 use crate::sparse::Sparse;
 use crate::system::System;
 use crate::tied::Tied;
-use moreau_contact::{ContactError, ContactProblem, ContactSolution, TiedProblem, solve_tied};
+use moreau_contact::{ContactError, ContactSolution, Springs, TiedProblem, solve_tied};
+use moreau_laws::Local;
 use nalgebra::DVector;
 use std::time::Instant;
 
@@ -26,6 +28,7 @@ const CARRIED: f64 = 1e-2;
 /// An increment linearised at an iterate.
 pub(crate) struct Linearised<'a, const D: usize> {
     pub(crate) kinematics: &'a [Kinematics<D>],
+    pub(crate) loading: &'a Loading<D>,
     /// Prescribed displacements that the step makes up for.
     pub(crate) missing: &'a Sparse,
     /// The last contact solution.
@@ -75,24 +78,68 @@ impl<const D: usize> Driver<D> {
         let contact = |source: ContactError| StepError::Contact { iteration, source };
         let mut step = vec![0.0; load.len()];
         linearised.missing.add_to(&mut step, 1.0);
-        let mut tied = Tied::new(self, system, kinematics, &load);
-        let springs = self.settings.contact.springs();
-        let (compliance, tolerance) = springs.ok_or(ContactError::Singular).map_err(contact)?;
-        let mut problem = TiedProblem {
-            structure: &mut tied,
-            origin: kinematics.iter().map(|k| k.u).collect(),
-            friction: kinematics.iter().map(|k| k.law).collect(),
-            previous: self.previous_forces(kinematics),
+        let (stiffest, floats) = (system.shift(), system.floats);
+        let loading = linearised.loading;
+        let mut tied = Tied::new(self, system, kinematics, &load, linearised.border);
+        let method = self.settings.contact.springs();
+        let (compliance, tolerance) = method.ok_or(ContactError::Singular).map_err(contact)?;
+        let previous = self.previous_forces(kinematics);
+        let last = match linearised.guess {
+            Some(s) if counts.newton > 1 => &s.force,
+            _ => &previous,
         };
-        let asked = (tolerance, linearised.enough);
-        let (solution, z) =
-            solve_tied(&mut problem, compliance, linearised.guess, asked).map_err(contact)?;
+        let suspended = tied.suspended(self, kinematics);
+        let springs: Vec<Springs<D>> = (0..previous.len())
+            .map(|i| Springs {
+                compliance: compliance + suspended[i],
+                force: Local::from_fn(|j, _| match suspended[i][j] > 0.0 {
+                    true => last[i][j],
+                    false => if j > 0 { previous[i][j] } else { 0.0 },
+                }),
+            })
+            .collect();
+        let largest_load = tied.largest_load();
+        let given = previous.iter().map(|t| t.norm()).fold(largest_load, f64::max);
+        let mut solve = |c: f64, enough: f64| {
+            tied.hold(c);
+            let mut problem = TiedProblem {
+                structure: &mut tied,
+                origin: kinematics.iter().map(|k| k.u).collect(),
+                friction: kinematics.iter().map(|k| k.law).collect(),
+                springs: springs.clone(),
+                load: largest_load,
+                previous: previous.clone(),
+            };
+            solve_tied(&mut problem, linearised.guess, (tolerance, enough))
+        };
+        let determined = |(s, z): (ContactSolution<D>, DVector<f64>)| match floats
+            && !self.is_held(loading, &s.status)
+        {
+            true => Err(ContactError::Singular),
+            false => Ok((s, z)),
+        };
+        let (mut solution, z) = solve(0.0, linearised.enough)
+            .and_then(determined)
+            .or_else(|error| {
+                counts.undetermined |= error == ContactError::Singular;
+                nearest(error, stiffest, |c| {
+                    let (solution, z) = solve(c, 0.0)?;
+                    let scale = solution.force.iter().map(|t| t.norm()).fold(given, f64::max);
+                    Ok((solution, z, scale))
+                })
+            })
+            .map_err(contact)?;
+        // The law holds where the springs of what is suspended end, not where the bodies are.
+        let own = solution.displacement.iter_mut().zip(&solution.irreversible);
+        for ((u, obeys), c) in own.zip(&suspended) {
+            (0..D).filter(|&j| c[j] > 0.0).for_each(|j| u[j] = obeys[j]);
+        }
         counts.linear += tied.solves;
-        tied.expand(&z, &mut step)?;
+        let growth = tied.expand(&z, &mut step)?;
         Ok(Answer {
             solution,
             step,
-            growth: 0.0,
+            growth,
         })
     }
 
@@ -124,13 +171,18 @@ impl<const D: usize> Driver<D> {
             Condensation::new(system, seam, points, kinematics, (previous, &force))
                 .map_err(contact)?;
         let problem = &mut condensation.problem;
-        let solution = self
-            .settings
-            .contact
+        let method = &self.settings.contact;
+        let solution = method
             .approach(problem, guess, linearised.enough)
             .or_else(|error| {
                 counts.undetermined = true;
-                self.nearest(system, problem, guess, error)
+                let found = nearest(error, system.shift(), |c| {
+                    problem.hold(c);
+                    let solution = method.solve(problem, guess)?;
+                    let scale = problem.force_scale(&solution.force);
+                    Ok((solution, (), scale))
+                });
+                found.map(|(solution, ())| solution)
             })
             .map_err(contact)?;
         system.timings.contact += clock.elapsed();
@@ -159,29 +211,27 @@ impl<const D: usize> Driver<D> {
             growth,
         })
     }
+}
 
-    /// A contact problem that is singular, as where all that touches slips or nothing is left to press:
-    /// of its solutions, which differ by a rigid motion, the one nearest to where the bodies are. There is
-    /// none where a body falls or slides away: what holds it here would have to carry its load.
-    fn nearest(
-        &self,
-        system: &System,
-        problem: &mut ContactProblem<D>,
-        guess: Option<&ContactSolution<D>>,
-        error: ContactError,
-    ) -> Result<ContactSolution<D>, ContactError> {
-        if error != ContactError::Singular {
-            return Err(error);
-        }
-        for soft in SOFT.map(|part| part * system.shift()) {
-            problem.hold(soft);
-            let Ok(solved) = self.settings.contact.solve(problem, guess) else {
-                continue;
-            };
-            let motion = largest(solved.motion.iter().flatten().copied());
-            let carries = soft * motion > CARRIED * problem.force_scale(&solved.force);
-            return if carries { Err(error) } else { Ok(solved) };
-        }
-        Err(error)
+/// A contact problem that is singular, as where all that touches slips or nothing is left to press: of its
+/// solutions, which differ by a rigid motion, the one nearest to where the bodies are, found with a proximal
+/// term c. There is none where a body falls or slides away: what holds it here would have to carry its
+/// load, of which `scale` tells the size.
+fn nearest<const D: usize, T>(
+    error: ContactError,
+    stiffest: f64,
+    mut solve: impl FnMut(f64) -> Result<(ContactSolution<D>, T, f64), ContactError>,
+) -> Result<(ContactSolution<D>, T), ContactError> {
+    if error != ContactError::Singular {
+        return Err(error);
     }
+    for c in SOFT.map(|part| part * stiffest) {
+        let Ok((solution, other, scale)) = solve(c) else {
+            continue;
+        };
+        let motion = largest(solution.motion.iter().flatten().copied());
+        let carries = c * motion > CARRIED * scale;
+        return if carries { Err(error) } else { Ok((solution, other)) };
+    }
+    Err(error)
 }

@@ -177,6 +177,15 @@ fn reduced(mut basis: DMatrix<f64>) -> DMatrix<f64> {
     basis
 }
 
+/// Components of a contact point that resist a motion.
+fn resists<const D: usize>(status: Status) -> usize {
+    match status {
+        Status::Open => 0,
+        Status::Slip => 1,
+        Status::Stick => D,
+    }
+}
+
 impl<const D: usize> Driver<D> {
     /// What stops every rigid motion of every body in a step; nothing is solved.
     ///
@@ -244,8 +253,7 @@ impl<const D: usize> Driver<D> {
     /// Every rigid motion of the bodies must be resisted by a prescribed displacement, by a contact
     /// normal, or by friction.
     pub(crate) fn check_rigid_motions(&self, loading: &Loading<D>) -> Result<(), ModelError> {
-        let mesh = loading.displacement.range(..self.mesh_dofs());
-        let rows = self.rows(mesh.map(|(&dof, _)| (dof, 0)), loading, Self::may_resist);
+        let rows = self.resisted(loading, Self::may_resist);
         match rows.free().into_iter().next() {
             None => Ok(()),
             Some((body, motion)) => Err(match body.checked_sub(rows.cells.len()) {
@@ -261,17 +269,36 @@ impl<const D: usize> Driver<D> {
         }
     }
 
+    /// Whether displacement conditions leave a rigid motion to the contacts.
+    pub(crate) fn floats(&self, loading: &Loading<D>) -> bool {
+        !self
+            .resisted(loading, |_, _| 0)
+            .free()
+            .is_empty()
+    }
+
+    /// Whether contacts of these statuses resist every rigid motion: what touches by its normal, and by its
+    /// tangents where it sticks.
+    pub(crate) fn is_held(&self, loading: &Loading<D>, status: &[Status]) -> bool {
+        self.resisted(loading, |_, k| resists::<D>(status[k]))
+            .free()
+            .is_empty()
+    }
+
+    fn resisted(
+        &self,
+        loading: &Loading<D>,
+        components: impl Fn(&Self, usize) -> usize,
+    ) -> Rows {
+        let held = loading.displacement.range(..self.mesh_dofs());
+        self.rows(held.map(|(&dof, _)| (dof, 0)), loading, components)
+    }
+
     /// The rigid motions that nothing resists in the committed state, in words: of what touches, the
     /// normals, and the tangents where it sticks.
     pub fn free_motions(&self) -> Vec<String> {
-        let loading = &self.state.loading;
-        let held = loading.displacement.range(..self.mesh_dofs());
-        let resists = |driver: &Self, k: usize| match driver.state.contacts[k].status {
-            Status::Open => 0,
-            Status::Slip => 1,
-            Status::Stick => D,
-        };
-        let rows = self.rows(held.map(|(&dof, _)| (dof, 0)), loading, resists);
+        let status = |driver: &Self, k: usize| resists::<D>(driver.state.contacts[k].status);
+        let rows = self.resisted(&self.state.loading, status);
         let whose = |body: usize| match body.checked_sub(rows.cells.len()) {
             Some(k) => format!("tool {:?}", self.tools[rows.tools[k]].name),
             None => format!("the body of cell {}", rows.cells[body]),

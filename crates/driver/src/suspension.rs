@@ -29,7 +29,7 @@ pub(crate) struct Suspended {
 
 /// k over the stiffness of the unknowns: e shrinks by about its inverse with every iteration, and the
 /// rounding of forces grows with it.
-const STIFFER: f64 = 30.0;
+pub(crate) const STIFFER: f64 = 30.0;
 
 impl Suspended {
     /// k \[N/mm\], from the diagonal of the stiffness of the unknowns.

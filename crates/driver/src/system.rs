@@ -4,6 +4,7 @@
 use crate::ModelError;
 use crate::block::{Block, Stiffness};
 use crate::coarse::Coarse;
+use crate::driver::Seam;
 use crate::iterate::imbalance;
 use crate::numbering::Numbering;
 use crate::scatter::{FIXED, Scatter, couplings};
@@ -50,9 +51,6 @@ pub(crate) struct System {
     coarse: Option<Coarse>,
     /// Where contacts are tied in the factor instead of condensed: room for K and what ties add to it.
     tied: Option<Vec<f64>>,
-    /// Counts the stiffnesses that were assembled; 0 of the elastic one.
-    version: usize,
-    versions: usize,
     shift: f64,
     stiffest: f64,
     cholesky: Cholesky,
@@ -65,6 +63,8 @@ pub(crate) struct System {
     /// Iterations of conjugate gradients since then.
     pub(crate) conjugate: usize,
     pub(crate) timings: Timings,
+    /// Whether only contact holds some rigid motion.
+    pub(crate) floats: bool,
 }
 
 /// Internal forces of an assembly.
@@ -107,6 +107,9 @@ const SOLVE: f64 = 60.0;
 fn conjugate_operations(pattern: &Pattern, coarse: usize) -> f64 {
     10.0 * 80.0 * (5.0 * pattern.entries() as f64 + 2.0 * coarse as f64)
 }
+
+/// Pivots below this part of the diagonal are rounding, and a motion without stiffness.
+const RIGID: f64 = 1e-14;
 
 /// Solves of a contact problem through the factor, and factorisations.
 const TIED: (f64, f64) = (25.0, 1.5);
@@ -155,15 +158,18 @@ impl System {
         mesh: &Mesh<D>,
         blocks: &[Box<dyn Block<D>>],
         fixed: impl Fn(usize) -> bool,
-        (interface_nodes, coupled): (&[usize], Option<&[Vec<usize>]>),
+        (interface_nodes, coupled): (&[usize], Option<(Seam, &[Vec<usize>])>),
         pivot: Option<usize>,
         tools: usize,
         memory: Option<u64>,
     ) -> Result<Self, ModelError> {
         let clock = Instant::now();
         let condensed = || Numbering::new(mesh, &fixed, interface_nodes, pivot, tools, &[]);
-        let tied = coupled.and_then(|coupled| {
+        let tied = coupled.and_then(|(seam, coupled)| {
             let tied = || Numbering::new(mesh, &fixed, &[], None, tools, coupled);
+            if seam == Seam::Tied {
+                return Some(tied());
+            }
             let free = |a: &usize| (D * a..D * a + D).filter(|&dof| !fixed(dof)).count();
             let nodes: BTreeSet<usize> = interface_nodes.iter().copied().collect();
             let interface = nodes.iter().map(free).sum::<usize>();
@@ -221,8 +227,6 @@ impl System {
             matrix: Matrix::new(pattern),
             coarse,
             tied: is_tied.then(Vec::new),
-            version: 0,
-            versions: 0,
             shift: 0.0,
             stiffest: 0.0,
             cholesky,
@@ -230,6 +234,7 @@ impl System {
             current: false,
             factorisations: 0,
             conjugate: 0,
+            floats: false,
             timings: Timings {
                 ordering: clock.elapsed(),
                 ..Timings::default()
@@ -321,8 +326,6 @@ impl System {
         }
         if with_stiffness {
             self.current = self.elastic_factor && !flows;
-            self.versions += usize::from(flows);
-            self.version = if flows { self.versions } else { 0 };
         }
         self.timings.assembly += clock.elapsed();
         Assembly {
@@ -424,30 +427,40 @@ impl System {
         self.tied.is_some()
     }
 
-    /// Which of the stiffnesses assembled so far is the last: the elastic one is always the same.
-    pub(crate) fn version(&self) -> usize {
-        self.version
-    }
-
-    /// Factorises K and what `ties` adds to its values.
-    ///
-    /// # Errors
-    /// The degree of freedom at which the sum is not positive definite.
-    pub(crate) fn tie(
-        &mut self,
-        ties: impl FnOnce(&Pattern, &mut [f64]),
-    ) -> Result<(), usize> {
-        let mut sum = self.tied.take().unwrap_or_default();
-        sum.clear();
-        sum.extend_from_slice(self.matrix.values());
+    /// Factorises K and what `ties` adds to its values; false where the sum leaves a motion without
+    /// stiffness.
+    pub(crate) fn tie(&mut self, ties: impl FnOnce(&Pattern, &mut [f64])) -> bool {
+        let mut sum = self.matrix.values().to_vec();
         ties(&self.matrix.pattern, &mut sum);
+        if self.tied.as_ref() == Some(&sum) {
+            return true;
+        }
         self.elastic_factor = false;
         self.factorisations += 1;
+        let pattern = &self.matrix.pattern;
         let outcome = timed(&mut self.timings.factorisation, || {
-            self.cholesky.factorise(&self.matrix.pattern, &sum)
+            self.cholesky.factorise(pattern, &sum)
         });
-        self.tied = Some(sum);
-        outcome.map_err(|NotPositiveDefinite { row }| self.dofs[row])
+        let holds = outcome.is_ok() && self.cholesky.least_pivot(pattern, &sum) > RIGID;
+        // What does not hold is not kept.
+        self.tied = Some(if holds { sum } else { Vec::new() });
+        holds
+    }
+
+    /// The next increment does the same whatever factor the last one has left.
+    pub(crate) fn untie(&mut self) {
+        self.tied.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Whether K has room for what ties couple: all pairs of the nodes.
+    pub(crate) fn couples<const D: usize>(&self, nodes: &[usize]) -> bool {
+        let dofs = || nodes.iter().flat_map(|&a| D * a..D * a + D);
+        let unknowns: Vec<u32> = dofs().filter_map(|dof| self.unknown(dof)).collect();
+        let pairs = unknowns
+            .iter()
+            .flat_map(|&p| unknowns.iter().map(move |&q| (p, q)));
+        let mut lower = pairs.filter(|(p, q)| p >= q);
+        lower.all(|(p, q)| self.matrix.pattern.slot(p, q).is_some())
     }
 
     /// Position of a degree of freedom among the unknowns; `None` if it is prescribed.

@@ -1,14 +1,17 @@
 //! A linearised increment with its contacts tied in the factor of its stiffness; not how their problem is
 //! solved.
 
-use crate::condensation::row;
-use crate::driver::{Driver, Nesting};
-use crate::interface::Kinematics;
+use crate::condensation::{Elimination, row};
+use crate::driver::{Driver, Nesting, Seam};
+use crate::interface::{Footing, Kinematics};
 use crate::norm::largest;
+use crate::sparse::Sparse;
+use crate::suspension::STIFFER;
 use crate::system::{Inaccurate, System};
 use moreau_contact::Structure;
 use moreau_laws::Local;
-use nalgebra::{DVector, SMatrix};
+use nalgebra::{DMatrix, DVector, Dyn, LU, SMatrix};
+use std::collections::BTreeMap;
 
 /// A linearised increment seen from its contacts.
 pub(crate) struct Tied<'a, const D: usize> {
@@ -20,16 +23,54 @@ pub(crate) struct Tied<'a, const D: usize> {
     /// Of every contact \[N/mm\].
     stiffness: Vec<f64>,
     ties: Vec<SMatrix<f64, D, D>>,
+    border: Option<Border>,
+    /// Stiffness of a proximal term on the contacts, part of K \[N/mm\].
+    soft: f64,
     pub(crate) solves: usize,
 }
 
+/// A load q of unknown factor λ, the equation q·u + c λ = m that decides it, and a node that is held by
+/// springs whose force vanishes: what K alone leaves free at collapse.
+struct Border {
+    /// q at the unknowns \[N\].
+    load: Vec<f64>,
+    compliance: f64,
+    missing: f64,
+    /// Unknowns of the node.
+    pivot: Vec<usize>,
+    /// Their springs \[N/mm\].
+    spring: f64,
+    /// What the factor makes of q and of unit forces at the node.
+    answers: Vec<Vec<f64>>,
+    /// The equations of λ and of the forces of the springs.
+    equations: LU<f64, Dyn, Dyn>,
+}
+
+impl Border {
+    /// Amounts of the load and of the spring forces, where the others displace by x.
+    fn amounts(&self, x: &[f64], missing: f64) -> DVector<f64> {
+        let mut value = DVector::zeros(1 + self.pivot.len());
+        value[0] = missing - dot(&self.load, x);
+        for (k, &p) in self.pivot.iter().enumerate() {
+            value[1 + k] = x[p];
+        }
+        let zero = DVector::zeros(value.len());
+        self.equations.solve(&value).unwrap_or(zero)
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
 impl<'a, const D: usize> Tied<'a, D> {
-    /// Under a load at every degree of freedom \[N\].
+    /// Under a load at every degree of freedom \[N\], and one of unknown factor with c and m of its equation.
     pub(crate) fn new(
         driver: &Driver<D>,
         system: &'a mut System,
         kinematics: &[Kinematics<D>],
         load: &[f64],
+        border: Option<(&Sparse, f64, f64)>,
     ) -> Self {
         let mut rows = Vec::with_capacity(D * kinematics.len());
         let mut stiffness = Vec::with_capacity(kinematics.len());
@@ -49,14 +90,60 @@ impl<'a, const D: usize> Tied<'a, D> {
                 });
             }
         }
+        let pivot = system.pivot.map_or(0..0, |a| D * a..D * a + D);
+        let pivot = pivot.filter_map(|dof| system.unknown(dof));
+        let border = border.map(|(load, compliance, missing)| Border {
+            load: system.unknowns().map(|dof| load.at(dof)).collect(),
+            compliance,
+            missing,
+            pivot: pivot.map(|p| p as usize).collect(),
+            spring: system.shift(),
+            answers: Vec::new(),
+            equations: DMatrix::zeros(0, 0).lu(),
+        });
         Self {
-            load: system.at_unknowns(load),
+            load: system.unknowns().map(|dof| load[dof]).collect(),
             rows,
             stiffness,
             ties: Vec::new(),
+            border,
+            soft: 0.0,
             solves: 0,
             system,
         }
+    }
+
+    /// Compliances of the springs of components that follow from others, as where a node touches several
+    /// tools; zero of the others \[mm/N\]. See [`Suspended`](crate::suspension::Suspended).
+    pub(crate) fn suspended(&self, driver: &Driver<D>, kinematics: &[Kinematics<D>]) -> Vec<Local<D>> {
+        let mut compliance = vec![Local::zeros(); kinematics.len()];
+        let mut at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (c, point) in driver.points.iter().enumerate() {
+            at.entry(point.node).or_default().push(c);
+        }
+        for points in at.values().filter(|points| points.len() > 1) {
+            let mut rows = Elimination::new(self.load.len());
+            for &c in points {
+                for j in (0..D).filter(|&j| kinematics[c].active[j]) {
+                    let row = self.rows[D * c + j].iter();
+                    let row: BTreeMap<usize, f64> = row.map(|&(p, v)| (p as usize, v)).collect();
+                    if !rows.solve(D * c + j, &row, &[]) {
+                        compliance[c][j] = 1.0 / (STIFFER * self.stiffness[c]);
+                    }
+                }
+            }
+        }
+        compliance
+    }
+
+    /// The largest load at a node \[N\].
+    pub(crate) fn largest_load(&self) -> f64 {
+        largest(self.load.iter().copied())
+    }
+
+    /// A proximal term c/2 |v|² on the contacts, which makes K regular.
+    pub(crate) fn hold(&mut self, c: f64) {
+        self.soft = c;
     }
 
     /// x ← x + Bᵀ z.
@@ -68,54 +155,75 @@ impl<'a, const D: usize> Tied<'a, D> {
         }
     }
 
-    /// The displacement increments of all unknowns, (K + BᵀRB) Δu = f + Bᵀ z, written to `step` at every
-    /// degree of freedom.
-    ///
-    /// # Errors
-    /// [`Inaccurate`] where the factor does not solve the system.
-    pub(crate) fn expand(mut self, z: &DVector<f64>, step: &mut [f64]) -> Result<(), Inaccurate> {
-        let mut f = std::mem::take(&mut self.load);
-        self.spread(z.iter().copied(), &mut f);
-        let mut x = f.clone();
-        self.system.solve_tied(&mut x);
-        self.solves += 1;
-        let mut before = f64::INFINITY;
-        loop {
-            let held = self.held(&x);
-            let given = largest(f.iter().chain(held.iter()).copied());
-            let (mut left, expected) = self.system.left(&f, &x, given);
-            self.spread(held.iter().map(|t| -t), &mut left);
-            let found = largest(left.iter().copied());
-            if found <= expected {
-                break;
-            }
-            if !(found < 0.5 * before) {
-                return Err(Inaccurate { found, expected });
-            }
-            before = found;
-            self.system.solve_tied(&mut left);
-            self.solves += 1;
-            x.iter_mut().zip(left).for_each(|(x, c)| *x += c);
-        }
-        self.system.spread(&x, step);
-        Ok(())
+    /// B x.
+    fn relative(&self, x: &[f64]) -> DVector<f64> {
+        let sum = |row: &Vec<(u32, f64)>| row.iter().map(|&(p, c)| c * x[p as usize]).sum();
+        DVector::from_iterator(self.rows.len(), self.rows.iter().map(sum))
     }
 
-    /// R B x.
+    /// (R + c) B x.
     fn held(&self, x: &[f64]) -> DVector<f64> {
         let v = self.relative(x);
         let mut held = DVector::zeros(v.len());
         for (i, tie) in self.ties.iter().enumerate() {
             let own: Local<D> = v.fixed_rows::<D>(D * i).into();
-            held.fixed_rows_mut::<D>(D * i).copy_from(&(tie * own));
+            held.fixed_rows_mut::<D>(D * i)
+                .copy_from(&(tie * own + own * self.soft));
         }
         held
     }
 
-    /// B x.
-    fn relative(&self, x: &[f64]) -> DVector<f64> {
-        let sum = |row: &Vec<(u32, f64)>| row.iter().map(|&(p, c)| c * x[p as usize]).sum();
-        DVector::from_iterator(self.rows.len(), self.rows.iter().map(sum))
+    /// Solves with the factor, and with the load of unknown factor; returns what that is.
+    fn solve(&mut self, x: &mut [f64], missing: f64) -> f64 {
+        self.system.solve_tied(x);
+        self.solves += 1;
+        let Some(border) = &self.border else {
+            return 0.0;
+        };
+        let amounts = border.amounts(x, missing);
+        for (answer, amount) in border.answers.iter().zip(amounts.iter()) {
+            for (x, y) in x.iter_mut().zip(answer) {
+                *x += amount * y;
+            }
+        }
+        amounts[0]
+    }
+
+    /// The displacement increments of all unknowns, (K + BᵀRB) Δu = f + Bᵀ z + λ q, written to `step` at
+    /// every degree of freedom, and λ.
+    ///
+    /// # Errors
+    /// [`Inaccurate`] where the factor does not solve the system.
+    pub(crate) fn expand(mut self, z: &DVector<f64>, step: &mut [f64]) -> Result<f64, Inaccurate> {
+        let mut f = std::mem::take(&mut self.load);
+        self.spread(z.iter().copied(), &mut f);
+        let mut x = f.clone();
+        let missing = self.border.as_ref().map_or(0.0, |b| b.missing);
+        let mut factor = self.solve(&mut x, missing);
+        let mut before = f64::INFINITY;
+        loop {
+            let held = self.held(&x);
+            let applied: Vec<f64> = match &self.border {
+                Some(b) => f.iter().zip(&b.load).map(|(f, q)| f + factor * q).collect(),
+                None => f.clone(),
+            };
+            let given = largest(applied.iter().chain(held.iter()).copied());
+            let (mut left, expected) = self.system.left(&applied, &x, given);
+            self.spread(held.iter().map(|t| -t), &mut left);
+            let found = largest(left.iter().copied());
+            if found <= expected {
+                break;
+            }
+            // What is no number is not below either.
+            if found.is_nan() || found >= 0.5 * before {
+                return Err(Inaccurate { found, expected });
+            }
+            before = found;
+            factor += self.solve(&mut left, 0.0);
+            x.iter_mut().zip(left).for_each(|(x, c)| *x += c);
+        }
+        self.system.spread(&x, step);
+        Ok(factor)
     }
 }
 
@@ -126,23 +234,27 @@ impl<const D: usize> Structure<D> for Tied<'_, D> {
 
     fn tie(&mut self, ties: &[SMatrix<f64, D, D>]) -> bool {
         self.ties = ties.to_vec();
-        let rows = &self.rows;
-        let outcome = self.system.tie(|pattern, values| {
-            for (i, tie) in ties.iter().enumerate().filter(|(_, t)| t.amax() > 0.0) {
-                for j in 0..D {
-                    for k in 0..D {
-                        for &(p, a) in &rows[D * i + j] {
-                            for &(q, b) in rows[D * i + k].iter().filter(|(q, _)| *q <= p) {
-                                if let Some(slot) = pattern.slot(p, q) {
-                                    values[slot as usize] += a * tie[(j, k)] * b;
-                                }
-                            }
+        let (rows, soft) = (&self.rows, SMatrix::identity() * self.soft);
+        let springs = self.border.as_ref().map(|b| (b.pivot.clone(), b.spring));
+        let held = self.system.tie(|pattern, values| {
+            for (i, tie) in ties.iter().enumerate() {
+                let tie = tie + soft;
+                if tie.amax() > 0.0 {
+                    let own: [&[(u32, f64)]; D] = std::array::from_fn(|j| &*rows[D * i + j]);
+                    for (p, q, value) in congruence(own, &tie) {
+                        if let Some(slot) = pattern.slot(p, q) {
+                            values[slot as usize] += value;
                         }
                     }
                 }
             }
+            if let Some((pivot, spring)) = springs {
+                pivot
+                    .into_iter()
+                    .for_each(|p| values[pattern.diagonal(p)] += spring);
+            }
         });
-        outcome.is_ok()
+        held && self.make_border()
     }
 
     fn displacement(&mut self, z: &DVector<f64>, loaded: bool) -> DVector<f64> {
@@ -150,9 +262,9 @@ impl<const D: usize> Structure<D> for Tied<'_, D> {
             true => self.load.clone(),
             false => vec![0.0; self.load.len()],
         };
+        let missing = self.border.as_ref().filter(|_| loaded).map(|b| b.missing);
         self.spread(z.iter().copied(), &mut x);
-        self.system.solve_tied(&mut x);
-        self.solves += 1;
+        self.solve(&mut x, missing.unwrap_or(0.0));
         self.relative(&x)
     }
 
@@ -161,14 +273,69 @@ impl<const D: usize> Structure<D> for Tied<'_, D> {
     }
 }
 
+/// Entries of the lower triangle of Σ row_j R_jk row_kᵀ.
+fn congruence<const D: usize>(
+    rows: [&[(u32, f64)]; D],
+    tie: &SMatrix<f64, D, D>,
+) -> Vec<(u32, u32, f64)> {
+    let mut entries = Vec::new();
+    for j in 0..D {
+        for k in (0..D).filter(|&k| tie[(j, k)] != 0.0) {
+            for &(p, a) in rows[j] {
+                let lower = rows[k].iter().filter(|(q, _)| *q <= p);
+                entries.extend(lower.map(|&(q, b)| (p, q, a * tie[(j, k)] * b)));
+            }
+        }
+    }
+    entries
+}
+
+impl<const D: usize> Tied<'_, D> {
+    /// Eliminates the factor of the load and the springs of the pivot with the factor at hand; false where
+    /// nothing decides them.
+    fn make_border(&mut self) -> bool {
+        let Some(mut border) = self.border.take() else {
+            return true;
+        };
+        let unit = |p: usize| {
+            let mut e = vec![0.0; self.load.len()];
+            e[p] = border.spring;
+            e
+        };
+        let mut answers = vec![border.load.clone()];
+        answers.extend(border.pivot.iter().map(|&p| unit(p)));
+        for answer in &mut answers {
+            self.system.solve_tied(answer);
+            self.solves += 1;
+        }
+        // q·(x + Σ a y) + c λ = m, and a spring is as long as its node is displaced: s = x + Σ a y.
+        let size = answers.len();
+        let mut equations = DMatrix::zeros(size, size);
+        for (k, answer) in answers.iter().enumerate() {
+            equations[(0, k)] = dot(&border.load, answer);
+            for (j, &p) in border.pivot.iter().enumerate() {
+                equations[(1 + j, k)] = -answer[p];
+            }
+        }
+        equations[(0, 0)] += border.compliance;
+        for j in 1..size {
+            equations[(j, j)] += 1.0;
+        }
+        border.answers = answers;
+        border.equations = equations.lu();
+        let decided = border.equations.is_invertible();
+        self.border = Some(border);
+        decided
+    }
+}
+
 impl<const D: usize> Driver<D> {
     /// The nodes that the contacts couple, where contacts may be tied in the factor.
     pub(crate) fn coupled(&self) -> Option<Vec<Vec<usize>>> {
         let method = self.settings.contact.springs();
-        let may = self.settings.nesting == Nesting::Inside && method.is_some();
-        let of = |footing: &crate::interface::Footing<D>| {
-            footing.weights().map(|(a, _)| a).collect::<Vec<usize>>()
-        };
-        may.then(|| self.footings.iter().map(of).collect())
+        let may = self.settings.nesting == Nesting::Inside
+            && self.settings.seam != Seam::Condensed
+            && method.is_some();
+        may.then(|| self.footings.iter().map(Footing::nodes).collect())
     }
 }

@@ -9,12 +9,12 @@ use crate::ContactError;
 use moreau_laws::{Local, Status};
 use nalgebra::{DVector, SMatrix};
 
-/// Ties over the stiffness of a contact: from a thousand to a million times, an iteration takes the
-/// same steps, and forces round off in proportion.
+/// Ties over the stiffness of a contact: from here to a million times an iteration takes nearly the same
+/// steps, and forces round off in proportion.
 const TIGHT: f64 = 1e3;
 
 /// α of the map, in parts of the stiffness of a contact, and the parts to try where Newton stalls.
-const PARTS: [f64; 3] = [0.1, 1.0, 0.01];
+const PARTS: [f64; 5] = [0.1, 1.0, 0.01, 1e-4, 1e-6];
 
 /// Iterates of which the worst bounds the merit of the next.
 const MEMORY: usize = 6;
@@ -24,6 +24,10 @@ const CLEARLY: f64 = 0.7;
 
 /// Least part of a step that is worth taking before its equations are solved better.
 const WORTH_TAKING: f64 = 0.3;
+
+/// Iterations without progress after which a residual may be rounding, and that over the tolerance.
+const STALLED: usize = 3;
+const ROUNDED: f64 = 100.0;
 
 /// Accuracies to which the equations of a step are solved in turn, over the first, where it is of no use.
 const ACCURACIES: [f64; 3] = [1.0, 1e-2, 1e-5];
@@ -52,8 +56,6 @@ const SOFTENED: f64 = 0.3;
 /// nor the accuracy of the iteration enter the result.
 struct Tied<'a, 'b, const D: usize> {
     problem: &'a mut TiedProblem<'b, D>,
-    /// C of every contact, diagonal: springs in series \[mm/N\].
-    compliance: Local<D>,
     /// α over the stiffness of a contact.
     part: f64,
     ties: Vec<SMatrix<f64, D, D>>,
@@ -61,8 +63,8 @@ struct Tied<'a, 'b, const D: usize> {
     tied: Vec<Status>,
     /// Solves since the factorisation.
     used: usize,
-    /// Whether more is tied than the statuses tell.
-    propped: bool,
+    /// What is tied beyond its status.
+    propped: Vec<usize>,
     directions: Recycled,
 }
 
@@ -72,7 +74,7 @@ struct At<const D: usize> {
     v: DVector<f64>,
     u: Vec<Local<D>>,
     t: Vec<Local<D>>,
-    /// u + C (t − t₀*): the part that obeys the law.
+    /// u + C (t − t*): the part that obeys the law.
     irreversible: Vec<Local<D>>,
     map: Vec<Local<D>>,
     residual: f64,
@@ -93,44 +95,65 @@ struct Guess<const D: usize> {
     t: Vec<Local<D>>,
 }
 
-/// Solves a tied problem, with springs of compliance C \[mm/N\] in series with the law (zero: the law itself).
-/// Returns with the solution z = t + R v of the ties R that were the last, for which
+/// Solves a tied problem to a tolerance, or to a residual that is `enough` \[N\] where that is larger. Returns with the solution z = t + R v of the ties R that were the last, for which
 /// (K + BᵀRB) Δu = f + Bᵀ z.
+///
+/// Where the statuses leave the structure a rigid motion it is one of the solutions.
 ///
 /// # Errors
 /// [`ContactError::NotConverged`], and [`ContactError::Singular`] where nothing holds the structure.
 pub fn solve_tied<const D: usize>(
     problem: &mut TiedProblem<'_, D>,
-    compliance: Local<D>,
     guess: Option<&ContactSolution<D>>,
     (tolerance, enough): (Tolerance, f64),
 ) -> Result<(ContactSolution<D>, DVector<f64>), ContactError> {
-    let guess = Guess::new(problem, guess);
+    let mut guess = Guess::new(problem, guess);
     let mut newton = Tied {
         ties: Vec::new(),
         tied: Vec::new(),
         part: PARTS[0],
-        compliance,
         used: 0,
-        propped: false,
+        propped: Vec::new(),
         directions: Recycled::default(),
         problem,
     };
-    let mut now = newton.begin(&guess)?;
+    let mut now = newton.begin(&mut guess)?;
     let mut first = Some(guess);
+    // A body that only contact holds has no stiffness against contacts that open on the way: then they are
+    // closed once more.
+    let mut again = true;
     let mut merits: Vec<f64> = Vec::new();
     let mut part = 0;
     let mut iterations = 0;
+    let (mut least, mut stalled) = (f64::INFINITY, 0);
     loop {
         let scale = newton.force_scale(&now);
-        let target = newton.part * tolerance.relative * scale;
-        let target = target.max(newton.rounding(&now));
+        let target = (PARTS[0] * tolerance.relative * scale).max(newton.rounding(&now));
+        // Solves round off by what the structure is softer than its contacts are stiff.
+        stalled = match now.residual < 0.5 * least {
+            true => 0,
+            false => stalled + 1,
+        };
+        least = least.min(now.residual);
+        let target = match stalled < STALLED {
+            true => target,
+            false => target.max(ROUNDED * tolerance.relative * scale),
+        };
         if std::env::var("TRACE").is_ok() {
             eprintln!("  it {iterations} res {:.2e} target {target:.1e} enough {enough:.1e} merit {:.2e} used {} part {} ; {:?}", now.residual, now.merit, newton.used, newton.part, { let s = newton.statuses(&now); (s.iter().filter(|s| **s==Status::Open).count(), s.iter().filter(|s| **s==Status::Stick).count(), s.iter().zip(&newton.tied).filter(|(a,b)| a!=b).count()) });
         }
-        if now.residual <= target.max(newton.part * enough) {
-            let exact = now.residual <= target;
-            return Ok(newton.solution(now, iterations, exact));
+        if now.residual <= target.max(PARTS[0] * enough) {
+            if newton.part == PARTS[0] {
+                let exact = now.residual <= target;
+                return Ok(newton.solution(now, iterations, exact));
+            }
+            // Residuals are comparable at one α only.
+            part = 0;
+            newton.part = PARTS[0];
+            now = newton.at(now.z, now.v);
+            merits.clear();
+            iterations += 1;
+            continue;
         }
         if iterations >= tolerance.iterations || !now.residual.is_finite() {
             break;
@@ -156,6 +179,18 @@ pub fn solve_tied<const D: usize>(
         match newton.step(&rows, &now, allowed) {
             Some(next) => now = next,
             None if newton.used > 1 && stale => now = newton.renew(now, &status)?,
+            None if again && !newton.propped.is_empty() => {
+                again = false;
+                let mut closed = Guess {
+                    u: now.u,
+                    irreversible: now.irreversible,
+                    t: now.t,
+                };
+                newton.part = PARTS[0];
+                now = newton.begin(&mut closed)?;
+                first = Some(closed);
+                merits.clear();
+            }
             None => {
                 part += 1;
                 if part % PARTS.len() == 0 {
@@ -167,7 +202,7 @@ pub fn solve_tied<const D: usize>(
             }
         }
     }
-    if newton.propped {
+    if !newton.propped.is_empty() {
         return Err(ContactError::Singular);
     }
     Err(ContactError::NotConverged {
@@ -209,7 +244,7 @@ impl<const D: usize> Guess<D> {
 impl<const D: usize> Tied<'_, '_, D> {
     fn alpha(&self, i: usize) -> f64 {
         let alpha = self.part * self.problem.structure.stiffness(i);
-        alpha / (1.0 + alpha * self.compliance.mean())
+        alpha / (1.0 + alpha * self.problem.springs[i].compliance.mean())
     }
 
     /// The ties of a status at (u, t).
@@ -237,17 +272,18 @@ impl<const D: usize> Tied<'_, '_, D> {
                 across
             }
         };
-        if self.compliance.amax() > 0.0 {
+        let compliance = &self.problem.springs[i].compliance;
+        if compliance.amax() > 0.0 {
             // In series with the springs: R (1 + C R)⁻¹.
-            let series = SMatrix::identity() + SMatrix::from_diagonal(&self.compliance) * tie;
+            let series = SMatrix::identity() + SMatrix::from_diagonal(compliance) * tie;
             tie = series.try_inverse().map_or(tie, |inverse| tie * inverse);
             tie = (tie + tie.transpose()) * 0.5;
         }
         tie
     }
 
-    /// Factorises with the ties of statuses at (u, t). Where that leaves the structure free to move, the
-    /// smallest gaps are tied as well.
+    /// Factorises with the ties of statuses at (u, t). Where that leaves the structure free to move, what
+    /// slips and the smallest gaps are tied as what sticks.
     fn factorise(
         &mut self,
         status: &[Status],
@@ -260,34 +296,44 @@ impl<const D: usize> Tied<'_, '_, D> {
         self.tied = status.to_vec();
         self.used = 0;
         self.directions.clear();
-        self.propped = false;
-        let mut open: Vec<usize> = (0..count).filter(|&i| status[i] == Status::Open).collect();
-        open.sort_by(|&a, &b| u[a][0].total_cmp(&u[b][0]));
+        self.propped.clear();
+        let mut loose: Vec<usize> = (0..count).filter(|&i| status[i] != Status::Stick).collect();
+        loose.sort_by(|&a, &b| u[a][0].total_cmp(&u[b][0]));
         let mut more = 3 * D;
-        let mut open = open.into_iter();
+        let mut loose = loose.into_iter();
         while !self.problem.structure.tie(&self.ties) {
-            self.propped = true;
-            let mut some = open.by_ref().take(more).peekable();
+            let mut some = loose.by_ref().take(more).peekable();
             if some.peek().is_none() {
                 return Err(ContactError::Singular);
             }
             for i in some {
                 self.ties[i] =
                     SMatrix::identity() * (TIGHT * self.problem.structure.stiffness(i));
+                self.propped.push(i);
             }
             more *= 4;
         }
         Ok(())
     }
 
-    fn begin(&mut self, guess: &Guess<D>) -> Result<At<D>, ContactError> {
+    /// Where the ties of a guess lead; what had to be tied beyond it is closed in the guess as well.
+    fn begin(&mut self, guess: &mut Guess<D>) -> Result<At<D>, ContactError> {
         let (u, t) = (&guess.irreversible, &guess.t);
         let status: Vec<Status> = (0..u.len())
             .map(|i| self.problem.friction[i].status(&u[i], &t[i], self.alpha(i)))
             .collect();
         self.factorise(&status, (u, t))?;
+        for &i in &self.propped {
+            if status[i] == Status::Open {
+                guess.u[i] = Local::zeros();
+                guess.irreversible[i] = Local::zeros();
+                guess.t[i] = Local::zeros();
+                guess.t[i][0] = self.problem.structure.stiffness(i);
+            }
+        }
+        let (u, t) = (&guess.u, &guess.t);
         let z: Vec<Local<D>> = (0..u.len())
-            .map(|i| t[i] + self.ties[i] * (guess.u[i] - self.problem.origin[i]))
+            .map(|i| t[i] + self.ties[i] * (u[i] - self.problem.origin[i]))
             .collect();
         Ok(self.solve(stack(&z)))
     }
@@ -325,9 +371,8 @@ impl<const D: usize> Tied<'_, '_, D> {
             let v = local(&at.v, i);
             let t = local(&at.z, i) - self.ties[i] * v;
             let u = p.origin[i] + v;
-            let mut before = p.previous[i];
-            before[0] = 0.0;
-            let irreversible = u + self.compliance.component_mul(&(t - before));
+            let springs = &p.springs[i];
+            let irreversible = u + springs.compliance.component_mul(&(t - springs.force));
             let map = p.friction[i].natural_map(&irreversible, &t, self.alpha(i));
             at.residual = at.residual.max(map.norm());
             at.merit += map.norm_squared() / self.alpha(i);
@@ -350,7 +395,7 @@ impl<const D: usize> Tied<'_, '_, D> {
     fn derivatives(&self, i: usize, u: &Local<D>, t: &Local<D>) -> [SMatrix<f64, D, D>; 2] {
         let law = &self.problem.friction[i];
         let (projector, shift) = law.correct_jacobian(u, t, self.alpha(i));
-        let springs = SMatrix::from_diagonal(&self.compliance);
+        let springs = SMatrix::from_diagonal(&self.problem.springs[i].compliance);
         [SMatrix::identity() - projector + shift * springs, shift]
     }
 
@@ -384,6 +429,7 @@ impl<const D: usize> Tied<'_, '_, D> {
     /// allowed.
     fn step(&mut self, rows: &[Row<D>], now: &At<D>, allowed: f64) -> Option<At<D>> {
         let count = rows.len();
+        let alpha: Vec<f64> = (0..count).map(|i| self.alpha(i)).collect();
         // P of every contact, and P (E z + (A − E R) W z).
         let preconditioners: Vec<SMatrix<f64, D, D>> = (0..count)
             .map(|i| {
@@ -408,9 +454,20 @@ impl<const D: usize> Tied<'_, '_, D> {
         let values: Vec<Local<D>> = (0..count)
             .map(|i| preconditioners[i] * rows[i].value)
             .collect();
-        let b = stack(&values);
-        let size = b.norm();
-        let mut least = LeastSquares::new(b);
+        let mut least = LeastSquares::new(stack(&values));
+        // What is left of the equations, as the merit weighs it.
+        let inverses: Vec<SMatrix<f64, D, D>> = preconditioners
+            .iter()
+            .map(|p| p.try_inverse().unwrap_or_else(SMatrix::identity))
+            .collect();
+        let weighed = |left: &DVector<f64>| -> f64 {
+            let own = |i: usize| {
+                let left: Local<D> = left.fixed_rows::<D>(D * i).into();
+                (inverses[i] * left).norm_squared() / alpha[i]
+            };
+            (0..count).map(own).sum::<f64>().sqrt()
+        };
+        let size = (least.left.norm(), weighed(&least.left));
         for k in 0..self.directions.len() {
             let (z, answer) = self.directions.pair(k);
             least.add(image(z, answer, &self.ties));
@@ -419,8 +476,12 @@ impl<const D: usize> Tied<'_, '_, D> {
         let coarse = INACCURATE.min((now.residual / scale).sqrt());
         let mut taken = 0;
         let mut best: Option<At<D>> = None;
-        for accuracy in ACCURACIES {
-            while least.left.norm() > coarse * accuracy * size && taken < LONGEST {
+        for (k, accuracy) in ACCURACIES.into_iter().enumerate() {
+            let accuracy = coarse * accuracy;
+            let solved = |left: &DVector<f64>| {
+                left.norm() <= accuracy * size.0 && (k == 0 || weighed(left) <= accuracy * size.1)
+            };
+            while !solved(&least.left) && taken < LONGEST {
                 let mut z = least.left.clone();
                 let length = z.norm();
                 z /= length;
@@ -457,15 +518,19 @@ impl<const D: usize> Tied<'_, '_, D> {
     /// Size of the forces in play \[N\].
     fn force_scale(&self, at: &At<D>) -> f64 {
         let forces = at.t.iter().chain(&self.problem.previous);
-        forces.map(|t| t.norm()).fold(f64::MIN_POSITIVE, f64::max)
+        let load = self.problem.load.max(f64::MIN_POSITIVE);
+        forces.map(|t| t.norm()).fold(load, f64::max)
     }
 
-    /// Rounding of the map \[N\]: of displacements in the stiffness of a contact.
+    /// Rounding of the map \[N\]: of displacements in the stiffness of a contact, and of what ties hold, which
+    /// forces are differences from.
     fn rounding(&self, at: &At<D>) -> f64 {
         let count = at.u.len();
         let stiffest = (0..count).map(|i| self.problem.structure.stiffness(i));
         let stiffest = stiffest.fold(0.0, f64::max);
-        4.0 * f64::EPSILON * ((D * count) as f64).sqrt() * stiffest * at.v.amax()
+        let held = stack(&at.t) - &at.z;
+        let terms = ((D * count) as f64).sqrt();
+        4.0 * f64::EPSILON * (terms * stiffest * at.v.amax() + held.amax())
     }
 
     fn solution(

@@ -191,9 +191,9 @@ impl System {
         self.timings.solution += clock.elapsed();
     }
 
-    /// f at the unknowns.
-    pub(crate) fn at_unknowns(&self, f: &[f64]) -> Vec<f64> {
-        self.dofs.iter().map(|&dof| f[dof]).collect()
+    /// The degrees of freedom of the unknowns, in their order.
+    pub(crate) fn unknowns(&self) -> impl Iterator<Item = usize> {
+        self.dofs.iter().copied()
     }
 
     /// f − K u at the unknowns, and what rounding leaves of it, with f a sum of forces as large as `given`.
