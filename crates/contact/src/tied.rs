@@ -32,6 +32,16 @@ pub struct Springs<const D: usize> {
     pub force: Local<D>,
 }
 
+impl<const D: usize> Default for Springs<D> {
+    /// None: the law itself.
+    fn default() -> Self {
+        Self {
+            compliance: Local::zeros(),
+            force: Local::zeros(),
+        }
+    }
+}
+
 /// The contact problem of one linearised increment of a structure:
 ///
 /// ```text

@@ -2,12 +2,13 @@
 //! what it does then.
 
 use crate::block::Stiffness;
-use crate::condensation::{Condensation, Yielding};
+use crate::condensation::Condensation;
 use crate::conjugate::Interface;
 use crate::driver::Driver;
 use crate::load::Loading;
 use crate::sparse::Sparse;
 use crate::system::System;
+use crate::tied::Tied;
 use moreau_laws::Status;
 use nalgebra::{DMatrix, DVector, SVector};
 
@@ -42,23 +43,7 @@ const FAR: f64 = 0.1;
 const SETTLED: f64 = 1e-3;
 
 /// (K + closed contacts)⁻¹, applied to forces at all degrees of freedom.
-struct Compliance<'a, 'b, const D: usize> {
-    system: &'a mut System,
-    interface: &'a Yielding<'b, D>,
-}
-
-impl<const D: usize> Compliance<'_, '_, D> {
-    fn apply(&mut self, force: Vec<f64>) -> Option<Vec<f64>> {
-        let mut v = vec![0.0; force.len()];
-        let condensed = self.system.condense(force);
-        let x = self.interface.displacement(&condensed.load);
-        let nothing = Sparse::default();
-        let done = self
-            .system
-            .expand(condensed, &x, (&nothing, Interface::Held), &mut v);
-        done.ok().map(|()| v)
-    }
-}
+type Compliance<'a> = dyn FnMut(&mut System, Vec<f64>) -> Option<Vec<f64>> + 'a;
 
 impl<const D: usize> Driver<D> {
     /// The nearest elastic instability under the stresses of now. `None` where these have none, before
@@ -98,21 +83,51 @@ impl<const D: usize> Driver<D> {
         let rest = vec![0.0; self.state.displacement.len()];
         let elastic = Stiffness::Plastic(0.0);
         system.assemble(&mut self.blocks, &rest, &Sparse::default(), elastic);
-        system.factorise(true).ok()?;
         let kinematics = self.kinematics(system, &self.state.loading, &rest);
+        let status: Vec<Status> = match &self.state.solution {
+            Some(solution) => solution.status.clone(),
+            None => vec![Status::Open; self.points.len()],
+        };
+        if system.is_tied() {
+            let held = !system.floats || self.is_held(&self.state.loading, &status);
+            let mut tied = Tied::new(self, system, &kinematics, &rest, None);
+            if !(held && tied.hold_statuses(&status)) {
+                return None;
+            }
+            drop(tied);
+            return self.instability(system, &mut |system, force| {
+                let mut x: Vec<f64> = system.unknowns().map(|dof| force[dof]).collect();
+                system.solve_tied(&mut x);
+                let mut v = vec![0.0; force.len()];
+                system.spread(&x, &mut v);
+                Some(v)
+            });
+        }
+        system.factorise(true).ok()?;
         let condensed = system.condense(rest.clone());
         let points = (self.points.as_slice(), self.footings.as_slice());
         let seam = (condensed.stiffness, &condensed.load);
         let forces = self.previous_forces(&kinematics);
         let forces = (forces.clone(), forces.as_slice());
         let condensation = Condensation::new(system, seam, points, &kinematics, forces).ok()?;
-        let status: Vec<Status> = match &self.state.solution {
-            Some(solution) => solution.status.clone(),
-            None => vec![Status::Open; self.points.len()],
-        };
-        let interface = &condensation.yielding(&status)?;
-        let mut compliance = Compliance { system, interface };
-        let (weights, inverse) = self.lanczos(&mut compliance, None)?;
+        let interface = condensation.yielding(&status)?;
+        self.instability(system, &mut |system, force| {
+            let mut v = vec![0.0; force.len()];
+            let condensed = system.condense(force);
+            let x = interface.displacement(&condensed.load);
+            let nothing = (&Sparse::default(), Interface::Held);
+            let done = system.expand(condensed, &x, nothing, &mut v);
+            done.ok().map(|()| v)
+        })
+    }
+
+    /// The nearest elastic instability of what gives way as the compliance tells.
+    fn instability(
+        &self,
+        system: &mut System,
+        compliance: &mut Compliance<'_>,
+    ) -> Option<Buckling<D>> {
+        let (weights, inverse) = self.lanczos(system, compliance, None)?;
         if inverse * Buckling::<D>::NEAR < 1.0 {
             // No mode is needed of what is far away.
             let (node, zero) = (0, [0.0; D]);
@@ -123,8 +138,8 @@ impl<const D: usize> Driver<D> {
                 direction: zero,
             });
         }
-        let mut mode = rest;
-        self.lanczos(&mut compliance, Some((&weights, &mut mode)))?;
+        let mut mode = vec![0.0; self.state.displacement.len()];
+        self.lanczos(system, compliance, Some((&weights, &mut mode)))?;
         let at = |node: usize| SVector::<f64, D>::from_column_slice(&mode[D * node..D * node + D]);
         let most = |a: &usize, b: &usize| at(*a).norm().total_cmp(&at(*b).norm());
         let node = (0..self.mesh.nodes().len()).max_by(most)?;
@@ -142,7 +157,8 @@ impl<const D: usize> Driver<D> {
     /// Rounding makes the directions dependent in the end, which repeats values and adds none.
     fn lanczos(
         &self,
-        compliance: &mut Compliance<'_, '_, D>,
+        system: &mut System,
+        compliance: &mut Compliance<'_>,
         mut sum: Option<(&DVector<f64>, &mut Vec<f64>)>,
     ) -> Option<(DVector<f64>, f64)> {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -152,7 +168,7 @@ impl<const D: usize> Driver<D> {
         let mesh = self.mesh_dofs();
         // q, and the force K q that makes it: of the first, noise, which no symmetry keeps from any mode.
         let mut force = noise(self.state.displacement.len(), mesh);
-        let mut q = compliance.apply(force.clone())?;
+        let mut q = compliance(system, force.clone())?;
         let (mut before, mut before_force) = (vec![0.0; q.len()], vec![0.0; q.len()]);
         let (mut diagonal, mut beside): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
         let (mut weights, mut largest) = (DVector::zeros(0), 0.0);
@@ -181,7 +197,7 @@ impl<const D: usize> Driver<D> {
             next_force.iter_mut().for_each(|f| *f = -*f);
             let alpha = dot(&q, &next_force);
             diagonal.push(alpha);
-            let mut next = compliance.apply(next_force.clone())?;
+            let mut next = compliance(system, next_force.clone())?;
             for (a, q, before) in [
                 (&mut next, &q, &before),
                 (&mut next_force, &force, &before_force),

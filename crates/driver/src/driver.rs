@@ -7,7 +7,7 @@ use crate::load::Loading;
 use crate::model::{Analysis, Contact, Measure, Model};
 use crate::report::{ContactRecord, Energies, Iteration, StepReport};
 use crate::sparse::Sparse;
-use crate::system::System;
+use crate::system::{Contacts, System};
 use crate::timings::Timings;
 use moreau_contact::{ContactSolution, ContactSolver, SemismoothNewton};
 use moreau_laws::{Local, Status};
@@ -69,7 +69,7 @@ impl<const D: usize> Default for Settings<D> {
         Self {
             contact: Box::new(SemismoothNewton::default()),
             nesting: Nesting::Inside,
-            seam: if std::env::var("SEAM").is_ok() { Seam::Tied } else { Seam::Cheaper },
+            seam: Seam::Cheaper,
             tolerance: 1e-10,
             iterations: 40,
             cuts: 10,
@@ -99,6 +99,9 @@ pub(crate) struct State<const D: usize> {
     /// Last solution of the contact problem, to start the next from.
     pub(crate) solution: Option<ContactSolution<D>>,
 }
+
+/// Components of contacts at most of which the problem is condensed where it cannot be solved tied.
+const CONDENSABLE: usize = 3000;
 
 /// A model under load. See the crate's documentation for an example.
 pub struct Driver<const D: usize> {
@@ -387,8 +390,19 @@ impl<const D: usize> Driver<D> {
                 iterations,
             } => self.nested_increment(&mut system, &start, end, (tolerance, iterations), watch),
         };
+        let small = system.is_tied() && D * self.points.len() <= CONDENSABLE;
         self.system = Some(system);
-        outcome
+        match outcome {
+            Err(StepError::Contact { .. }) if small && self.settings.seam == Seam::Cheaper => {
+                // A dense matrix costs more, and its methods find what this one does not.
+                let mut system = self.elastic_system(end, None, Seam::Condensed)?;
+                let watch = &mut |_: &Self, now: &Iteration<'_>| watch(now);
+                let outcome = self.increment(&mut system, &start, end, watch);
+                self.system = Some(system);
+                outcome
+            }
+            outcome => outcome,
+        }
     }
 
     /// The linear system for the prescribed degrees of freedom of a loading and a pivot: the one at
@@ -400,20 +414,23 @@ impl<const D: usize> Driver<D> {
     ) -> Result<System, ModelError> {
         let fixed = |dof: usize| loading.displacement.contains_key(&dof);
         let dofs = self.state.displacement.len();
-        let paired = self.points.iter().zip(&self.footings);
-        let paired: Vec<Vec<usize>> = paired
-            .filter(|(p, _)| p.tool.is_none())
-            .map(|(_, footing)| footing.nodes())
-            .collect();
+        let paired = self.paired();
         if let Some(system) = self.system.take_if(|s| {
             s.pivot == pivot
                 && (0..dofs).all(|d| s.is_free(d) != fixed(d))
-                && (!s.is_tied() || paired.iter().all(|nodes| s.couples::<D>(nodes)))
+                && (!s.is_tied() || s.paired == paired)
         }) {
             return Ok(system);
         }
         self.check_rigid_motions(loading)?;
-        self.elastic_system(loading, pivot)
+        self.elastic_system(loading, pivot, self.settings.seam)
+    }
+
+    /// The nodes that each contact point between bodies couples.
+    fn paired(&self) -> Vec<Vec<usize>> {
+        let points = self.points.iter().zip(&self.footings);
+        let paired = points.filter(|(p, _)| p.tool.is_none());
+        paired.map(|(_, footing)| footing.nodes()).collect()
     }
 
     /// A new linear system for a loading, with the elastic stiffness assembled.
@@ -421,6 +438,7 @@ impl<const D: usize> Driver<D> {
         &mut self,
         loading: &Loading<D>,
         pivot: Option<usize>,
+        seam: Seam,
     ) -> Result<System, ModelError> {
         let fixed = |dof: usize| loading.displacement.contains_key(&dof);
         let mut interface: Vec<usize> = self.points.iter().map(|p| p.node).collect();
@@ -430,18 +448,23 @@ impl<const D: usize> Driver<D> {
         let before = self.timings();
         // Two factors at once may not fit.
         self.system = None;
-        let coupled = self.coupled();
+        let coupled = self.coupled(seam);
         let mut system = System::new(
             &self.mesh,
             &self.blocks,
             fixed,
-            (&interface, coupled.as_deref().map(|c| (self.settings.seam, c))),
-            pivot,
-            self.tools.len(),
+            &Contacts {
+                nodes: &interface,
+                pivot,
+                tools: self.tools.len(),
+                seam,
+                coupled: coupled.as_deref(),
+            },
             self.settings.memory,
         )?;
         system.timings += before;
         system.floats = self.floats(loading);
+        system.paired = self.paired();
         system.learn(&mut self.blocks, self.settings.nesting == Nesting::Inside);
         Ok(system)
     }

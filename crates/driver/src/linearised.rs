@@ -94,12 +94,21 @@ impl<const D: usize> Driver<D> {
                 compliance: compliance + suspended[i],
                 force: Local::from_fn(|j, _| match suspended[i][j] > 0.0 {
                     true => last[i][j],
-                    false => if j > 0 { previous[i][j] } else { 0.0 },
+                    false => {
+                        if j > 0 {
+                            previous[i][j]
+                        } else {
+                            0.0
+                        }
+                    }
                 }),
             })
             .collect();
         let largest_load = tied.largest_load();
-        let given = previous.iter().map(|t| t.norm()).fold(largest_load, f64::max);
+        let given = previous
+            .iter()
+            .map(|t| t.norm())
+            .fold(largest_load, f64::max);
         let mut solve = |c: f64, enough: f64| {
             tied.hold(c);
             let mut problem = TiedProblem {
@@ -124,7 +133,11 @@ impl<const D: usize> Driver<D> {
                 counts.undetermined |= error == ContactError::Singular;
                 nearest(error, stiffest, |c| {
                     let (solution, z) = solve(c, 0.0)?;
-                    let scale = solution.force.iter().map(|t| t.norm()).fold(given, f64::max);
+                    let scale = solution
+                        .force
+                        .iter()
+                        .map(|t| t.norm())
+                        .fold(given, f64::max);
                     Ok((solution, z, scale))
                 })
             })
@@ -231,7 +244,11 @@ fn nearest<const D: usize, T>(
         };
         let motion = largest(solution.motion.iter().flatten().copied());
         let carries = c * motion > CARRIED * scale;
-        return if carries { Err(error) } else { Ok((solution, other)) };
+        return if carries {
+            Err(error)
+        } else {
+            Ok((solution, other))
+        };
     }
     Err(error)
 }

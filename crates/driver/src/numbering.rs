@@ -96,8 +96,7 @@ fn adjacency<const D: usize>(mesh: &Mesh<D>, nodes: usize, coupled: &[Vec<usize>
         Some(k) => &coupled[k],
     };
     let all = || {
-        (0..mesh.cell_count() + coupled.len())
-            .flat_map(|c| group(c).iter().map(move |&a| (c, a)))
+        (0..mesh.cell_count() + coupled.len()).flat_map(|c| group(c).iter().map(move |&a| (c, a)))
     };
     all().for_each(|(_, a)| first[a] += 1);
     let mut sum = 0;

@@ -1,7 +1,7 @@
 //! The state of a driver as a list of numbers, and back to the bit; not the file that holds them.
 
 use crate::ModelError;
-use crate::driver::{Driver, State};
+use crate::driver::{Driver, Seam, State};
 use crate::load::Loading;
 use crate::sparse::Sparse;
 use moreau_contact::ContactSolution;
@@ -171,6 +171,9 @@ impl<const D: usize> Driver<D> {
         let elastic = held.is_some_and(crate::system::System::holds_elastic_factor);
         out.push(f64::from(u8::from(held.is_some())));
         out.push(f64::from(u8::from(elastic)));
+        out.push(f64::from(u8::from(
+            held.is_some_and(crate::system::System::is_tied),
+        )));
         let pivot = held.and_then(|s| s.pivot);
         out.push(pivot.map_or(-1.0, |node| node as f64));
     }
@@ -256,6 +259,10 @@ impl<const D: usize> Driver<D> {
             }
         }
         let (held, elastic) = (from.count()? == 1, from.count()? == 1);
+        let seam = match from.count()? == 1 {
+            true => Seam::Tied,
+            false => Seam::Condensed,
+        };
         let nodes = 0..self.mesh.nodes().len();
         let pivot = Some(from.number()?)
             .filter(|&n| n >= 0.0)
@@ -276,7 +283,7 @@ impl<const D: usize> Driver<D> {
         self.system = None;
         if held {
             let loading = self.state.loading.clone();
-            let mut system = self.elastic_system(&loading, pivot)?;
+            let mut system = self.elastic_system(&loading, pivot, seam)?;
             if elastic {
                 // The elastic stiffness was positive definite when it was first factorised.
                 let _ = system.factorise(true);

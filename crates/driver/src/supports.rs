@@ -271,10 +271,7 @@ impl<const D: usize> Driver<D> {
 
     /// Whether displacement conditions leave a rigid motion to the contacts.
     pub(crate) fn floats(&self, loading: &Loading<D>) -> bool {
-        !self
-            .resisted(loading, |_, _| 0)
-            .free()
-            .is_empty()
+        !self.resisted(loading, |_, _| 0).free().is_empty()
     }
 
     /// Whether contacts of these statuses resist every rigid motion: what touches by its normal, and by its
@@ -285,11 +282,7 @@ impl<const D: usize> Driver<D> {
             .is_empty()
     }
 
-    fn resisted(
-        &self,
-        loading: &Loading<D>,
-        components: impl Fn(&Self, usize) -> usize,
-    ) -> Rows {
+    fn resisted(&self, loading: &Loading<D>, components: impl Fn(&Self, usize) -> usize) -> Rows {
         let held = loading.displacement.range(..self.mesh_dofs());
         self.rows(held.map(|(&dof, _)| (dof, 0)), loading, components)
     }

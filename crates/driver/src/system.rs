@@ -65,6 +65,8 @@ pub(crate) struct System {
     pub(crate) timings: Timings,
     /// Whether only contact holds some rigid motion.
     pub(crate) floats: bool,
+    /// The nodes that each contact point between bodies couples, where contacts are tied.
+    pub(crate) paired: Vec<Vec<usize>>,
 }
 
 /// Internal forces of an assembly.
@@ -118,10 +120,11 @@ const TIED: (f64, f64) = (25.0, 1.5);
 const CONDENSED: f64 = 6.0;
 
 /// The numbering of a system in which contacts are tied, where their problem costs less so than condensed:
-/// by operations. `interface` are its unknowns, `entries` about as many as the matrix has, or more.
-fn ties_are_cheaper(
+/// by operations, and where its factor has room. `interface` are its unknowns, `entries` about as many as
+/// the matrix has, or more.
+fn ties_are_cheaper<const D: usize>(
     interface: usize,
-    entries: usize,
+    (entries, room): (usize, f64),
     tied: impl Fn() -> Numbering,
     condensed: impl Fn() -> Numbering,
 ) -> Option<Numbering> {
@@ -133,24 +136,44 @@ fn ties_are_cheaper(
     let tied = tied();
     let own = Cholesky::cost(&tied.pattern);
     let through = factorisations * own.operations + solves * SOLVE * own.entries;
-    let cheaper =
-        through < dense || through < dense + Cholesky::cost(&condensed().pattern).operations;
+    let other = || {
+        let condensed = condensed();
+        let own = Cholesky::cost(&condensed.pattern).operations;
+        match D {
+            3 => own.min(conjugate_operations(&condensed.pattern, 0)),
+            _ => own,
+        }
+    };
+    let cheaper = own.entries <= room && (through < dense || through < dense + other());
     cheaper.then_some(tied)
 }
 
 /// Pairs of nodes of all cells, each node with itself among them.
 fn pairs<const D: usize>(blocks: &[Box<dyn Block<D>>]) -> usize {
-    let of = |b: &Box<dyn Block<D>>| {
-        let nodes = if b.cells().is_empty() { 0 } else { b.nodes(0).len() };
-        b.cells().len() * nodes * (nodes + 1) / 2
+    let of = |b: &dyn Block<D>| match b.cells().len() {
+        0 => 0,
+        cells => cells * b.nodes(0).len() * (b.nodes(0).len() + 1) / 2,
     };
-    blocks.iter().map(of).sum()
+    blocks.iter().map(|b| of(b.as_ref())).sum()
+}
+
+/// What a system has to know of contacts.
+pub(crate) struct Contacts<'a> {
+    /// Nodes that may touch, on both sides.
+    pub(crate) nodes: &'a [usize],
+    /// A node that no contact needs and that is treated as they are.
+    pub(crate) pivot: Option<usize>,
+    /// Number of tools: nodes after those of the mesh, without stiffness.
+    pub(crate) tools: usize,
+    pub(crate) seam: Seam,
+    /// The nodes that each contact couples, where it may be tied.
+    pub(crate) coupled: Option<&'a [Vec<usize>]>,
 }
 
 impl System {
     /// Numbers the free degrees of freedom, orders them and does the symbolic factorisation. The
-    /// interface is that of the contact points, the node `pivot` if there is one, and the tools: they
-    /// are nodes after those of the mesh, without stiffness. The factor may take `memory` \[bytes\].
+    /// interface is that of the contacts, the pivot if there is one, and the tools. The factor may take
+    /// `memory` \[bytes\].
     ///
     /// # Errors
     /// [`ModelError::TooLarge`] where neither its own factor nor that of a coarse space has room.
@@ -158,22 +181,31 @@ impl System {
         mesh: &Mesh<D>,
         blocks: &[Box<dyn Block<D>>],
         fixed: impl Fn(usize) -> bool,
-        (interface_nodes, coupled): (&[usize], Option<(Seam, &[Vec<usize>])>),
-        pivot: Option<usize>,
-        tools: usize,
+        contacts: &Contacts<'_>,
         memory: Option<u64>,
     ) -> Result<Self, ModelError> {
         let clock = Instant::now();
+        let &Contacts {
+            nodes: interface_nodes,
+            pivot,
+            tools,
+            seam,
+            coupled,
+        } = contacts;
         let condensed = || Numbering::new(mesh, &fixed, interface_nodes, pivot, tools, &[]);
-        let tied = coupled.and_then(|(seam, coupled)| {
+        let tied = coupled.and_then(|coupled| {
             let tied = || Numbering::new(mesh, &fixed, &[], None, tools, coupled);
+            let room = memory.map_or(f64::INFINITY, |bytes| {
+                bytes as f64 / size_of::<f64>() as f64
+            });
             if seam == Seam::Tied {
-                return Some(tied());
+                let tied = tied();
+                return (Cholesky::cost(&tied.pattern).entries <= room).then_some(tied);
             }
             let free = |a: &usize| (D * a..D * a + D).filter(|&dof| !fixed(dof)).count();
             let nodes: BTreeSet<usize> = interface_nodes.iter().copied().collect();
             let interface = nodes.iter().map(free).sum::<usize>();
-            ties_are_cheaper(interface, pairs(blocks) * D * D, tied, condensed)
+            ties_are_cheaper::<D>(interface, (pairs(blocks) * D * D, room), tied, condensed)
         });
         let is_tied = tied.is_some();
         let Numbering {
@@ -235,6 +267,7 @@ impl System {
             factorisations: 0,
             conjugate: 0,
             floats: false,
+            paired: Vec::new(),
             timings: Timings {
                 ordering: clock.elapsed(),
                 ..Timings::default()
@@ -450,17 +483,6 @@ impl System {
     /// The next increment does the same whatever factor the last one has left.
     pub(crate) fn untie(&mut self) {
         self.tied.iter_mut().for_each(Vec::clear);
-    }
-
-    /// Whether K has room for what ties couple: all pairs of the nodes.
-    pub(crate) fn couples<const D: usize>(&self, nodes: &[usize]) -> bool {
-        let dofs = || nodes.iter().flat_map(|&a| D * a..D * a + D);
-        let unknowns: Vec<u32> = dofs().filter_map(|dof| self.unknown(dof)).collect();
-        let pairs = unknowns
-            .iter()
-            .flat_map(|&p| unknowns.iter().map(move |&q| (p, q)));
-        let mut lower = pairs.filter(|(p, q)| p >= q);
-        lower.all(|(p, q)| self.matrix.pattern.slot(p, q).is_some())
     }
 
     /// Position of a degree of freedom among the unknowns; `None` if it is prescribed.

@@ -9,9 +9,12 @@ use crate::sparse::Sparse;
 use crate::suspension::STIFFER;
 use crate::system::{Inaccurate, System};
 use moreau_contact::Structure;
-use moreau_laws::Local;
+use moreau_laws::{Local, Status};
 use nalgebra::{DMatrix, DVector, Dyn, LU, SMatrix};
 use std::collections::BTreeMap;
+
+/// Ties that hold what touches, over the stiffness of a contact: the structure is softer by its inverse.
+const FIRM: f64 = 1e5;
 
 /// A linearised increment seen from its contacts.
 pub(crate) struct Tied<'a, const D: usize> {
@@ -78,7 +81,11 @@ impl<'a, const D: usize> Tied<'a, D> {
             let own = (footing.own.iter()).flat_map(|&(a, _)| (0..D).map(move |i| D * a + i));
             let own = own.filter_map(|dof| system.unknown(dof));
             let largest = own.map(|p| system.diagonal(p)).fold(0.0, f64::max);
-            stiffness.push(if largest > 0.0 { largest } else { system.shift() });
+            stiffness.push(if largest > 0.0 {
+                largest
+            } else {
+                system.shift()
+            });
             for j in 0..D {
                 rows.push(match k.active[j] {
                     true => {
@@ -115,7 +122,11 @@ impl<'a, const D: usize> Tied<'a, D> {
 
     /// Compliances of the springs of components that follow from others, as where a node touches several
     /// tools; zero of the others \[mm/N\]. See [`Suspended`](crate::suspension::Suspended).
-    pub(crate) fn suspended(&self, driver: &Driver<D>, kinematics: &[Kinematics<D>]) -> Vec<Local<D>> {
+    pub(crate) fn suspended(
+        &self,
+        driver: &Driver<D>,
+        kinematics: &[Kinematics<D>],
+    ) -> Vec<Local<D>> {
         let mut compliance = vec![Local::zeros(); kinematics.len()];
         let mut at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (c, point) in driver.points.iter().enumerate() {
@@ -134,6 +145,23 @@ impl<'a, const D: usize> Tied<'a, D> {
             }
         }
         compliance
+    }
+
+    /// Factorises with what touches held to its surface, and what sticks in its place; false where that leaves
+    /// a motion without stiffness.
+    pub(crate) fn hold_statuses(&mut self, status: &[Status]) -> bool {
+        let of = |(i, status): (usize, &Status)| {
+            let mut tie = SMatrix::<f64, D, D>::zeros();
+            let held = match status {
+                Status::Open => 0,
+                Status::Slip => 1,
+                Status::Stick => D,
+            };
+            (0..held).for_each(|j| tie[(j, j)] = FIRM * self.stiffness[i]);
+            tie
+        };
+        let ties: Vec<_> = status.iter().enumerate().map(of).collect();
+        self.tie(&ties)
     }
 
     /// The largest load at a node \[N\].
@@ -331,11 +359,10 @@ impl<const D: usize> Tied<'_, D> {
 
 impl<const D: usize> Driver<D> {
     /// The nodes that the contacts couple, where contacts may be tied in the factor.
-    pub(crate) fn coupled(&self) -> Option<Vec<Vec<usize>>> {
+    pub(crate) fn coupled(&self, seam: Seam) -> Option<Vec<Vec<usize>>> {
         let method = self.settings.contact.springs();
-        let may = self.settings.nesting == Nesting::Inside
-            && self.settings.seam != Seam::Condensed
-            && method.is_some();
+        let may =
+            self.settings.nesting == Nesting::Inside && seam != Seam::Condensed && method.is_some();
         may.then(|| self.footings.iter().map(Footing::nodes).collect())
     }
 }

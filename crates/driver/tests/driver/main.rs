@@ -13,6 +13,7 @@ mod law;
 mod passages;
 mod refusals;
 mod released;
+mod seams;
 mod slender;
 mod steps;
 mod tools;

@@ -12,7 +12,7 @@ use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-const MAGIC: &[u8] = b"moreau checkpoint 3\n";
+const MAGIC: &[u8] = b"moreau checkpoint 4\n";
 
 /// Checkpoints that are kept.
 const KEPT: usize = 2;

@@ -52,12 +52,20 @@ struct Stamp;
 impl Obstacle<3> for Stamp {
     fn distance(&self, x: &SVector<f64, 3>) -> f64 {
         let out = self.out(x);
-        if out.norm() > 0.0 { out.norm() } else { THICKNESS - x[1] }
+        if out.norm() > 0.0 {
+            out.norm()
+        } else {
+            THICKNESS - x[1]
+        }
     }
 
     fn normal(&self, x: &SVector<f64, 3>) -> SVector<f64, 3> {
         let out = self.out(x);
-        if out.norm() > 0.0 { out.normalize() } else { -SVector::y() }
+        if out.norm() > 0.0 {
+            out.normalize()
+        } else {
+            -SVector::y()
+        }
     }
 }
 
@@ -106,12 +114,16 @@ fn mesh(n: usize) -> Result<Mesh<3>, Box<dyn Error>> {
 
 impl Case {
     fn model(&self, touches: bool) -> Result<Model<3, Solid>, Box<dyn Error>> {
-        let model = Model::new(mesh(self.cells)?, Solid::default());
+        let model = Model::new(mesh(self.cells)?, Solid);
         let model = match self.law {
-            Law::Elastic => model.material("plate", Elastic::new(210e3, 0.3)?, Integration::Reduced)?,
-            Law::VonMises => {
-                model.material("plate", VonMises::new(210e3, 0.3, 300.0)?, Integration::Reduced)?
+            Law::Elastic => {
+                model.material("plate", Elastic::new(210e3, 0.3)?, Integration::Reduced)?
             }
+            Law::VonMises => model.material(
+                "plate",
+                VonMises::new(210e3, 0.3, 300.0)?,
+                Integration::Reduced,
+            )?,
         };
         if !touches {
             return Ok(model);
@@ -124,9 +136,11 @@ impl Case {
                 model.tool("punch", Ball::new([0.0, THICKNESS + RADIUS, 0.0], RADIUS)?)?
             }
         };
-        Ok(model
-            .contact("plate.bottom", "die", friction)?
-            .contact("plate.top", "punch", friction)?)
+        Ok(model.contact("plate.bottom", "die", friction)?.contact(
+            "plate.top",
+            "punch",
+            friction,
+        )?)
     }
 
     fn step(&self, touches: bool) -> Step<3> {
@@ -152,7 +166,6 @@ impl Case {
         let sum = |f: fn(&StepReport) -> usize| reports.iter().map(f).sum::<usize>();
         let newton = sum(|r| r.newton_iterations);
         let timings = driver.timings();
-        if std::env::var("TIMES").is_ok() { eprintln!("{timings:?} entries {}", driver.factor_entries()); }
         Ok(Figures {
             unknowns: driver.unknowns(),
             contacts: driver.contacts().len(),
@@ -162,7 +175,9 @@ impl Case {
             solves: sum(|r| r.linear_iterations),
             seconds,
             iteration: (seconds - timings.ordering.as_secs_f64()) / newton.max(1) as f64,
-            peak_memory: memory("VmHWM:").zip(before).map(|(peak, before)| peak - before),
+            peak_memory: memory("VmHWM:")
+                .zip(before)
+                .map(|(peak, before)| peak - before),
             cuts: sum(|r| r.cuts),
             load: match touches {
                 true => driver.tool_force("punch")?[1],
@@ -186,8 +201,26 @@ pub(super) fn run(family: &Family<'_>) -> Result<bool, Box<dyn Error>> {
     println!(
         "{:>3} {:>6} {:>5} {:>9} {:>4} {:>8} {:>8} │ {:>6} {:>7} {:>6} {:>6} {:>4} {:>8} │ {:>6} {:>6} {:>8} │ \
          {:>9} {:>6} {:>6} {:>12}",
-        "n", "punch", "μ", "law", "inc.", "unknowns", "contacts", "Newton", "contact", "fact.", "solves", "cuts",
-        "time s", "Newton", "fact.", "time s", "iteration", "run", "memory", "load N"
+        "n",
+        "punch",
+        "μ",
+        "law",
+        "inc.",
+        "unknowns",
+        "contacts",
+        "Newton",
+        "contact",
+        "fact.",
+        "solves",
+        "cuts",
+        "time s",
+        "Newton",
+        "fact.",
+        "time s",
+        "iteration",
+        "run",
+        "memory",
+        "load N"
     );
     let mut all = true;
     for &cells in family.sizes {
@@ -197,7 +230,13 @@ pub(super) fn run(family: &Family<'_>) -> Result<bool, Box<dyn Error>> {
                 let mut free = None;
                 for &punch in family.punches {
                     for &friction in family.frictions {
-                        let case = Case { cells, punch, friction, law, increments };
+                        let case = Case {
+                            cells,
+                            punch,
+                            friction,
+                            law,
+                            increments,
+                        };
                         let free = match &free {
                             Some(free) => free,
                             None => free.insert(case.measure(false)?),
@@ -232,7 +271,10 @@ impl Case {
                 return false;
             }
         };
-        let memory = own.peak_memory.zip(free.peak_memory).map(|(own, free)| own / free);
+        let memory = own
+            .peak_memory
+            .zip(free.peak_memory)
+            .map(|(own, free)| own / free);
         println!(
             "{name} {:>8} {:>8} │ {:>6} {:>7} {:>6} {:>6} {:>4} {:>8.3} │ {:>6} {:>6} {:>8.3} │ \
              {:>9.2} {:>6.2} {:>6} {:>12.4}",
