@@ -150,6 +150,7 @@ impl<const D: usize> Driver<D> {
             contact_iterations: counts.contact,
             factorisations: counts.factorisations,
             linear_iterations: counts.linear,
+            contact_solves: counts.contact_solves,
             shortened_steps: counts.shortened,
             cuts: 0,
             open,

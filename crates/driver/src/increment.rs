@@ -30,6 +30,8 @@ pub(crate) struct Counts {
     pub(crate) factorisations: usize,
     /// Iterations of conjugate gradients, and steps for what a symmetric tangent lacks.
     pub(crate) linear: usize,
+    /// [`StepReport::contact_solves`].
+    pub(crate) contact_solves: usize,
     pub(crate) residuals: Vec<f64>,
     /// [`StepReport::criticality`].
     pub(crate) criticality: Option<(usize, f64)>,

@@ -147,7 +147,7 @@ impl<const D: usize> Driver<D> {
         for ((u, obeys), c) in own.zip(&suspended) {
             (0..D).filter(|&j| c[j] > 0.0).for_each(|j| u[j] = obeys[j]);
         }
-        counts.linear += tied.solves;
+        counts.contact_solves += tied.solves;
         let growth = tied.expand(&z, &mut step)?;
         Ok(Answer {
             solution,

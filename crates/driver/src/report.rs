@@ -81,6 +81,8 @@ pub struct StepReport {
     /// Iterations of conjugate gradients and, where the tangent is not symmetric, steps beyond the first of each
     /// Newton iteration; none where the stiffness itself is factorised.
     pub linear_iterations: usize,
+    /// Solves with a factor for contacts that are tied in it, see [`Seam`](crate::Seam).
+    pub contact_solves: usize,
     /// Newton steps that the line search shortened.
     pub shortened_steps: usize,
     /// Times the increment was halved before it converged.
@@ -102,7 +104,7 @@ pub struct StepReport {
     /// or were at the start, with its index in [`Driver::contacts`](crate::Driver::contacts): from 1 on there may be other solutions,
     /// and the path may break off, see
     /// [`ContactProblem::criticality`](moreau_contact::ContactProblem::criticality). Of the stiffness of
-    /// the last iteration; `None` where nothing touches, on a path of unknown load factor, and under
+    /// the last iteration; `None` where nothing touches, where contacts are tied in the factor, on a path of unknown load factor, and under
     /// the paper's nesting.
     pub criticality: Option<(usize, f64)>,
     /// Rigid motions that nothing resists in the state that was found, in words, if the statuses left

@@ -53,6 +53,12 @@ pub struct Args {
     /// What the plate is made of [default: both]
     #[arg(long = "law", value_name = "LAW")]
     laws: Vec<plate::Law>,
+    /// Solves the condensed contact problem of the plate as well, and compares
+    #[arg(long)]
+    compare: bool,
+    /// One plate, measured in this process, as JSON
+    #[arg(long, hide = true)]
+    case: Option<plate::Case>,
     /// Runs of each, and more of those below a second; the fastest counts
     #[arg(long, default_value_t = 1)]
     runs: usize,
@@ -156,6 +162,9 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     if !args.meshes.is_empty() {
         return meshes::run(&args.meshes, args.runs);
     }
+    if let Some(case) = &args.case {
+        return plate::alone(case);
+    }
     if !args.plates.is_empty() {
         return plate::run(&args.family());
     }
@@ -216,6 +225,7 @@ impl Args {
             frictions: given(self.friction.as_slice(), &[0.0, 0.1, 0.3, 0.6]),
             laws: given(&self.laws, &[plate::Law::Elastic, plate::Law::VonMises]),
             increments: given(self.increments.as_slice(), &[1, 4]),
+            compare: self.compare,
         }
     }
 }

@@ -76,6 +76,8 @@ impl Verdict {
 pub(super) struct Tally {
     factorisations: usize,
     linear: usize,
+    /// Solves for tied contacts.
+    solves: usize,
     newton: usize,
     contact: usize,
     cuts: usize,
@@ -96,6 +98,7 @@ impl Tally {
         Self {
             factorisations: 0,
             linear: 0,
+            solves: 0,
             newton: 0,
             contact: 0,
             cuts: 0,
@@ -116,6 +119,7 @@ impl Tally {
     ) {
         self.factorisations += report.factorisations;
         self.linear += report.linear_iterations;
+        self.solves += report.contact_solves;
         self.newton += report.newton_iterations;
         self.contact += report.contact_iterations;
         self.cuts += report.cuts;
@@ -141,7 +145,7 @@ impl Tally {
 
     /// Appends all that [`Tally::read`] needs.
     pub(super) fn write(&self, out: &mut Vec<f64>) {
-        let solves = [self.factorisations, self.linear];
+        let solves = [self.factorisations, self.linear, self.solves];
         let counts = [self.newton, self.contact, self.cuts];
         out.extend(solves.iter().chain(&counts).map(|&n| n as f64));
         let c = &self.certificate;
@@ -168,6 +172,7 @@ impl Tally {
     pub(super) fn read(&mut self, from: &mut Reader<'_>) -> Result<(), ModelError> {
         self.factorisations = from.count()?;
         self.linear = from.count()?;
+        self.solves = from.count()?;
         self.newton = from.count()?;
         self.contact = from.count()?;
         self.cuts = from.count()?;
@@ -225,6 +230,8 @@ pub struct Outcome {
     pub factorisations: usize,
     /// Iterations of conjugate gradients in the converged increments.
     pub linear_iterations: usize,
+    /// Solves with a factor for tied contacts in the converged increments.
+    pub contact_solves: usize,
     /// Times that increments were halved before they converged.
     pub cuts: usize,
     /// Degrees of freedom, prescribed ones included.
@@ -311,6 +318,7 @@ pub(super) fn conclude<const D: usize>(
         contact_iterations: tally.contact,
         factorisations: tally.factorisations,
         linear_iterations: tally.linear,
+        contact_solves: tally.solves,
         cuts: tally.cuts,
         dofs: D * driver.mesh().nodes().len(),
         threads: rayon::current_num_threads(),
@@ -365,6 +373,7 @@ impl Outcome {
             "contact_iterations": self.contact_iterations,
             "factorisations": self.factorisations,
             "linear_iterations": self.linear_iterations,
+            "contact_solves": self.contact_solves,
             "cuts": self.cuts,
             "peak_memory_mb": memory::peak().map(|bytes| bytes as f64 / f64::from(1 << 20)),
             "dofs": self.dofs,
@@ -412,10 +421,12 @@ impl fmt::Display for Outcome {
             _ => ", with warnings below",
         };
         writeln!(f, "  status        {status}{warned}")?;
-        let linear = match self.linear_iterations {
+        let counted = |count: usize, what: &str| match count {
             0 => String::new(),
-            some => format!(" and {some} conjugate gradients"),
+            some => format!(" and {some} {what}"),
         };
+        let linear = counted(self.linear_iterations, "conjugate gradients")
+            + &counted(self.contact_solves, "solves for contact");
         writeln!(
             f,
             "  effort        {} increments, {} Newton and {} contact iterations, {} factorisations{linear}, {} cuts; \

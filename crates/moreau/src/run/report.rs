@@ -86,6 +86,7 @@ fn summary(run: &serde_json::Value, deck: &Deck) -> Vec<[String; 2]> {
         ("contact iterations", "contact_iterations"),
         ("factorisations", "factorisations"),
         ("conjugate gradients", "linear_iterations"),
+        ("solves for contact", "contact_solves"),
         ("cuts", "cuts"),
         ("degrees of freedom", "dofs"),
         ("seconds", "seconds"),

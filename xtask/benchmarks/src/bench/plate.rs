@@ -2,14 +2,15 @@
 //! without contact: what an iteration, a run and their memory cost.
 
 use std::error::Error;
+use std::process::Command;
 use std::time::Instant;
 
 use moreau::contact::{Ball, Obstacle, Plane};
-use moreau::driver::{Axis, Driver, Model, Settings, Step, StepReport};
+use moreau::driver::{Axis, ContactRecord, Driver, Model, Seam, Settings, Step, StepReport};
 use moreau::laws::{Coulomb, Elastic, VonMises};
 use moreau::mesh::{CellKind, Integration, Mesh, Solid, block3, uniform};
 use nalgebra::SVector;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{forget_peak, memory};
 
@@ -27,7 +28,7 @@ const RADIUS: f64 = 200.0;
 const HALF: f64 = 25.0;
 
 /// What presses.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Punch {
     /// On a quarter of the top
@@ -37,7 +38,7 @@ pub(super) enum Punch {
 }
 
 /// What is pressed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Law {
     /// Of steel
@@ -78,17 +79,27 @@ impl Stamp {
 }
 
 /// One of the runs.
-#[derive(Debug, Clone, Copy)]
-struct Case {
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub(super) struct Case {
     cells: usize,
     punch: Punch,
     friction: f64,
     law: Law,
     increments: usize,
+    /// Not moved by prescribed displacements alone.
+    touches: bool,
+}
+
+impl std::str::FromStr for Case {
+    type Err = serde_json::Error;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        serde_json::from_str(text)
+    }
 }
 
 /// What one run took; times in seconds.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 struct Figures {
     unknowns: usize,
     contacts: usize,
@@ -113,7 +124,7 @@ fn mesh(n: usize) -> Result<Mesh<3>, Box<dyn Error>> {
 }
 
 impl Case {
-    fn model(&self, touches: bool) -> Result<Model<3, Solid>, Box<dyn Error>> {
+    fn model(&self) -> Result<Model<3, Solid>, Box<dyn Error>> {
         let model = Model::new(mesh(self.cells)?, Solid);
         let model = match self.law {
             Law::Elastic => {
@@ -125,7 +136,7 @@ impl Case {
                 Integration::Reduced,
             )?,
         };
-        if !touches {
+        if !self.touches {
             return Ok(model);
         }
         let friction = Coulomb::new(self.friction)?;
@@ -143,12 +154,12 @@ impl Case {
         )?)
     }
 
-    fn step(&self, touches: bool) -> Step<3> {
+    fn step(&self) -> Step<3> {
         let step = Step::new("press")
             .fix("plate.left", &[Axis::X])
             .fix("plate.back", &[Axis::Z]);
         let travel = TRAVEL * self.increments as f64 / 4.0;
-        match touches {
+        match self.touches {
             true => step.tool("punch", [0.0, -travel, 0.0]),
             false => step
                 .fix("plate.bottom", &[Axis::Y])
@@ -156,35 +167,74 @@ impl Case {
         }
     }
 
-    fn measure(&self, touches: bool) -> Result<Figures, Box<dyn Error>> {
+    /// The contacts of the whole run by a seam.
+    fn contacts(&self, seam: Seam) -> Result<Vec<ContactRecord<3>>, Box<dyn Error>> {
+        let settings = Settings {
+            seam,
+            ..Settings::default()
+        };
+        let mut driver = Driver::new(self.model()?, settings)?;
+        driver.run(&self.step(), self.increments, |_, _| {})?;
+        Ok(driver.contacts().to_vec())
+    }
+
+    /// Largest difference of a contact force by both seams over the largest force, and how many of the
+    /// statuses differ.
+    fn difference(&self) -> Result<(f64, usize), Box<dyn Error>> {
+        let (a, b) = (self.contacts(Seam::Condensed)?, self.contacts(Seam::Tied)?);
+        let scale = a.iter().map(|c| c.t.norm()).fold(0.0, f64::max);
+        let apart = a.iter().zip(&b).map(|(a, b)| (a.t - b.t).norm());
+        let other = a.iter().zip(&b).filter(|(a, b)| a.status != b.status);
+        Ok((apart.fold(0.0, f64::max) / scale, other.count()))
+    }
+
+    fn measure(&self) -> Result<Figures, Box<dyn Error>> {
         forget_peak();
         let before = memory("VmRSS:");
         let clock = Instant::now();
-        let mut driver = Driver::new(self.model(touches)?, Settings::default())?;
-        let reports = driver.run(&self.step(touches), self.increments, |_, _| {})?;
+        let mut driver = Driver::new(self.model()?, Settings::default())?;
+        let reports = driver.run(&self.step(), self.increments, |_, _| {})?;
         let seconds = clock.elapsed().as_secs_f64();
         let sum = |f: fn(&StepReport) -> usize| reports.iter().map(f).sum::<usize>();
         let newton = sum(|r| r.newton_iterations);
-        let timings = driver.timings();
+        let ordering = driver.timings().ordering.as_secs_f64();
         Ok(Figures {
             unknowns: driver.unknowns(),
             contacts: driver.contacts().len(),
             newton,
             contact: sum(|r| r.contact_iterations),
             factorisations: sum(|r| r.factorisations),
-            solves: sum(|r| r.linear_iterations),
+            solves: sum(|r| r.contact_solves),
             seconds,
-            iteration: (seconds - timings.ordering.as_secs_f64()) / newton.max(1) as f64,
+            iteration: (seconds - ordering) / newton.max(1) as f64,
             peak_memory: memory("VmHWM:")
                 .zip(before)
                 .map(|(peak, before)| peak - before),
             cuts: sum(|r| r.cuts),
-            load: match touches {
+            load: match self.touches {
                 true => driver.tool_force("punch")?[1],
                 false => driver.reaction("pressed")?[1],
             },
         })
     }
+
+    /// Measured in a process of its own: what a run leaves to the next is no memory of the next.
+    fn measured_alone(&self) -> Result<Figures, Box<dyn Error>> {
+        let case = serde_json::to_string(self)?;
+        let output = Command::new(std::env::current_exe()?)
+            .args(["bench", "--case", &case])
+            .output()?;
+        if !output.status.success() {
+            return Err(String::from_utf8_lossy(&output.stderr).trim().into());
+        }
+        Ok(serde_json::from_slice(&output.stdout)?)
+    }
+}
+
+/// Measures one case and writes it as JSON.
+pub(super) fn alone(case: &Case) -> Result<bool, Box<dyn Error>> {
+    println!("{}", serde_json::to_string(&case.measure()?)?);
+    Ok(true)
 }
 
 /// What to run.
@@ -194,13 +244,15 @@ pub(super) struct Family<'a> {
     pub(super) frictions: &'a [f64],
     pub(super) laws: &'a [Law],
     pub(super) increments: &'a [usize],
+    /// Whether both seams are compared.
+    pub(super) compare: bool,
 }
 
 /// Prints a line a case; false if one did not converge.
 pub(super) fn run(family: &Family<'_>) -> Result<bool, Box<dyn Error>> {
     println!(
-        "{:>3} {:>6} {:>5} {:>9} {:>4} {:>8} {:>8} │ {:>6} {:>7} {:>6} {:>6} {:>4} {:>8} │ {:>6} {:>6} {:>8} │ \
-         {:>9} {:>6} {:>6} {:>12}",
+        "{:>3} {:>6} {:>4} {:>9} {:>4} {:>8} {:>8} │ {:>6} {:>7} {:>5} {:>6} {:>4} {:>8} │ {:>6} {:>5} {:>8} │ \
+         {:>9} {:>5} {:>6} {:>13}",
         "n",
         "punch",
         "μ",
@@ -226,22 +278,25 @@ pub(super) fn run(family: &Family<'_>) -> Result<bool, Box<dyn Error>> {
     for &cells in family.sizes {
         for &law in family.laws {
             for &increments in family.increments {
+                let case = Case {
+                    cells,
+                    punch: Punch::Flat,
+                    friction: 0.0,
+                    law,
+                    increments,
+                    touches: false,
+                };
                 // The plate without contact is the same for all that follow.
-                let mut free = None;
+                let free = case.measured_alone()?;
                 for &punch in family.punches {
                     for &friction in family.frictions {
                         let case = Case {
-                            cells,
                             punch,
                             friction,
-                            law,
-                            increments,
+                            touches: true,
+                            ..case
                         };
-                        let free = match &free {
-                            Some(free) => free,
-                            None => free.insert(case.measure(false)?),
-                        };
-                        all &= case.line(free);
+                        all &= case.line(&free, family.compare)?;
                     }
                 }
             }
@@ -252,9 +307,9 @@ pub(super) fn run(family: &Family<'_>) -> Result<bool, Box<dyn Error>> {
 
 impl Case {
     /// Prints what the case takes beside the same plate moved without contact.
-    fn line(&self, free: &Figures) -> bool {
+    fn line(&self, free: &Figures, compare: bool) -> Result<bool, Box<dyn Error>> {
         let name = format!(
-            "{:>3} {:>6} {:>5} {:>9} {:>4}",
+            "{:>3} {:>6} {:>4} {:>9} {:>4}",
             self.cells,
             format!("{:?}", self.punch).to_lowercase(),
             self.friction,
@@ -264,20 +319,17 @@ impl Case {
             },
             self.increments
         );
-        let own = match self.measure(true) {
+        let own = match self.measured_alone() {
             Ok(own) => own,
             Err(error) => {
                 println!("{name} {error}");
-                return false;
+                return Ok(false);
             }
         };
-        let memory = own
-            .peak_memory
-            .zip(free.peak_memory)
-            .map(|(own, free)| own / free);
+        let memory = own.peak_memory.zip(free.peak_memory);
         println!(
-            "{name} {:>8} {:>8} │ {:>6} {:>7} {:>6} {:>6} {:>4} {:>8.3} │ {:>6} {:>6} {:>8.3} │ \
-             {:>9.2} {:>6.2} {:>6} {:>12.4}",
+            "{name} {:>8} {:>8} │ {:>6} {:>7} {:>5} {:>6} {:>4} {:>8.3} │ {:>6} {:>5} {:>8.3} │ \
+             {:>9.2} {:>5.2} {:>6} {:>13.4}",
             own.unknowns,
             own.contacts,
             own.newton,
@@ -291,9 +343,13 @@ impl Case {
             free.seconds,
             own.iteration / free.iteration,
             own.seconds / free.seconds,
-            memory.map_or("–".into(), |m| format!("{m:.2}")),
+            memory.map_or("–".into(), |(own, free)| format!("{:.2}", own / free)),
             own.load
         );
-        true
+        if compare {
+            let (apart, statuses) = self.difference()?;
+            println!("    condensed: forces {apart:.1e} of the largest apart, {statuses} statuses");
+        }
+        Ok(true)
     }
 }
