@@ -473,6 +473,39 @@ mod tests {
         }
     }
 
+    /// Springs in a row of which only the first is held, by a soft one: a motion with that little stiffness; the
+    /// cost is that of the factor.
+    #[test]
+    fn the_least_pivot_tells_what_hardly_resists() {
+        let n = 6;
+        let mut start = vec![0];
+        let (mut row, mut values) = (Vec::new(), Vec::new());
+        for j in 0..n {
+            row.extend((j..n.min(j + 2)).map(|i| i as u32));
+            start.push(row.len() as u32);
+        }
+        let pattern = Pattern::new(start, row);
+        for held in [1.0, 1e-6, 1e-12] {
+            values.clear();
+            for j in 0..n {
+                let ends = if j == 0 { held } else { 1.0 };
+                values.push(if j + 1 < n { ends + 1.0 } else { ends });
+                if j + 1 < n {
+                    values.push(-1.0);
+                }
+            }
+            let mut cholesky = Cholesky::analyse(&pattern, None, |_| true).expect("small");
+            cholesky.factorise(&pattern, &values).expect("definite");
+            // The last pivot is that of the springs in series.
+            let series = 1.0 / (1.0 / held + (n - 1) as f64);
+            let least = cholesky.least_pivot(&pattern, &values);
+            assert!((least / series - 1.0).abs() < 1e-3, "{least:e} {series:e}");
+        }
+        let cost = Cholesky::cost(&pattern);
+        assert_eq!(cost.entries, (2 * n - 1) as f64);
+        assert_eq!(cost.operations, (4 * (n - 1) + 1) as f64);
+    }
+
     /// Seven-point Laplacian of a cube of nodes, made definite, in nested-dissection order.
     fn laplacian(n: usize) -> (Pattern, Vec<f64>) {
         let at = |k: usize| [k % n, k / n % n, k / (n * n)];

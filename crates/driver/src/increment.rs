@@ -75,6 +75,10 @@ pub(crate) struct Start {
 /// widest gap.
 const FARTHEST: f64 = 10.0;
 
+/// Part of the tolerance at which an increment with tied contacts is accepted as long as steps make the
+/// imbalance smaller.
+const WELL: f64 = 1e-2;
+
 /// Parts of what flow adds to the stiffness that are tried in turn where the tangent is a mechanism.
 const BLENDS: [f64; 4] = [1.0 - 1e-4, 0.99, 0.8, 0.0];
 
@@ -156,7 +160,7 @@ impl<const D: usize> Driver<D> {
             let balance = self.target(system, scale, &now.d_u) + left;
             // Ties round off more than forces do: what another step makes smaller is no rounding yet.
             let rounded = !system.is_tied()
-                || out_of_balance <= self.settings.tolerance * scale
+                || out_of_balance <= WELL * self.settings.tolerance * scale
                 || counts.no_longer_improves();
             let balanced = now.part >= 1.0
                 && out_of_balance <= balance

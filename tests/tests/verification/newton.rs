@@ -141,6 +141,7 @@ where
 #[test]
 fn contact_is_only_as_exact_as_the_iteration_around_it() -> Fallible {
     saves(SemismoothNewton::default(), [20, 8], 10, 0.95)?;
-    saves(GaussSeidel::default(), [40, 16], 3, 0.4)?;
+    // Extrapolated sweeps vary in number by some percent with the rounding of a solve.
+    saves(GaussSeidel::default(), [40, 16], 3, 0.45)?;
     saves(Uzawa::default(), [20, 8], 8, 0.75)
 }

@@ -115,7 +115,7 @@ mod tests {
 
     #[test]
     fn what_is_left_is_least_and_dependent_images_do_no_harm() {
-        let images = DMatrix::from_fn(9, 4, |i, j| ((3 * i + 5 * j) as f64).sin());
+        let images = DMatrix::from_fn(9, 4, |i, j| ((3 * i * j + i + 5 * j) as f64).sin());
         let b = DVector::from_fn(9, |i, _| (i as f64).cos());
         let mut least = LeastSquares::new(b.clone());
         for j in [0, 1, 0, 2, 3] {

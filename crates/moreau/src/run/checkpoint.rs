@@ -1,7 +1,7 @@
 //! Checkpoints: lists of numbers in files that are whole or known not to be; not what the numbers
 //! mean.
 //!
-//! A file is the line `moreau checkpoint 3`, the CRC-32 of the resolved deck, that of the numbers
+//! A file is the line `moreau checkpoint 4`, the CRC-32 of the resolved deck, that of the numbers
 //! and their count, each as 8 bytes, and the numbers as IEEE doubles; all little endian. It is
 //! written beside its place, forced to the disk and renamed, so that a crash leaves the one before.
 
