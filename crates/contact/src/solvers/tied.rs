@@ -122,23 +122,10 @@ pub fn solve_tied<const D: usize>(
     // A body that only contact holds has no stiffness against contacts that open on the way: then they are
     // closed once more.
     let mut again = true;
-    let mut merits: Vec<f64> = Vec::new();
+    let mut progress = Progress::default();
     let mut part = 0;
-    let mut iterations = 0;
-    let (mut least, mut stalled) = (f64::INFINITY, 0);
-    loop {
-        let scale = newton.force_scale(&now);
-        let target = (PARTS[0] * tolerance.relative * scale).max(newton.rounding(&now));
-        // Solves round off by what the structure is softer than its contacts are stiff.
-        stalled = match now.residual < 0.5 * least {
-            true => 0,
-            false => stalled + 1,
-        };
-        least = least.min(now.residual);
-        let target = match stalled < STALLED {
-            true => target,
-            false => target.max(ROUNDED * tolerance.relative * scale),
-        };
+    for iterations in 0..=tolerance.iterations {
+        let target = newton.target(&now, tolerance, progress.stalls(now.residual));
         if now.residual <= target.max(PARTS[0] * enough) {
             if newton.part == PARTS[0] {
                 let exact = now.residual <= target;
@@ -146,42 +133,25 @@ pub fn solve_tied<const D: usize>(
             }
             // Residuals are comparable at one α only.
             part = 0;
-            newton.part = PARTS[0];
-            now = newton.at(now.z, now.v);
-            merits.clear();
-            iterations += 1;
+            now = newton.with_part(part, now);
+            progress.forget();
             continue;
         }
-        if iterations >= tolerance.iterations || !now.residual.is_finite() {
+        if !now.residual.is_finite() {
             break;
         }
-        iterations += 1;
         let status = newton.statuses(&now);
-        let stale = status
-            .iter()
-            .zip(&newton.tied)
-            .filter(|(a, b)| a != b)
-            .count();
-        let expected = (newton.used + stale) as f64;
-        let stale = stale > 0;
-        if first.is_none() && stale && expected >= newton.problem.structure.worth() {
+        let stale = newton.stale(&status);
+        if first.is_none() && stale > 0 && newton.is_worn(stale) {
             now = newton.renew(now, &status)?;
         }
         let rows = match first.take() {
             Some(guess) => newton.rows_of_guess(&now, &guess),
             None => newton.rows(&now),
         };
-        merits.push(now.merit);
-        let recent = &merits[merits.len().saturating_sub(MEMORY)..];
-        let allowed = match iterations {
-            1 => f64::INFINITY,
-            _ => now
-                .merit
-                .max(CLEARLY * recent.iter().copied().fold(0.0, f64::max)),
-        };
-        match newton.step(&rows, &now, allowed) {
+        match newton.step(&rows, &now, progress.allowed(now.merit)) {
             Some(next) => now = next,
-            None if newton.used > 1 && stale => now = newton.renew(now, &status)?,
+            None if newton.used > 1 && stale > 0 => now = newton.renew(now, &status)?,
             None if again && !newton.propped.is_empty() => {
                 again = false;
                 let mut closed = Guess {
@@ -192,16 +162,15 @@ pub fn solve_tied<const D: usize>(
                 newton.part = PARTS[0];
                 now = newton.begin(&mut closed)?;
                 first = Some(closed);
-                merits.clear();
+                progress.forget();
             }
             None => {
                 part += 1;
-                if part % PARTS.len() == 0 {
+                if part == PARTS.len() {
                     break;
                 }
-                newton.part = PARTS[part % PARTS.len()];
-                now = newton.at(now.z, now.v);
-                merits.clear();
+                now = newton.with_part(part, now);
+                progress.forget();
             }
         }
     }
@@ -210,10 +179,58 @@ pub fn solve_tied<const D: usize>(
     }
     Err(ContactError::NotConverged {
         solver: "semismooth Newton through the factor",
-        iterations,
+        iterations: tolerance.iterations,
         residual: now.residual,
         tolerance: tolerance.relative * newton.force_scale(&now),
     })
+}
+
+/// How the iteration went so far.
+struct Progress {
+    merits: Vec<f64>,
+    least: f64,
+    /// Iterations since the residual was last halved.
+    stalled: usize,
+    begun: bool,
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        Self {
+            merits: Vec::new(),
+            least: f64::INFINITY,
+            stalled: 0,
+            begun: false,
+        }
+    }
+}
+
+impl Progress {
+    /// Takes note of a residual; whether the last ones were no smaller.
+    fn stalls(&mut self, residual: f64) -> bool {
+        self.stalled = match residual < 0.5 * self.least {
+            true => 0,
+            false => self.stalled + 1,
+        };
+        self.least = self.least.min(residual);
+        self.stalled >= STALLED
+    }
+
+    /// Takes note of a merit; what that of the next iterate may be. The first step is that of the guess.
+    fn allowed(&mut self, merit: f64) -> f64 {
+        self.merits.push(merit);
+        let recent = &self.merits[self.merits.len().saturating_sub(MEMORY)..];
+        let worst = recent.iter().copied().fold(0.0, f64::max);
+        match std::mem::replace(&mut self.begun, true) {
+            false => f64::INFINITY,
+            true => merit.max(CLEARLY * worst),
+        }
+    }
+
+    /// Merits of another α are no measure.
+    fn forget(&mut self) {
+        self.merits.clear();
+    }
 }
 
 impl<const D: usize> Guess<D> {
@@ -245,6 +262,31 @@ impl<const D: usize> Guess<D> {
 }
 
 impl<const D: usize> Tied<'_, '_, D> {
+    /// Residual at which the law holds \[N\]. Where the iteration stalls solves round off, by what the structure is
+    /// softer than its contacts are stiff.
+    fn target(&self, now: &At<D>, tolerance: Tolerance, stalls: bool) -> f64 {
+        let full = tolerance.relative * self.force_scale(now);
+        let part = if stalls { ROUNDED } else { PARTS[0] };
+        (part * full).max(self.rounding(now))
+    }
+
+    /// Another α, at the same place.
+    fn with_part(&mut self, part: usize, now: At<D>) -> At<D> {
+        self.part = PARTS[part];
+        self.at(now.z, now.v)
+    }
+
+    /// How many statuses are not those of the ties.
+    fn stale(&self, status: &[Status]) -> usize {
+        let pairs = status.iter().zip(&self.tied);
+        pairs.filter(|(a, b)| a != b).count()
+    }
+
+    /// Whether a new factor is cheaper than the solves that stale statuses will take beside those done.
+    fn is_worn(&self, stale: usize) -> bool {
+        (self.used + stale) as f64 >= self.problem.structure.worth()
+    }
+
     fn alpha(&self, i: usize) -> f64 {
         let alpha = self.part * self.problem.structure.stiffness(i);
         alpha / (1.0 + alpha * self.problem.springs[i].compliance.mean())
