@@ -1,82 +1,20 @@
 //! The driver: the state of a model, and steps applied to it; not the iteration of an increment.
 
-use crate::block::{Block, PointState};
+use crate::assembly::block::{Block, PointState};
 use crate::error::{ModelError, StepError};
-use crate::interface::{ContactPoint, Footing, Tool, tool_index};
-use crate::load::Loading;
+use crate::linear::system::{Contacts, System};
+use crate::model::load::Loading;
+use crate::model::points::{ContactPoint, Footing, Tool, tool_index};
 use crate::model::{Analysis, Contact, Measure, Model};
 use crate::report::{ContactRecord, Energies, Iteration, StepReport};
-use crate::sparse::Sparse;
-use crate::system::{Contacts, System};
+use crate::settings::{Nesting, Seam, Settings};
 use crate::timings::Timings;
-use moreau_contact::{ContactSolution, ContactSolver, SemismoothNewton};
+use crate::vector::SparseVector;
+use moreau_contact::ContactSolution;
 use moreau_laws::{Local, Status};
 use moreau_mesh::Mesh;
 use nalgebra::SVector;
 use std::collections::BTreeMap;
-
-/// Where the contact problem is solved.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Nesting {
-    /// Inside every Newton iteration on the bulk, condensed on the interface.
-    Inside,
-    /// Around the nonlinear solve, as in the paper: Uzawa's prediction and correction \[90′\] with
-    /// one nonlinear problem under frozen contact forces per iteration. The contact method of the
-    /// settings is not used. Bodies must be held without contact.
-    Outside {
-        /// Natural-map residual at which the increment is accepted, over the largest force.
-        tolerance: f64,
-        /// Outer iterations after which an increment fails.
-        iterations: usize,
-    },
-}
-
-/// How the contacts of a linearised increment are seen: as their laws and their unknowns are the same, so
-/// is the solution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Seam {
-    /// As takes fewer operations, which are counted before anything is solved.
-    Cheaper,
-    /// On the stiffness condensed on all nodes that may touch, a dense matrix.
-    Condensed,
-    /// Through a factor of the stiffness with the contacts tied in it, see
-    /// [`solve_tied`](moreau_contact::solve_tied): where much touches.
-    Tied,
-}
-
-/// How increments are solved. The defaults need no change: no number here decides the answer.
-#[derive(Debug)]
-pub struct Settings<const D: usize> {
-    /// Method for the contact problem.
-    pub contact: Box<dyn ContactSolver<D>>,
-    /// Where the contact problem is solved.
-    pub nesting: Nesting,
-    /// How contacts are seen. Only Newton's methods work on tied ones; the others condense.
-    pub seam: Seam,
-    /// Out-of-balance force at which an increment is accepted, over the largest nodal force.
-    pub tolerance: f64,
-    /// Newton iterations after which an increment is cut.
-    pub iterations: usize,
-    /// Times an increment may be halved before the step stops.
-    pub cuts: usize,
-    /// What the factor of the stiffness, by far the largest, may take \[bytes\]; `None` for anything.
-    /// Where it takes more, conjugate gradients with the factor of a coarse space replace it.
-    pub memory: Option<u64>,
-}
-
-impl<const D: usize> Default for Settings<D> {
-    fn default() -> Self {
-        Self {
-            contact: Box::new(SemismoothNewton::default()),
-            nesting: Nesting::Inside,
-            seam: Seam::Cheaper,
-            tolerance: 1e-10,
-            iterations: 40,
-            cuts: 10,
-            memory: None,
-        }
-    }
-}
 
 /// The state of a model between increments: one value, replaced when an increment is committed.
 #[derive(Debug, Clone)]
@@ -92,7 +30,7 @@ pub(crate) struct State<const D: usize> {
     pub(crate) energies: Energies,
     pub(crate) contacts: Vec<ContactRecord<D>>,
     /// Contact forces \[N\].
-    pub(crate) contact: Sparse,
+    pub(crate) contact: SparseVector,
     /// Largest displacement of a node of the mesh so far \[mm\]: stresses keep the rounding of the largest
     /// that they have been.
     pub(crate) farthest: f64,
@@ -153,7 +91,7 @@ impl<const D: usize> Driver<D> {
             loading: Loading::default(),
             energies: Energies::default(),
             contacts: model.points.iter().map(rest).collect(),
-            contact: Sparse::default(),
+            contact: SparseVector::default(),
             farthest: 0.0,
             solution: None,
         };

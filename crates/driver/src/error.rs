@@ -1,8 +1,10 @@
 //! Errors of the driver: of setting up a model and of a step; facts with numbers.
 
-use crate::collapse::Collapse;
-use crate::loose::LooseTool;
-use crate::system::Inaccurate;
+mod tool;
+
+pub use tool::ToolOutOfContact;
+
+use crate::report::collapse::Collapse;
 use moreau_contact::ContactError;
 use moreau_mesh::MeshError;
 
@@ -149,7 +151,7 @@ pub enum ModelError {
     },
     /// A tool driven by a force that touches nothing.
     #[error("{0}")]
-    LooseTool(Box<LooseTool>),
+    ToolOutOfContact(Box<ToolOutOfContact>),
     /// Two conditions that prescribe one displacement differently.
     #[error(
         "step {step:?} prescribes u_{axis} of node {node} as {first} and as {second} mm: remove one"
@@ -337,6 +339,15 @@ pub enum StepError {
         /// Why the last attempt failed.
         cause: Box<StepError>,
     },
+}
+
+/// A factor that does not solve the system it was made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Inaccurate {
+    /// Largest residual \[N\].
+    pub(crate) found: f64,
+    /// The largest that rounding explains \[N\].
+    pub(crate) expected: f64,
 }
 
 impl From<Inaccurate> for StepError {

@@ -1,9 +1,12 @@
 //! A model: mesh, materials, tools and contacts; not its loads, which are steps.
 
-use crate::ModelError;
-use crate::block::{Block, SolidBlock};
-use crate::cells::{Cells, ElementCells};
-use crate::interface::{ALONG_NORMAL, ContactPoint, Tool, tool_index};
+pub(crate) mod load;
+pub(crate) mod points;
+
+use crate::assembly::block::{Block, SolidBlock};
+use crate::assembly::cells::{Cells, ElementCells};
+use crate::error::ModelError;
+use crate::model::points::{ALONG_NORMAL, ContactPoint, Tool, tool_index};
 use moreau_contact::Obstacle;
 use moreau_laws::{BulkLaw, Friction};
 use moreau_mesh::{

@@ -1,5 +1,7 @@
 //! What a step tells about itself; not how it is shown.
 
+pub(crate) mod collapse;
+
 use moreau_contact::Certificate;
 use moreau_laws::{Local, Status};
 use moreau_mesh::NodeKind;
@@ -76,7 +78,7 @@ pub struct StepReport {
     pub nonlinear_solves: usize,
     /// Iterations of the contact solver, summed.
     pub contact_iterations: usize,
-    /// Sparse factorisations.
+    /// SparseVector factorisations.
     pub factorisations: usize,
     /// Iterations of conjugate gradients and, where the tangent is not symmetric, steps beyond the first of each
     /// Newton iteration; none where the stiffness itself is factorised.

@@ -1,9 +1,10 @@
 //! The state of a driver as a list of numbers, and back to the bit; not the file that holds them.
 
-use crate::ModelError;
-use crate::driver::{Driver, Seam, State};
-use crate::load::Loading;
-use crate::sparse::Sparse;
+use crate::driver::{Driver, State};
+use crate::error::ModelError;
+use crate::model::load::Loading;
+use crate::settings::Seam;
+use crate::vector::SparseVector;
 use moreau_contact::ContactSolution;
 use moreau_laws::{Local, Status};
 use nalgebra::{SVector, Vector};
@@ -97,7 +98,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    fn sparse(&mut self) -> Result<Sparse, ModelError> {
+    fn sparse(&mut self) -> Result<SparseVector, ModelError> {
         let count = self.count()?;
         let pairs = self.take(count.saturating_mul(2))?;
         Ok(pairs.chunks(2).map(|p| (p[0] as usize, p[1])).collect())
@@ -168,11 +169,11 @@ impl<const D: usize> Driver<D> {
         }
         // An elastic factor at hand is not computed again: that counts.
         let held = self.system.as_ref();
-        let elastic = held.is_some_and(crate::system::System::holds_elastic_factor);
+        let elastic = held.is_some_and(crate::linear::system::System::holds_elastic_factor);
         out.push(f64::from(u8::from(held.is_some())));
         out.push(f64::from(u8::from(elastic)));
         out.push(f64::from(u8::from(
-            held.is_some_and(crate::system::System::is_tied),
+            held.is_some_and(crate::linear::system::System::is_tied),
         )));
         let pivot = held.and_then(|s| s.pivot);
         out.push(pivot.map_or(-1.0, |node| node as f64));

@@ -401,7 +401,7 @@ fn a_tool_that_meets_nothing_is_told_with_its_distance() {
     };
     let down = held("press").push("ball", Axis::Y, -10.0);
     match beside(200.0).run(&down, 1, |_, _| {}) {
-        Err(StepError::Model(ModelError::LooseTool(loose))) => {
+        Err(StepError::Model(ModelError::ToolOutOfContact(loose))) => {
             let told = loose.to_string();
             // From (200, 120.3) to the corner (40, 20), less the radius.
             let gap = 160f64.hypot(100.3) - 100.0;
@@ -424,7 +424,7 @@ fn a_tool_that_meets_nothing_is_told_with_its_distance() {
         .push("ball", Axis::Y, -10.0)
         .push("ball", Axis::X, 5.0);
     match smooth.run(&askew, 1, |_, _| {}) {
-        Err(StepError::Model(ModelError::LooseTool(loose))) => {
+        Err(StepError::Model(ModelError::ToolOutOfContact(loose))) => {
             let (gap, meets) = (loose.gap, loose.meets.expect("on its way"));
             let x = 20.0 + meets[0];
             // At the corner (40, 20), or on the flat top before it.

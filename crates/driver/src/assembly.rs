@@ -1,0 +1,6 @@
+//! Cells with their laws, and where what they give is added up; not the factor of the sum.
+
+pub(crate) mod block;
+pub(crate) mod cells;
+pub(crate) mod numbering;
+pub(crate) mod scatter;

@@ -1,0 +1,456 @@
+//! Blocks of cells of one element and one law: forces and stiffness of their cells, and the state
+//! of their material; not their assembly.
+
+use crate::assembly::cells::{Cells, MAX_POINTS};
+use moreau_laws::{BulkLaw, FlowPower, Numbers};
+use moreau_mandel::{Sym2, Sym4, to_matrix};
+use nalgebra::Matrix3;
+use rayon::prelude::*;
+
+/// Which stiffness an evaluation computes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stiffness {
+    /// None: forces only.
+    None,
+    /// The elastic one, ∫ Bᵀ C B dΩ, and this part, in [0, 1], of what flow adds to it.
+    Total(f64),
+    /// This part, in [0, 1], of what flow adds to the elastic one: ∫ Bᵀ (∂σ₁/∂Δε − C) B dΩ, of the
+    /// cells in which plastic strain grows.
+    Plastic(f64),
+}
+
+impl Stiffness {
+    /// Whether a cell has any, in which plastic strain grows or not.
+    fn is_given(self, flows: bool) -> bool {
+        match self {
+            Self::None => false,
+            Self::Total(_) => true,
+            Self::Plastic(_) => flows,
+        }
+    }
+}
+
+/// Forces of a cell and, if asked for, its stiffness.
+#[derive(Debug, Clone, Copy)]
+pub struct CellResult<'a> {
+    /// Index of the cell in its block.
+    pub cell: usize,
+    /// Its nodes.
+    pub nodes: &'a [usize],
+    /// ∫ Bᵀ σ₁ dΩ, node by node \[N\].
+    pub force: &'a [f64],
+    /// The upper triangle of the stiffness asked for \[N/mm\], row by row without the lower one;
+    /// empty where that is nothing.
+    pub stiffness: &'a [f64],
+}
+
+/// Energies and plastic activity of a block at the end of the candidate step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BlockEnergy {
+    /// Stored energy \[N·mm\].
+    pub stored: f64,
+    /// Plastic dissipation of the step \[N·mm\].
+    pub dissipated: f64,
+    /// Volume in which plastic strain grew in the step \[mm³\].
+    pub plastic_volume: f64,
+    /// Volume of the block \[mm³\].
+    pub volume: f64,
+}
+
+/// State of the material at a quadrature point, for output.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PointState<const D: usize> {
+    /// Cell of the mesh.
+    pub cell: usize,
+    /// Position in the undeformed body \[mm\].
+    pub position: [f64; D],
+    /// Quadrature weight times Jacobian times measure \[mm³\].
+    pub weight: f64,
+    /// Cauchy stress \[MPa\].
+    pub stress: Sym2,
+    /// Equivalent plastic strain p.
+    pub plastic_strain: f64,
+}
+
+/// A set of cells that are integrated alike. The state at the start of the step changes only in
+/// [`Block::commit`]; everything else works on a candidate.
+pub trait Block<const D: usize>: Send + Sync {
+    /// Cells of the mesh in this block.
+    fn cells(&self) -> &[usize];
+
+    /// Nodes of the k-th cell of the block.
+    fn nodes(&self, k: usize) -> &[usize];
+
+    /// Forces and stiffness under the displacement increments `d_u` of the whole step (one entry
+    /// a degree of freedom of the mesh), handed cell by cell, in order, to `sink`. Returns whether
+    /// plastic strain grows anywhere.
+    fn evaluate(
+        &mut self,
+        d_u: &[f64],
+        stiffness: Stiffness,
+        sink: &mut dyn FnMut(CellResult<'_>),
+    ) -> bool;
+
+    /// Whether the stiffness is that of the forces, or does for it.
+    fn is_symmetric(&self) -> bool;
+
+    /// Forces ∫ Bᵀ A B v dΩ of what the tangents under the displacement increments `d_u` lack of being
+    /// those of the forces, A, on the displacements `v` (one entry a degree of freedom of the mesh),
+    /// handed cell by cell, in order, to `sink`: its nodes, and the forces node by node \[N\].
+    fn lacking(&self, d_u: &[f64], v: &[f64], sink: &mut dyn FnMut(&[usize], &[f64]));
+
+    /// ∫ ΔV(Δε) + σ₀ : Δε dΩ, the bulk part of ΔΦ \[74\] when total forces are
+    /// applied instead of increments \[N·mm\]; `None` of a law without a potential.
+    fn potential(&self, d_u: &[f64]) -> Option<f64>;
+
+    /// Energies of the candidate that the last evaluation left.
+    fn energy(&self) -> BlockEnergy;
+
+    /// ∫ D(ε̇) dΩ of the strain rates of the velocities `v` (one entry a degree of freedom of the
+    /// mesh), in the committed states; `None` of a law that has none.
+    fn flow_power(&self, v: &[f64]) -> Option<FlowPower>;
+
+    /// Makes the candidate the state at the start of the next step.
+    fn commit(&mut self);
+
+    /// The committed state at every quadrature point, cell by cell.
+    fn points(&self) -> Vec<PointState<D>>;
+
+    /// Hands the committed state at every quadrature point with the displacement gradient there, cell by
+    /// cell, to `sink`; `u` has an entry a degree of freedom of the mesh.
+    fn gradients(&self, u: &[f64], sink: &mut dyn FnMut(&PointState<D>, &Matrix3<f64>));
+
+    /// Adds to `force` what the stiffness of the committed stresses makes of the displacements `v`:
+    /// ∫ (∂v/∂x · σ) : ∂δv/∂x dΩ \[N\], both with an entry a degree of freedom of the mesh, from the means of
+    /// gradients and stresses in every cell: modes that the rule of a cell does not see turn its points
+    /// without resistance, and not the cell.
+    fn add_stress_stiffness(&self, v: &[f64], force: &mut [f64]);
+
+    /// The numbers of all committed states, cell by cell.
+    fn state(&self) -> Vec<f64>;
+
+    /// Replaces the committed states by what [`Block::state`] gave; returns how many numbers that
+    /// takes, and changes nothing if there are more or fewer.
+    fn restore(&mut self, numbers: &[f64]) -> usize;
+}
+
+/// Numbers of the stiffness of the cells that are evaluated before their results are handed on:
+/// bounds the memory of the buffers.
+const PANEL: usize = 1 << 19;
+
+/// Quadrature points that are worth a thread: waking one takes as long as some hundred.
+const GRAIN: usize = 2048;
+
+/// The block of some cells with law L.
+pub struct SolidBlock<L: BulkLaw, const D: usize> {
+    members: Vec<usize>,
+    cells: Box<dyn Cells<D>>,
+    law: L,
+    old: Vec<L::State>,
+    new: Vec<L::State>,
+    force: Vec<f64>,
+    stiffness: Vec<f64>,
+    /// Cells of the panel at hand in which plastic strain grows.
+    flows: Vec<bool>,
+}
+
+impl<L: BulkLaw, const D: usize> SolidBlock<L, D> {
+    /// The committed state at a quadrature point.
+    fn point(&self, point: usize) -> PointState<D> {
+        let state = &self.old[point];
+        PointState {
+            cell: self.members[point / self.cells.points_per_cell()],
+            position: self.cells.position(point),
+            weight: self.cells.weight(point),
+            stress: self.law.stress(state),
+            plastic_strain: self.law.equivalent_plastic_strain(state),
+        }
+    }
+
+    /// The block of `cells`, which are the cells `members` of the mesh, in the virgin state.
+    pub fn new(members: Vec<usize>, cells: Box<dyn Cells<D>>, law: L) -> Self {
+        let states = vec![L::State::default(); cells.count() * cells.points_per_cell()];
+        Self {
+            members,
+            cells,
+            law,
+            old: states.clone(),
+            new: states,
+            force: Vec::new(),
+            stiffness: Vec::new(),
+            flows: Vec::new(),
+        }
+    }
+}
+
+/// What the cells of a panel are evaluated from.
+struct Panel<'a, L: BulkLaw, const D: usize> {
+    cells: &'a dyn Cells<D>,
+    law: &'a L,
+    old: &'a [L::State],
+    kind: Stiffness,
+    d_u: &'a [f64],
+}
+
+impl<L: BulkLaw, const D: usize> Panel<'_, L, D> {
+    /// Forces, the upper triangles of the stiffness asked for, of so many entries, the new states,
+    /// and whether plastic strain grows, of the cells from `first` on.
+    fn evaluate(
+        &self,
+        first: usize,
+        entries: usize,
+        (forces, matrices): (&mut [f64], &mut [f64]),
+        (new, flows): (&mut [L::State], &mut [bool]),
+    ) {
+        let count = self.cells.points_per_cell();
+        let size = D * self.cells.nodes(first).len();
+        let elastic = self.law.elastic_tangent();
+        let mut d_eps = [Sym2::zeros(); MAX_POINTS];
+        let mut stress = [Sym2::zeros(); MAX_POINTS];
+        let mut tangent = [Sym4::zeros(); MAX_POINTS];
+        for (k, force) in forces.chunks_mut(size).enumerate() {
+            let cell = first + k;
+            self.cells.strain(cell, self.d_u, &mut d_eps[..count]);
+            flows[k] = false;
+            for g in 0..count {
+                let response = self.law.respond(&self.old[cell * count + g], &d_eps[g]);
+                flows[k] |= response.flows;
+                new[k * count + g] = response.state;
+                stress[g] = response.stress;
+                tangent[g] = match self.kind {
+                    Stiffness::None => continue,
+                    Stiffness::Total(0.0) => elastic,
+                    Stiffness::Total(part) => elastic + (response.tangent - elastic) * part,
+                    Stiffness::Plastic(part) => (response.tangent - elastic) * part,
+                };
+            }
+            self.cells.force(cell, &stress[..count], force);
+            if self.kind.is_given(flows[k]) {
+                let matrix = &mut matrices[k * entries..(k + 1) * entries];
+                self.cells.stiffness(cell, &tangent[..count], matrix);
+            }
+        }
+    }
+}
+
+impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
+    fn cells(&self) -> &[usize] {
+        &self.members
+    }
+
+    fn nodes(&self, k: usize) -> &[usize] {
+        self.cells.nodes(k)
+    }
+
+    fn evaluate(
+        &mut self,
+        d_u: &[f64],
+        stiffness: Stiffness,
+        sink: &mut dyn FnMut(CellResult<'_>),
+    ) -> bool {
+        let all = self.cells.count();
+        if all == 0 {
+            return false;
+        }
+        let size = D * self.cells.nodes(0).len();
+        let per_cell = self.cells.points_per_cell();
+        let entries = match stiffness {
+            Stiffness::None => 0,
+            Stiffness::Total(_) | Stiffness::Plastic(_) => size * (size + 1) / 2,
+        };
+        // One entry a cell at least, so that the parallel chunks below stay aligned.
+        let room = entries.max(1);
+        let cells = PANEL.div_ceil(size * (size + 1) / 2).min(all);
+        let grain = GRAIN.div_ceil(per_cell);
+        self.force.resize(cells * size, 0.0);
+        self.stiffness.resize(cells * room, 0.0);
+        self.flows.resize(cells, false);
+        let panel = Panel {
+            cells: self.cells.as_ref(),
+            law: &self.law,
+            old: &self.old,
+            kind: stiffness,
+            d_u,
+        };
+        let mut any = false;
+        for start in (0..all).step_by(cells) {
+            let count = cells.min(all - start);
+            let forces = &mut self.force[..count * size];
+            let matrices = &mut self.stiffness[..count * room];
+            let new = &mut self.new[start * per_cell..(start + count) * per_cell];
+            let flows = &mut self.flows[..count];
+            // The order of the cells, and with it every sum, is the same for any number of threads.
+            if count < 2 * grain {
+                panel.evaluate(start, entries, (forces, matrices), (new, flows));
+            } else {
+                forces
+                    .par_chunks_mut(grain * size)
+                    .zip(matrices.par_chunks_mut(grain * room))
+                    .zip(new.par_chunks_mut(grain * per_cell))
+                    .zip(flows.par_chunks_mut(grain))
+                    .enumerate()
+                    .for_each(|(k, (((forces, matrices), new), flows))| {
+                        let first = start + k * grain;
+                        panel.evaluate(first, entries, (forces, matrices), (new, flows));
+                    });
+            }
+            for (k, &flows) in self.flows[..count].iter().enumerate() {
+                let entries = match stiffness.is_given(flows) {
+                    true => entries,
+                    false => 0,
+                };
+                sink(CellResult {
+                    cell: start + k,
+                    nodes: self.cells.nodes(start + k),
+                    force: &self.force[k * size..(k + 1) * size],
+                    stiffness: &self.stiffness[k * room..][..entries],
+                });
+                any |= flows;
+            }
+        }
+        any
+    }
+
+    fn is_symmetric(&self) -> bool {
+        self.law.is_symmetric()
+    }
+
+    fn lacking(&self, d_u: &[f64], v: &[f64], sink: &mut dyn FnMut(&[usize], &[f64])) {
+        let all = self.cells.count();
+        if all == 0 || self.is_symmetric() {
+            return;
+        }
+        let size = D * self.cells.nodes(0).len();
+        let count = self.cells.points_per_cell();
+        let (cells, law, old) = (self.cells.as_ref(), &self.law, &self.old);
+        let of_a_cell = |(cell, force): (usize, &mut [f64])| {
+            let mut d_eps = [Sym2::zeros(); MAX_POINTS];
+            let mut rate = [Sym2::zeros(); MAX_POINTS];
+            cells.strain(cell, d_u, &mut d_eps[..count]);
+            cells.strain(cell, v, &mut rate[..count]);
+            for (g, rate) in rate[..count].iter_mut().enumerate() {
+                *rate = law.lacking(&old[cell * count + g], &d_eps[g]) * *rate;
+            }
+            cells.force(cell, &rate[..count], force);
+        };
+        let mut forces = vec![0.0; all * size];
+        let parts = forces.par_chunks_mut(size).enumerate();
+        parts
+            .with_min_len(GRAIN.div_ceil(count))
+            .for_each(of_a_cell);
+        for (k, force) in forces.chunks_exact(size).enumerate() {
+            sink(cells.nodes(k), force);
+        }
+    }
+
+    fn potential(&self, d_u: &[f64]) -> Option<f64> {
+        let count = self.cells.points_per_cell();
+        let mut d_eps = [Sym2::zeros(); MAX_POINTS];
+        let mut sum = 0.0;
+        for k in 0..self.cells.count() {
+            self.cells.strain(k, d_u, &mut d_eps[..count]);
+            for (g, d_eps) in d_eps[..count].iter().enumerate() {
+                let point = k * count + g;
+                let old = &self.old[point];
+                // ΔV leaves out the linear part σ₀·Δε, [48]: it is what equilibrium held before.
+                let linear = self.law.stress(old).dot(d_eps);
+                sum += self.cells.weight(point) * (self.law.potential(old, d_eps)? + linear);
+            }
+        }
+        Some(sum)
+    }
+
+    fn energy(&self) -> BlockEnergy {
+        let mut sum = BlockEnergy::default();
+        for (point, (old, new)) in self.old.iter().zip(&self.new).enumerate() {
+            let weight = self.cells.weight(point);
+            sum.stored += weight * self.law.stored_energy(new);
+            sum.dissipated += weight * self.law.dissipation(old, new);
+            sum.volume += weight;
+            if self.law.equivalent_plastic_strain(new) > self.law.equivalent_plastic_strain(old) {
+                sum.plastic_volume += weight;
+            }
+        }
+        sum
+    }
+
+    fn flow_power(&self, v: &[f64]) -> Option<FlowPower> {
+        let count = self.cells.points_per_cell();
+        let mut rates = [Sym2::zeros(); MAX_POINTS];
+        let mut sum = FlowPower::default();
+        for k in 0..self.cells.count() {
+            self.cells.strain(k, v, &mut rates[..count]);
+            for (g, rate) in rates[..count].iter().enumerate() {
+                let point = k * count + g;
+                let part = self.law.flow_power(&self.old[point], rate)?;
+                sum = sum.with(self.cells.weight(point), part);
+            }
+        }
+        Some(sum)
+    }
+
+    fn commit(&mut self) {
+        self.old.copy_from_slice(&self.new);
+    }
+
+    fn points(&self) -> Vec<PointState<D>> {
+        (0..self.old.len()).map(|point| self.point(point)).collect()
+    }
+
+    fn gradients(&self, u: &[f64], sink: &mut dyn FnMut(&PointState<D>, &Matrix3<f64>)) {
+        let count = self.cells.points_per_cell();
+        let mut gradient = [Matrix3::zeros(); MAX_POINTS];
+        for k in 0..self.cells.count() {
+            self.cells.gradient(k, u, &mut gradient[..count]);
+            for (g, gradient) in gradient[..count].iter().enumerate() {
+                sink(&self.point(k * count + g), gradient);
+            }
+        }
+    }
+
+    fn add_stress_stiffness(&self, v: &[f64], force: &mut [f64]) {
+        let count = self.cells.points_per_cell();
+        let mut gradient = [Matrix3::zeros(); MAX_POINTS];
+        let mut of_cell = [0.0; 3 * MAX_POINTS];
+        for k in 0..self.cells.count() {
+            self.cells.gradient(k, v, &mut gradient[..count]);
+            let (mut volume, mut mean, mut stress) = (0.0, Matrix3::zeros(), Sym2::zeros());
+            for (g, gradient) in gradient[..count].iter().enumerate() {
+                let point = k * count + g;
+                let weight = self.cells.weight(point);
+                volume += weight;
+                mean += gradient * weight;
+                stress += self.law.stress(&self.old[point]) * weight;
+            }
+            gradient[..count].fill(mean * to_matrix(&stress) / (volume * volume));
+            let nodes = self.cells.nodes(k);
+            let own = &mut of_cell[..D * nodes.len()];
+            self.cells.gradient_force(k, &gradient[..count], own);
+            for (&a, f) in nodes.iter().zip(own.chunks_exact(D)) {
+                let at = force[D * a..D * a + D].iter_mut();
+                at.zip(f).for_each(|(sum, f)| *sum += f);
+            }
+        }
+    }
+
+    fn state(&self) -> Vec<f64> {
+        let mut numbers = Vec::new();
+        for state in &self.old {
+            let mut copy = *state;
+            copy.visit(&mut |x| numbers.push(*x));
+        }
+        numbers
+    }
+
+    fn restore(&mut self, numbers: &[f64]) -> usize {
+        let count = self.state().len();
+        if numbers.len() == count {
+            let mut next = numbers.iter();
+            for state in &mut self.old {
+                state.visit(&mut |x| *x = next.next().copied().unwrap_or(*x));
+            }
+            self.new.copy_from_slice(&self.old);
+        }
+        count
+    }
+}

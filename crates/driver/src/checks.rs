@@ -1,0 +1,8 @@
+//! What a model lacks and what an answer hides, told before or after it is solved; nothing that changes it.
+
+pub(crate) mod between;
+pub(crate) mod gaps;
+pub(crate) mod loose;
+pub(crate) mod passage;
+pub(crate) mod smallness;
+pub(crate) mod supports;

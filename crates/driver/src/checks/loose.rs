@@ -1,0 +1,77 @@
+//! Tools driven by a force that touch nothing yet: how far they are, and where their force takes
+//! them; not what stops them.
+
+use crate::driver::Driver;
+use crate::error::{ModelError, ToolOutOfContact};
+use crate::model::load::Loading;
+use nalgebra::SVector;
+
+/// Gaps below this part of the size of the mesh are closed.
+const CLOSED: f64 = 1e-9;
+/// How near a tool on its way must come to touch, in parts of the size of the mesh.
+const TOUCHING: f64 = 1e-6;
+/// How far its way is followed, in sizes of the mesh beyond the first gap.
+const FARTHEST: f64 = 10.0;
+
+impl<const D: usize> Driver<D> {
+    /// The least gap of the points that a tool may touch, after a further motion of it, with the point;
+    /// `None` if there are none.
+    fn tool_gap(&self, tool: usize, motion: &SVector<f64, D>) -> Option<(f64, usize)> {
+        let at = self.displacement(self.tool_node(tool)) + motion;
+        let obstacle = &self.tools[tool].obstacle;
+        let points = self.points.iter().enumerate();
+        let gaps = points
+            .filter(|(_, p)| p.tool == Some(tool))
+            .map(|(k, p)| (p.gap(obstacle.as_ref(), |a| self.position(a) - at), k));
+        gaps.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The displacement increments that may be repeated: those that are about to be committed, less
+    /// what a driven tool has moved to close its gap.
+    pub(crate) fn repeatable(&self, mut d_u: Vec<f64>, end: &Loading<D>) -> Vec<f64> {
+        for tool in 0..self.tools.len() {
+            let first = D * self.tool_node(tool);
+            let driven = (first..first + D).filter(|dof| !end.displacement.contains_key(dof));
+            let driven: Vec<usize> = driven.collect();
+            let moved = driven.iter().fold(0.0f64, |m, &dof| m.hypot(d_u[dof]));
+            if moved == 0.0 {
+                continue;
+            }
+            let gap = self.tool_gap(tool, &SVector::zeros()).map_or(0.0, |g| g.0);
+            if gap > CLOSED * self.mesh.size() {
+                let rest = (1.0 - gap / moved).max(0.0);
+                driven.iter().for_each(|&dof| d_u[dof] *= rest);
+            }
+        }
+        d_u
+    }
+
+    /// The first tool with a force under a loading that touches nothing, if there is one.
+    pub(crate) fn loose_tool(&self, end: &Loading<D>) -> Option<ModelError> {
+        let size = self.mesh.size();
+        (0..self.tools.len()).find_map(|tool| {
+            let force = SVector::from(end.force.at_node::<D>(self.tool_node(tool)));
+            let (gap, nearest) = self.tool_gap(tool, &SVector::zeros())?;
+            if force.norm() == 0.0 || gap <= TOUCHING * size {
+                return None;
+            }
+            // Nothing is nearer than the gap: going as far can pass nothing.
+            let way = force.normalize();
+            let (mut gone, mut left) = (gap, gap);
+            while left > TOUCHING * size && gone < FARTHEST * size + gap {
+                left = self.tool_gap(tool, &(way * gone))?.0;
+                gone += left.max(TOUCHING * size);
+            }
+            let meets = left <= TOUCHING * size;
+            let point = &self.points[nearest];
+            Some(ModelError::ToolOutOfContact(Box::new(ToolOutOfContact {
+                tool: self.tools[tool].name.clone(),
+                force: force.iter().copied().collect(),
+                surface: self.contact_name(point.contact).0.to_owned(),
+                position: self.position(point.node).iter().copied().collect(),
+                gap,
+                meets: meets.then(|| (way * gone).iter().copied().collect()),
+            })))
+        })
+    }
+}

@@ -1,0 +1,225 @@
+//! Contact points that displacement conditions leave no freedom of their own: between bodies their
+//! multipliers go to their neighbours, on a tool to the nearest; not the multipliers themselves.
+//!
+//! A node of the non-mortar side that is held cannot answer its multiplier, and where many nodes are
+//! held opposite to few that are free, their multipliers are more than what decides them. The sum of
+//! two multipliers is one again: Σ Φ_a = 1 stays true, so that a uniform pressure passes as before,
+//! and weights that are means of weights keep linear fields, and action equal to reaction.
+//!
+//! Where nodes are held opposite to a tool that a force drives, rigid meets rigid: the one that the tool
+//! comes to first stops it, and what others at the same distance would bear nothing decides.
+
+use crate::driver::Driver;
+use crate::interface::condensation::{Elimination, row};
+use crate::model::load::Loading;
+use crate::model::points::{Footing, Kinematics};
+use moreau_mesh::Facet;
+use nalgebra::SVector;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Way of a tool, over the size of the mesh, that is rounding of positions.
+const NO_WAY: f64 = 1e-12;
+
+/// Least coefficient of a row over its largest, after those before it have been taken out, for it to
+/// say something of its own: forces grow by its inverse.
+const DISTINCT: f64 = 0.05;
+
+impl<const D: usize> Driver<D> {
+    /// Hands over the multipliers of the points of a contact that a loading holds.
+    pub(crate) fn hand_over(
+        &self,
+        footings: &mut [Footing<D>],
+        (contact, surface): (usize, &[Facet]),
+        loading: &Loading<D>,
+    ) {
+        let is_free = |dof: usize| !loading.displacement.contains_key(&dof);
+        let own = |c: usize| self.points[c].node;
+        let is_held = |&c: &usize| (0..D).any(|i| !is_free(D * own(c) + i));
+        let meets = |c: &usize| self.points[*c].contact == contact;
+        let all: Vec<usize> = (0..self.points.len())
+            .filter(|c| meets(c) && footings[*c].plane(&SVector::zeros()).is_some())
+            .collect();
+        if !all.iter().any(is_held) {
+            return;
+        }
+        let neighbours = self.neighbours(surface);
+        // Those that cannot give way to a pressure, next to others that can.
+        let stiff = |&c: &usize| {
+            let normal = footings[c].plane(&SVector::zeros()).map(|(n, _)| n);
+            let free = from_free(own(c), is_free);
+            normal.is_none_or(|n| {
+                !Kinematics::new(&self.points[c], &n, 0.0, &SVector::zeros(), free).active[0]
+            })
+        };
+        let (held, mut kept): (BTreeSet<usize>, BTreeSet<usize>) = all.into_iter().partition(stiff);
+        let mut stranded = Vec::new();
+        for c in held {
+            let takers = self.takers(c, &kept, &neighbours);
+            if takers.is_empty() {
+                stranded.push(c);
+            } else {
+                give(footings, c, &takers);
+            }
+        }
+        kept.extend(stranded);
+        // Those about which the others say all.
+        loop {
+            let spare = self.spare(footings, &kept, is_free);
+            if spare.is_empty() {
+                return;
+            }
+            kept.retain(|c| !spare.contains(c));
+            for c in spare {
+                let mut takers = self.takers(c, &kept, &neighbours);
+                if takers.is_empty() {
+                    let nearest =
+                        |a: &&usize, b: &&usize| self.apart(c, **a).total_cmp(&self.apart(c, **b));
+                    takers.extend(kept.iter().min_by(nearest).map(|&k| (k, 1.0)));
+                }
+                // Where no point says anything, nothing is lost by what is kept.
+                if !takers.is_empty() {
+                    give(footings, c, &takers);
+                }
+            }
+        }
+    }
+
+    /// Opens the points at which held nodes meet a driven tool, but for the one that each tool comes to
+    /// first: after the least way gap / |m|, m the normal along the free directions of the tool. What is
+    /// behind it is not reached; what is reached with it, and stops other motions than it does, wedges
+    /// the tool: then neither is first for long, and the increment does not converge.
+    pub(crate) fn stop_once(
+        &self,
+        is_free: impl Fn(usize) -> bool,
+        kinematics: &mut [Kinematics<D>],
+    ) {
+        // By tool, the point and the way to it.
+        let mut first: BTreeMap<usize, (usize, f64)> = BTreeMap::new();
+        let mut rest = Vec::new();
+        for (c, (p, k)) in self.points.iter().zip(kinematics.iter()).enumerate() {
+            let Some(tool) = p.tool.filter(|_| k.active[0]) else {
+                continue;
+            };
+            let n = k.axes.column(0);
+            let along = |node: usize| {
+                SVector::<f64, D>::from_fn(|i, _| if is_free(D * node + i) { n[i] } else { 0.0 })
+            };
+            if p.own.iter().any(|&(a, _)| along(a).norm() > 0.0) {
+                continue;
+            }
+            let way = k.u[0] / along(self.tool_node(tool)).norm();
+            match first.get_mut(&tool) {
+                None => {
+                    first.insert(tool, (c, way));
+                }
+                Some(first) if way < first.1 - NO_WAY * self.mesh.size() => {
+                    rest.push(std::mem::replace(first, (c, way)).0);
+                }
+                Some(_) => rest.push(c),
+            }
+        }
+        for c in rest {
+            let k = &kinematics[c];
+            kinematics[c] = Kinematics::apart(k.law, k.gap);
+        }
+    }
+
+    /// Nodes that share a facet, by node.
+    fn neighbours(&self, surface: &[Facet]) -> BTreeMap<usize, BTreeSet<usize>> {
+        let mut neighbours: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+        for &facet in surface {
+            for a in self.mesh.facet_nodes(facet) {
+                let beside = self.mesh.facet_nodes(facet).filter(|&b| b != a);
+                neighbours.entry(a).or_default().extend(beside);
+            }
+        }
+        neighbours
+    }
+
+    /// Square of the distance of the nodes of two points \[mm²\].
+    fn apart(&self, a: usize, b: usize) -> f64 {
+        let position = |c: usize| SVector::from(self.mesh.nodes()[self.points[c].node]);
+        let apart: SVector<f64, D> = position(a) - position(b);
+        apart.norm_squared()
+    }
+
+    /// The points beside one, with parts of its multiplier: as the inverse square of their distances.
+    fn takers(
+        &self,
+        c: usize,
+        kept: &BTreeSet<usize>,
+        neighbours: &BTreeMap<usize, BTreeSet<usize>>,
+    ) -> Vec<(usize, f64)> {
+        let beside = neighbours.get(&self.points[c].node);
+        let is_beside = |k: &&usize| beside.is_some_and(|b| b.contains(&self.points[**k].node));
+        let takers: Vec<(usize, f64)> = kept
+            .iter()
+            .filter(is_beside)
+            .map(|&k| (k, 1.0 / self.apart(c, k)))
+            .collect();
+        let sum: f64 = takers.iter().map(|t| t.1).sum();
+        takers
+            .into_iter()
+            .map(|(k, part)| (k, part / sum))
+            .collect()
+    }
+
+    /// Points that are held, of which the relative displacement, as far as it is free, is determined
+    /// by those of others: by the points with a freedom of their own first, then by those with one
+    /// opposite nearly to themselves.
+    fn spare(
+        &self,
+        footings: &[Footing<D>],
+        kept: &BTreeSet<usize>,
+        is_free: impl Fn(usize) -> bool + Copy,
+    ) -> Vec<usize> {
+        let own = |c: usize| (0..D).map(move |i| D * self.points[c].node + i);
+        let alone = |c: usize| {
+            let opposite = footings[c].opposite.iter().map(|o| o.1);
+            match own(c).all(is_free) {
+                true => f64::INFINITY,
+                false => opposite.fold(0.0, f64::max),
+            }
+        };
+        let mut order: Vec<(f64, usize)> = kept.iter().map(|&c| (alone(c), c)).collect();
+        order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let mut rows = Elimination::new(self.state.displacement.len());
+        let mut spare = Vec::new();
+        for (alone, c) in order {
+            let footing = &footings[c];
+            let Some((n, gap)) = footing.plane(&SVector::zeros()) else {
+                continue;
+            };
+            let free = footing.free(self.points[c].node, is_free);
+            let k = Kinematics::new(&self.points[c], &n, gap, &SVector::zeros(), free);
+            let unknown = |dof: usize| is_free(dof).then_some(dof);
+            let active = (0..D).filter(|&j| k.active[j]);
+            let all: Vec<_> = active
+                .map(|j| (D * c + j, row(footing, &k, j, unknown)))
+                .collect();
+            let distinct = all.iter().all(|(_, row)| rows.says(row, DISTINCT));
+            if alone.is_finite() && !distinct {
+                spare.push(c);
+                continue;
+            }
+            let own: Vec<usize> = own(c).collect();
+            for (component, row) in all {
+                // What cannot be solved for is refused where the increment is.
+                rows.solve(component, &row, &own);
+            }
+        }
+        spare
+    }
+}
+
+fn from_free<const D: usize>(node: usize, is_free: impl Fn(usize) -> bool) -> [bool; D] {
+    std::array::from_fn(|i| is_free(D * node + i))
+}
+
+/// Adds parts of the multiplier of a point to those of others; it has none then.
+fn give<const D: usize>(footings: &mut [Footing<D>], from: usize, takers: &[(usize, f64)]) {
+    let given = std::mem::take(&mut footings[from]);
+    for &(taker, part) in takers {
+        footings[taker].take_over(&given, part);
+    }
+}

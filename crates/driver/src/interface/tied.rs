@@ -1,0 +1,370 @@
+//! A linearised increment with its contacts tied in the factor of its stiffness; not how their problem is
+//! solved.
+
+use crate::driver::Driver;
+use crate::error::Inaccurate;
+use crate::interface::condensation::{Elimination, row};
+use crate::linear::suspension::STIFFER;
+use crate::linear::system::System;
+use crate::model::points::{Footing, Kinematics};
+use crate::settings::{Nesting, Seam};
+use crate::vector::SparseVector;
+use crate::vector::largest;
+use moreau_contact::Structure;
+use moreau_laws::{Local, Status};
+use nalgebra::{DMatrix, DVector, Dyn, LU, SMatrix};
+use std::collections::BTreeMap;
+
+/// Ties that hold what touches, over the stiffness of a contact: the structure is softer by its inverse.
+const FIRM: f64 = 1e5;
+
+/// A linearised increment seen from its contacts.
+pub(crate) struct Tied<'a, const D: usize> {
+    system: &'a mut System,
+    /// B: rows of all components of all contacts, empty of those that are switched off.
+    rows: Vec<Vec<(u32, f64)>>,
+    /// f at the unknowns \[N\].
+    load: Vec<f64>,
+    /// Of every contact \[N/mm\].
+    stiffness: Vec<f64>,
+    ties: Vec<SMatrix<f64, D, D>>,
+    border: Option<Border>,
+    /// Stiffness of a proximal term on the contacts, part of K \[N/mm\].
+    soft: f64,
+    pub(crate) solves: usize,
+}
+
+/// A load q of unknown factor λ, the equation q·u + c λ = m that decides it, and a node that is held by
+/// springs whose force vanishes: what K alone leaves free at collapse.
+struct Border {
+    /// q at the unknowns \[N\].
+    load: Vec<f64>,
+    compliance: f64,
+    missing: f64,
+    /// Unknowns of the node.
+    pivot: Vec<usize>,
+    /// Their springs \[N/mm\].
+    spring: f64,
+    /// What the factor makes of q and of unit forces at the node.
+    answers: Vec<Vec<f64>>,
+    /// The equations of λ and of the forces of the springs.
+    equations: LU<f64, Dyn, Dyn>,
+}
+
+impl Border {
+    /// Amounts of the load and of the spring forces, where the others displace by x.
+    fn amounts(&self, x: &[f64], missing: f64) -> DVector<f64> {
+        let mut value = DVector::zeros(1 + self.pivot.len());
+        value[0] = missing - dot(&self.load, x);
+        for (k, &p) in self.pivot.iter().enumerate() {
+            value[1 + k] = x[p];
+        }
+        let zero = DVector::zeros(value.len());
+        self.equations.solve(&value).unwrap_or(zero)
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl<'a, const D: usize> Tied<'a, D> {
+    /// Under a load at every degree of freedom \[N\], and one of unknown factor with c and m of its equation.
+    pub(crate) fn new(
+        driver: &Driver<D>,
+        system: &'a mut System,
+        kinematics: &[Kinematics<D>],
+        load: &[f64],
+        border: Option<(&SparseVector, f64, f64)>,
+    ) -> Self {
+        let mut rows = Vec::with_capacity(D * kinematics.len());
+        let mut stiffness = Vec::with_capacity(kinematics.len());
+        for (footing, k) in driver.footings.iter().zip(kinematics) {
+            let own = (footing.own.iter()).flat_map(|&(a, _)| (0..D).map(move |i| D * a + i));
+            let own = own.filter_map(|dof| system.unknown(dof));
+            let largest = own.map(|p| system.diagonal(p)).fold(0.0, f64::max);
+            stiffness.push(if largest > 0.0 {
+                largest
+            } else {
+                system.shift()
+            });
+            for j in 0..D {
+                rows.push(match k.active[j] {
+                    true => {
+                        let unknown = |dof: usize| system.unknown(dof).map(|p| p as usize);
+                        let row = row(footing, k, j, unknown).into_iter();
+                        row.map(|(p, c)| (p as u32, c)).collect()
+                    }
+                    false => Vec::new(),
+                });
+            }
+        }
+        let pivot = system.pivot.map_or(0..0, |a| D * a..D * a + D);
+        let pivot = pivot.filter_map(|dof| system.unknown(dof));
+        let border = border.map(|(load, compliance, missing)| Border {
+            load: system.unknowns().map(|dof| load.at(dof)).collect(),
+            compliance,
+            missing,
+            pivot: pivot.map(|p| p as usize).collect(),
+            spring: system.shift(),
+            answers: Vec::new(),
+            equations: DMatrix::zeros(0, 0).lu(),
+        });
+        Self {
+            load: system.unknowns().map(|dof| load[dof]).collect(),
+            rows,
+            stiffness,
+            ties: Vec::new(),
+            border,
+            soft: 0.0,
+            solves: 0,
+            system,
+        }
+    }
+
+    /// Compliances of the springs of components that follow from others, as where a node touches several
+    /// tools; zero of the others \[mm/N\]. See [`Suspended`](crate::linear::suspension::Suspended).
+    pub(crate) fn suspended(
+        &self,
+        driver: &Driver<D>,
+        kinematics: &[Kinematics<D>],
+    ) -> Vec<Local<D>> {
+        let mut compliance = vec![Local::zeros(); kinematics.len()];
+        let mut at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (c, point) in driver.points.iter().enumerate() {
+            at.entry(point.node).or_default().push(c);
+        }
+        for points in at.values().filter(|points| points.len() > 1) {
+            let mut rows = Elimination::new(self.load.len());
+            for &c in points {
+                for j in (0..D).filter(|&j| kinematics[c].active[j]) {
+                    let row = self.rows[D * c + j].iter();
+                    let row: BTreeMap<usize, f64> = row.map(|&(p, v)| (p as usize, v)).collect();
+                    if !rows.solve(D * c + j, &row, &[]) {
+                        compliance[c][j] = 1.0 / (STIFFER * self.stiffness[c]);
+                    }
+                }
+            }
+        }
+        compliance
+    }
+
+    /// Factorises with what touches held to its surface, and what sticks in its place; false where that leaves
+    /// a motion without stiffness.
+    pub(crate) fn hold_statuses(&mut self, status: &[Status]) -> bool {
+        let of = |(i, status): (usize, &Status)| {
+            let mut tie = SMatrix::<f64, D, D>::zeros();
+            let held = match status {
+                Status::Open => 0,
+                Status::Slip => 1,
+                Status::Stick => D,
+            };
+            (0..held).for_each(|j| tie[(j, j)] = FIRM * self.stiffness[i]);
+            tie
+        };
+        let ties: Vec<_> = status.iter().enumerate().map(of).collect();
+        self.tie(&ties)
+    }
+
+    /// The largest load at a node \[N\].
+    pub(crate) fn largest_load(&self) -> f64 {
+        largest(self.load.iter().copied())
+    }
+
+    /// A proximal term c/2 |v|² on the contacts, which makes K regular.
+    pub(crate) fn hold(&mut self, c: f64) {
+        self.soft = c;
+    }
+
+    /// x ← x + Bᵀ z.
+    fn spread(&self, z: impl Iterator<Item = f64>, x: &mut [f64]) {
+        for (row, z) in self.rows.iter().zip(z) {
+            for &(p, c) in row {
+                x[p as usize] += c * z;
+            }
+        }
+    }
+
+    /// B x.
+    fn relative(&self, x: &[f64]) -> DVector<f64> {
+        let sum = |row: &Vec<(u32, f64)>| row.iter().map(|&(p, c)| c * x[p as usize]).sum();
+        DVector::from_iterator(self.rows.len(), self.rows.iter().map(sum))
+    }
+
+    /// (R + c) B x.
+    fn held(&self, x: &[f64]) -> DVector<f64> {
+        let v = self.relative(x);
+        let mut held = DVector::zeros(v.len());
+        for (i, tie) in self.ties.iter().enumerate() {
+            let own: Local<D> = v.fixed_rows::<D>(D * i).into();
+            held.fixed_rows_mut::<D>(D * i)
+                .copy_from(&(tie * own + own * self.soft));
+        }
+        held
+    }
+
+    /// Solves with the factor, and with the load of unknown factor; returns what that is.
+    fn solve(&mut self, x: &mut [f64], missing: f64) -> f64 {
+        self.system.solve_tied(x);
+        self.solves += 1;
+        let Some(border) = &self.border else {
+            return 0.0;
+        };
+        let amounts = border.amounts(x, missing);
+        for (answer, amount) in border.answers.iter().zip(amounts.iter()) {
+            for (x, y) in x.iter_mut().zip(answer) {
+                *x += amount * y;
+            }
+        }
+        amounts[0]
+    }
+
+    /// The displacement increments of all unknowns, (K + BᵀRB) Δu = f + Bᵀ z + λ q, written to `step` at
+    /// every degree of freedom, and λ.
+    ///
+    /// # Errors
+    /// [`Inaccurate`] where the factor does not solve the system.
+    pub(crate) fn expand(mut self, z: &DVector<f64>, step: &mut [f64]) -> Result<f64, Inaccurate> {
+        let mut f = std::mem::take(&mut self.load);
+        self.spread(z.iter().copied(), &mut f);
+        let mut x = f.clone();
+        let missing = self.border.as_ref().map_or(0.0, |b| b.missing);
+        let mut factor = self.solve(&mut x, missing);
+        let mut before = f64::INFINITY;
+        loop {
+            let held = self.held(&x);
+            let applied: Vec<f64> = match &self.border {
+                Some(b) => f.iter().zip(&b.load).map(|(f, q)| f + factor * q).collect(),
+                None => f.clone(),
+            };
+            let given = largest(applied.iter().chain(held.iter()).copied());
+            let (mut left, expected) = self.system.left(&applied, &x, given);
+            self.spread(held.iter().map(|t| -t), &mut left);
+            let found = largest(left.iter().copied());
+            if found <= expected {
+                break;
+            }
+            // What is no number is not below either.
+            if found.is_nan() || found >= 0.5 * before {
+                return Err(Inaccurate { found, expected });
+            }
+            before = found;
+            factor += self.solve(&mut left, 0.0);
+            x.iter_mut().zip(left).for_each(|(x, c)| *x += c);
+        }
+        self.system.spread(&x, step);
+        Ok(factor)
+    }
+}
+
+impl<const D: usize> Structure<D> for Tied<'_, D> {
+    fn stiffness(&self, contact: usize) -> f64 {
+        self.stiffness[contact]
+    }
+
+    fn tie(&mut self, ties: &[SMatrix<f64, D, D>]) -> bool {
+        self.ties = ties.to_vec();
+        let (rows, soft) = (&self.rows, SMatrix::identity() * self.soft);
+        let springs = self.border.as_ref().map(|b| (b.pivot.clone(), b.spring));
+        let held = self.system.tie(|pattern, values| {
+            for (i, tie) in ties.iter().enumerate() {
+                let tie = tie + soft;
+                if tie.amax() > 0.0 {
+                    let own: [&[(u32, f64)]; D] = std::array::from_fn(|j| &*rows[D * i + j]);
+                    for (p, q, value) in congruence(own, &tie) {
+                        if let Some(slot) = pattern.slot(p, q) {
+                            values[slot as usize] += value;
+                        }
+                    }
+                }
+            }
+            if let Some((pivot, spring)) = springs {
+                pivot
+                    .into_iter()
+                    .for_each(|p| values[pattern.diagonal(p)] += spring);
+            }
+        });
+        held && self.make_border()
+    }
+
+    fn displacement(&mut self, z: &DVector<f64>, loaded: bool) -> DVector<f64> {
+        let mut x = match loaded {
+            true => self.load.clone(),
+            false => vec![0.0; self.load.len()],
+        };
+        let missing = self.border.as_ref().filter(|_| loaded).map(|b| b.missing);
+        self.spread(z.iter().copied(), &mut x);
+        self.solve(&mut x, missing.unwrap_or(0.0));
+        self.relative(&x)
+    }
+
+    fn worth(&self) -> f64 {
+        self.system.solves_per_factorisation()
+    }
+}
+
+/// Entries of the lower triangle of Σ row_j R_jk row_kᵀ.
+fn congruence<const D: usize>(
+    rows: [&[(u32, f64)]; D],
+    tie: &SMatrix<f64, D, D>,
+) -> Vec<(u32, u32, f64)> {
+    let mut entries = Vec::new();
+    for j in 0..D {
+        for k in (0..D).filter(|&k| tie[(j, k)] != 0.0) {
+            for &(p, a) in rows[j] {
+                let lower = rows[k].iter().filter(|(q, _)| *q <= p);
+                entries.extend(lower.map(|&(q, b)| (p, q, a * tie[(j, k)] * b)));
+            }
+        }
+    }
+    entries
+}
+
+impl<const D: usize> Tied<'_, D> {
+    /// Eliminates the factor of the load and the springs of the pivot with the factor at hand; false where
+    /// nothing decides them.
+    fn make_border(&mut self) -> bool {
+        let Some(mut border) = self.border.take() else {
+            return true;
+        };
+        let unit = |p: usize| {
+            let mut e = vec![0.0; self.load.len()];
+            e[p] = border.spring;
+            e
+        };
+        let mut answers = vec![border.load.clone()];
+        answers.extend(border.pivot.iter().map(|&p| unit(p)));
+        for answer in &mut answers {
+            self.system.solve_tied(answer);
+            self.solves += 1;
+        }
+        // q·(x + Σ a y) + c λ = m, and a spring is as long as its node is displaced: s = x + Σ a y.
+        let size = answers.len();
+        let mut equations = DMatrix::zeros(size, size);
+        for (k, answer) in answers.iter().enumerate() {
+            equations[(0, k)] = dot(&border.load, answer);
+            for (j, &p) in border.pivot.iter().enumerate() {
+                equations[(1 + j, k)] = -answer[p];
+            }
+        }
+        equations[(0, 0)] += border.compliance;
+        for j in 1..size {
+            equations[(j, j)] += 1.0;
+        }
+        border.answers = answers;
+        border.equations = equations.lu();
+        let decided = border.equations.is_invertible();
+        self.border = Some(border);
+        decided
+    }
+}
+
+impl<const D: usize> Driver<D> {
+    /// The nodes that the contacts couple, where contacts may be tied in the factor.
+    pub(crate) fn coupled(&self, seam: Seam) -> Option<Vec<Vec<usize>>> {
+        let method = self.settings.contact.springs();
+        let may =
+            self.settings.nesting == Nesting::Inside && seam != Seam::Condensed && method.is_some();
+        may.then(|| self.footings.iter().map(Footing::nodes).collect())
+    }
+}

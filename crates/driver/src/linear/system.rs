@@ -1,0 +1,509 @@
+//! The linear system of a mesh: numbering, pattern, assembly and factorisation; not the iteration that
+//! uses it.
+
+use crate::assembly::block::{Block, Stiffness};
+use crate::assembly::numbering::Numbering;
+use crate::assembly::scatter::{FIXED, Scatter, couplings};
+use crate::error::ModelError;
+use crate::linear::coarse::Coarse;
+use crate::settings::Seam;
+use crate::timings::{Timings, timed};
+use crate::vector::SparseVector;
+use crate::vector::imbalance;
+use moreau_algebra::Matrix;
+use moreau_algebra::{Cholesky, NotPositiveDefinite, Pattern, TooLarge};
+use moreau_mesh::Mesh;
+use std::collections::BTreeSet;
+use std::time::Instant;
+
+mod solve;
+
+/// K of the free degrees of freedom, ordered so that those of the interface come last.
+///
+/// K + σE is what is factorised, with E the identity on the interface: it is positive definite as
+/// soon as holding the interface holds the bodies, and the Schur complement of K itself is
+/// L_cc L_ccᵀ − σ 1 exactly, even where only contact holds a body and K is singular.
+///
+/// Where that factor has no room, or would take longer than conjugate gradients, the stiffness of a
+/// coarse space takes its place: S is then that of the coarse space, and so are the condensed loads,
+/// and what they give is brought to the solution of K itself by conjugate gradients.
+#[derive(Debug)]
+pub(crate) struct System {
+    /// Position of a degree of freedom in the system, or [`FIXED`].
+    position: Vec<u32>,
+    /// Degree of freedom at a position.
+    dofs: Vec<usize>,
+    /// Number of interface unknowns: the last of the system.
+    interface: usize,
+    /// A node of the interface that no contact point needs.
+    pub(crate) pivot: Option<usize>,
+    /// Where the cells of every block go.
+    scatter: Vec<Scatter>,
+    /// Entries of the elastic K that is kept between an unknown and a prescribed displacement: their
+    /// degrees of freedom.
+    couplings: Vec<(usize, usize, f64)>,
+    /// Whether the elastic stiffness is kept, so that only what flow adds to it is assembled anew.
+    keeps_elastic: bool,
+    /// K.
+    matrix: Matrix,
+    /// What is factorised instead where the factor of K is too large.
+    coarse: Option<Coarse>,
+    /// Where contacts are tied in the factor instead of condensed: room for K and what ties add to it.
+    tied: Option<Vec<f64>>,
+    shift: f64,
+    stiffest: f64,
+    cholesky: Cholesky,
+    /// Whether the factor held is that of the elastic stiffness.
+    elastic_factor: bool,
+    /// Whether the values are those that the factor was made of.
+    current: bool,
+    /// Factorisations done since the system was set up.
+    pub(crate) factorisations: usize,
+    /// Iterations of conjugate gradients since then.
+    pub(crate) conjugate: usize,
+    pub(crate) timings: Timings,
+    /// Whether only contact holds some rigid motion.
+    pub(crate) floats: bool,
+    /// The nodes that each contact point between bodies couples, where contacts are tied.
+    pub(crate) paired: Vec<Vec<usize>>,
+}
+
+/// Internal forces of an assembly.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Assembly {
+    /// ∫ Bᵀσ dΩ at every degree of freedom \[N\].
+    pub(crate) internal: Vec<f64>,
+    /// K times the prescribed displacements that are still missing \[N\]; empty if none are.
+    pub(crate) coupling: Vec<f64>,
+    /// Whether plastic strain grows anywhere.
+    pub(crate) flows: bool,
+    /// Whether the system has the stiffness that belongs to these forces.
+    pub(crate) stiffness: bool,
+}
+
+impl Assembly {
+    /// The load of a Newton step under forces, at every degree of freedom \[N\]; it uses the coupling
+    /// up.
+    pub(crate) fn load(&mut self, forces: &[&SparseVector]) -> Vec<f64> {
+        let mut load = imbalance(&self.internal, forces, &[]);
+        let pairs = load.iter_mut().zip(std::mem::take(&mut self.coupling));
+        pairs.for_each(|(f, coupling)| *f -= coupling);
+        load
+    }
+}
+
+/// Entries of an elastic stiffness that is kept: 16 MB. A larger one would add a tenth to the memory
+/// of the factor, which takes so long that to assemble it anew is little.
+const KEPT: usize = 1 << 21;
+
+/// Operations of a factorisation in the time in which a step takes up an entry of the factor.
+const OPERATIONS: f64 = 200.0;
+
+/// Operations of a factorisation in the time in which a solve takes up an entry of the factor.
+const SOLVE: f64 = 60.0;
+
+/// Operations of a factorisation in about the time of the conjugate gradients of a Newton step: ten
+/// iterations, each of which reads the matrix five times and the factor of its coarse space twice; an
+/// entry is read in the time of eighty operations.
+fn conjugate_operations(pattern: &Pattern, coarse: usize) -> f64 {
+    10.0 * 80.0 * (5.0 * pattern.entries() as f64 + 2.0 * coarse as f64)
+}
+
+/// Pivots below this part of the diagonal are rounding, and a motion without stiffness.
+const RIGID: f64 = 1e-14;
+
+/// Solves of a contact problem through the factor, and factorisations.
+const TIED: (f64, f64) = (25.0, 1.5);
+
+/// Newton iterations of a contact problem that is condensed, each of which factorises its matrix.
+const CONDENSED: f64 = 6.0;
+
+/// The numbering of a system in which contacts are tied, where their problem costs less so than condensed:
+/// by operations, and where its factor has room. `interface` are its unknowns, `entries` about as many as
+/// the matrix has, or more.
+fn ties_are_cheaper<const D: usize>(
+    interface: usize,
+    (entries, room): (usize, f64),
+    tied: impl Fn() -> Numbering,
+    condensed: impl Fn() -> Numbering,
+) -> Option<Numbering> {
+    let dense = CONDENSED * 2.0 / 3.0 * (interface as f64).powi(3);
+    let (solves, factorisations) = TIED;
+    if dense < solves * SOLVE * entries as f64 {
+        return None;
+    }
+    let tied = tied();
+    let own = Cholesky::cost(&tied.pattern);
+    let through = factorisations * own.operations + solves * SOLVE * own.entries;
+    let other = || {
+        let condensed = condensed();
+        let own = Cholesky::cost(&condensed.pattern).operations;
+        match D {
+            3 => own.min(conjugate_operations(&condensed.pattern, 0)),
+            _ => own,
+        }
+    };
+    let cheaper = own.entries <= room && (through < dense || through < dense + other());
+    cheaper.then_some(tied)
+}
+
+/// Pairs of nodes of all cells, each node with itself among them.
+fn pairs<const D: usize>(blocks: &[Box<dyn Block<D>>]) -> usize {
+    let of = |b: &dyn Block<D>| match b.cells().len() {
+        0 => 0,
+        cells => cells * b.nodes(0).len() * (b.nodes(0).len() + 1) / 2,
+    };
+    blocks.iter().map(|b| of(b.as_ref())).sum()
+}
+
+/// What a system has to know of contacts.
+pub(crate) struct Contacts<'a> {
+    /// Nodes that may touch, on both sides.
+    pub(crate) nodes: &'a [usize],
+    /// A node that no contact needs and that is treated as they are.
+    pub(crate) pivot: Option<usize>,
+    /// Number of tools: nodes after those of the mesh, without stiffness.
+    pub(crate) tools: usize,
+    pub(crate) seam: Seam,
+    /// The nodes that each contact couples, where it may be tied.
+    pub(crate) coupled: Option<&'a [Vec<usize>]>,
+}
+
+impl System {
+    /// Numbers the free degrees of freedom, orders them and does the symbolic factorisation. The
+    /// interface is that of the contacts, the pivot if there is one, and the tools. The factor may take
+    /// `memory` \[bytes\].
+    ///
+    /// # Errors
+    /// [`ModelError::TooLarge`] where neither its own factor nor that of a coarse space has room.
+    pub(crate) fn new<const D: usize>(
+        mesh: &Mesh<D>,
+        blocks: &[Box<dyn Block<D>>],
+        fixed: impl Fn(usize) -> bool,
+        contacts: &Contacts<'_>,
+        memory: Option<u64>,
+    ) -> Result<Self, ModelError> {
+        let clock = Instant::now();
+        let &Contacts {
+            nodes: interface_nodes,
+            pivot,
+            tools,
+            seam,
+            coupled,
+        } = contacts;
+        let condensed = || Numbering::new(mesh, &fixed, interface_nodes, pivot, tools, &[]);
+        let tied = coupled.and_then(|coupled| {
+            let tied = || Numbering::new(mesh, &fixed, &[], None, tools, coupled);
+            let room = memory.map_or(f64::INFINITY, |bytes| {
+                bytes as f64 / size_of::<f64>() as f64
+            });
+            if seam == Seam::Tied {
+                let tied = tied();
+                return (Cholesky::cost(&tied.pattern).entries <= room).then_some(tied);
+            }
+            let free = |a: &usize| (D * a..D * a + D).filter(|&dof| !fixed(dof)).count();
+            let nodes: BTreeSet<usize> = interface_nodes.iter().copied().collect();
+            let interface = nodes.iter().map(free).sum::<usize>();
+            ties_are_cheaper::<D>(interface, (pairs(blocks) * D * D, room), tied, condensed)
+        });
+        let is_tied = tied.is_some();
+        let Numbering {
+            position,
+            dofs,
+            interface,
+            pattern,
+        } = tied.unwrap_or_else(condensed);
+        let scatter = blocks
+            .iter()
+            .map(|b| Scatter::new(b.as_ref(), &position, &pattern))
+            .collect();
+        let coarse = || {
+            let space = (interface_nodes, pivot, tools);
+            let coarse = Coarse::new(mesh, blocks, &fixed, space, &dofs)?;
+            let factor = Cholesky::analyse(&coarse.matrix.pattern, memory, |_| true);
+            Some(factor.map(|factor| (factor, Some(coarse))))
+        };
+        let mut other = None;
+        let own = Cholesky::analyse(&pattern, memory, |cost| {
+            // In the plane a factor is small, and linear cells in plastic flow are a poor coarse space.
+            if D == 3 && !is_tied && conjugate_operations(&pattern, 0) < cost.operations {
+                other = coarse().filter(|other| {
+                    other.as_ref().is_ok_and(|(factor, _)| {
+                        let solution = conjugate_operations(&pattern, factor.entries());
+                        factor.operations() + solution < cost.operations
+                    })
+                });
+            }
+            other.is_none()
+        });
+        let chosen = match own {
+            Ok(factor) => Ok((factor, None)),
+            Err(too_large) => other.or_else(coarse).unwrap_or(Err(too_large)),
+        };
+        let gigabytes = |entries: f64| entries * size_of::<f64>() as f64 / 1e9;
+        let (cholesky, coarse) =
+            chosen.map_err(|TooLarge { entries, room }| ModelError::TooLarge {
+                unknowns: dofs.len(),
+                needed: gigabytes(entries),
+                room: gigabytes(room),
+            })?;
+        Ok(Self {
+            position,
+            dofs,
+            interface,
+            pivot,
+            scatter,
+            couplings: Vec::new(),
+            keeps_elastic: pattern.entries() <= KEPT,
+            matrix: Matrix::new(pattern),
+            coarse,
+            tied: is_tied.then(Vec::new),
+            shift: 0.0,
+            stiffest: 0.0,
+            cholesky,
+            elastic_factor: false,
+            current: false,
+            factorisations: 0,
+            conjugate: 0,
+            floats: false,
+            paired: Vec::new(),
+            timings: Timings {
+                ordering: clock.elapsed(),
+                ..Timings::default()
+            },
+        })
+    }
+
+    /// Number of unknowns.
+    pub(crate) fn size(&self) -> usize {
+        self.dofs.len()
+    }
+
+    /// Entries stored of the factor.
+    pub(crate) fn factor_entries(&self) -> usize {
+        self.cholesky.entries()
+    }
+
+    /// Whether a displacement is unknown.
+    pub(crate) fn is_free(&self, dof: usize) -> bool {
+        self.position[dof] != FIXED
+    }
+
+    /// Index of a degree of freedom among the interface unknowns; `None` if it is prescribed.
+    pub(crate) fn interface_index(&self, dof: usize) -> Option<usize> {
+        let first = self.size() - self.interface;
+        self.is_free(dof)
+            .then(|| self.position[dof] as usize - first)
+    }
+
+    /// The degrees of freedom that are prescribed, ascending.
+    pub(crate) fn held_dofs(&self) -> Vec<usize> {
+        (0..self.position.len())
+            .filter(|&dof| !self.is_free(dof))
+            .collect()
+    }
+
+    /// σ \[N/mm\]: of the size of the elastic stiffness of an interface node.
+    pub(crate) fn shift(&self) -> f64 {
+        self.shift
+    }
+
+    /// Internal forces under the displacement increments `d_u`, and the stiffness if asked for.
+    /// `missing` are the prescribed increments still to come.
+    pub(crate) fn assemble<const D: usize>(
+        &mut self,
+        blocks: &mut [Box<dyn Block<D>>],
+        d_u: &[f64],
+        missing: &SparseVector,
+        stiffness: Stiffness,
+    ) -> Assembly {
+        let clock = Instant::now();
+        let stiffness = match stiffness {
+            Stiffness::Plastic(part) if !self.keeps_elastic => Stiffness::Total(part),
+            other => other,
+        };
+        let mut internal = vec![0.0; d_u.len()];
+        let mut flows = false;
+        let with_stiffness = stiffness != Stiffness::None;
+        if with_stiffness {
+            self.matrix.reset();
+            self.coarse.iter_mut().for_each(|c| c.matrix.reset());
+        }
+        let mut coupling = Vec::new();
+        let missing = (!missing.is_zero()).then_some(missing);
+        if let Some(missing) = missing {
+            coupling.resize(d_u.len(), 0.0);
+            for &(unknown, prescribed, k) in &self.couplings {
+                coupling[unknown] += k * missing.at(prescribed);
+            }
+        }
+        let (position, coarse) = (&self.position, &mut self.coarse);
+        let (pattern, values) = self.matrix.values_mut();
+        for (k, (block, scatter)) in blocks.iter_mut().zip(&self.scatter).enumerate() {
+            flows |= block.evaluate(d_u, stiffness, &mut |cell| {
+                for (&a, force) in cell.nodes.iter().zip(cell.force.chunks_exact(D)) {
+                    let at = internal[D * a..D * a + D].iter_mut();
+                    at.zip(force).for_each(|(sum, f)| *sum += f);
+                }
+                scatter.add::<D>(&cell, position, pattern, values);
+                if let Some(coarse) = coarse {
+                    coarse.add(k, &cell);
+                }
+                if let Some(missing) = missing {
+                    couplings::<D>(&cell, position, &mut |unknown, prescribed, k| {
+                        coupling[unknown] += k * missing.at(prescribed);
+                    });
+                }
+            });
+        }
+        if with_stiffness {
+            self.current = self.elastic_factor && !flows;
+        }
+        self.timings.assembly += clock.elapsed();
+        Assembly {
+            internal,
+            coupling,
+            flows,
+            stiffness: with_stiffness,
+        }
+    }
+
+    /// Assembles the elastic stiffness, to which flow only adds, learns its size, and chooses σ: its
+    /// largest diagonal on the interface, or zero if the bodies must be held without it.
+    pub(crate) fn learn<const D: usize>(
+        &mut self,
+        blocks: &mut [Box<dyn Block<D>>],
+        shifted: bool,
+    ) {
+        let clock = Instant::now();
+        let rest = vec![0.0; self.position.len()];
+        let keeps = self.keeps_elastic;
+        let (position, all) = (&self.position, &mut self.couplings);
+        let (coarse, (pattern, values)) = (&mut self.coarse, self.matrix.values_mut());
+        for (k, (block, scatter)) in blocks.iter_mut().zip(&self.scatter).enumerate() {
+            block.evaluate(&rest, Stiffness::Total(0.0), &mut |cell| {
+                scatter.add::<D>(&cell, position, pattern, values);
+                if keeps {
+                    couplings::<D>(&cell, position, &mut |unknown, prescribed, k| {
+                        all.push((unknown, prescribed, k));
+                    });
+                }
+                if let Some(coarse) = coarse {
+                    coarse.add(k, &cell);
+                }
+            });
+        }
+        if keeps {
+            self.matrix.keep();
+            self.coarse.iter_mut().for_each(|c| c.matrix.keep());
+        }
+        let first = self.size() - self.interface;
+        let diagonal = |p: usize| self.matrix.diagonal(p);
+        self.stiffest = (0..self.size()).map(diagonal).fold(0.0, f64::max);
+        self.shift = match (shifted, &self.tied) {
+            (false, _) => 0.0,
+            (true, Some(_)) => self.stiffest,
+            (true, None) => (first..self.size()).map(diagonal).fold(0.0, f64::max),
+        };
+        self.timings.assembly += clock.elapsed();
+    }
+
+    /// Whether the factor held is that of the elastic stiffness.
+    pub(crate) fn holds_elastic_factor(&self) -> bool {
+        self.elastic_factor
+    }
+
+    /// How many steps without a factorisation take about as long as one: operations of the one over
+    /// what the others read of the factor.
+    pub(crate) fn steps_per_factorisation(&self) -> f64 {
+        self.cholesky.operations() / (OPERATIONS * self.cholesky.entries() as f64)
+    }
+
+    /// How many solves take about as long as a factorisation.
+    pub(crate) fn solves_per_factorisation(&self) -> f64 {
+        self.cholesky.operations() / (SOLVE * self.cholesky.entries() as f64)
+    }
+
+    /// Largest diagonal of the elastic stiffness \[N/mm\].
+    pub(crate) fn stiffest(&self) -> f64 {
+        self.stiffest
+    }
+
+    /// Factorises the assembled K + σE, unless the factor held is already that of the elastic
+    /// stiffness and the stiffness assembled is elastic too.
+    ///
+    /// # Errors
+    /// The degree of freedom at which K + σE is not positive definite.
+    pub(crate) fn factorise(&mut self, elastic: bool) -> Result<(), usize> {
+        if elastic && self.elastic_factor {
+            return Ok(());
+        }
+        let (matrix, dofs) = match &mut self.coarse {
+            Some(coarse) => (&mut coarse.matrix, &coarse.dofs),
+            None => (&mut self.matrix, &self.dofs),
+        };
+        matrix.shift(self.interface, self.shift);
+        self.elastic_factor = false;
+        self.factorisations += 1;
+        timed(&mut self.timings.factorisation, || {
+            self.cholesky.factorise(&matrix.pattern, matrix.values())
+        })
+        .map_err(|NotPositiveDefinite { row }| dofs[row])?;
+        self.elastic_factor = elastic;
+        self.current = true;
+        Ok(())
+    }
+
+    /// Whether contacts are tied in the factor.
+    pub(crate) fn is_tied(&self) -> bool {
+        self.tied.is_some()
+    }
+
+    /// Factorises K and what `ties` adds to its values; false where the sum leaves a motion without
+    /// stiffness.
+    pub(crate) fn tie(&mut self, ties: impl FnOnce(&Pattern, &mut [f64])) -> bool {
+        let mut sum = self.matrix.values().to_vec();
+        ties(&self.matrix.pattern, &mut sum);
+        if self.tied.as_ref() == Some(&sum) {
+            return true;
+        }
+        self.elastic_factor = false;
+        self.factorisations += 1;
+        let pattern = &self.matrix.pattern;
+        let outcome = timed(&mut self.timings.factorisation, || {
+            self.cholesky.factorise(pattern, &sum)
+        });
+        let holds = outcome.is_ok() && self.cholesky.least_pivot(pattern, &sum) > RIGID;
+        // What does not hold is not kept.
+        self.tied = Some(if holds { sum } else { Vec::new() });
+        holds
+    }
+
+    /// The next increment does the same whatever factor the last one has left.
+    pub(crate) fn untie(&mut self) {
+        self.tied.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Position of a degree of freedom among the unknowns; `None` if it is prescribed.
+    pub(crate) fn unknown(&self, dof: usize) -> Option<u32> {
+        Some(self.position[dof]).filter(|&p| p != FIXED)
+    }
+
+    /// Entry of K on the diagonal of an unknown \[N/mm\].
+    pub(crate) fn diagonal(&self, unknown: u32) -> f64 {
+        self.matrix.diagonal(unknown as usize)
+    }
+
+    /// The factor held is of no use to the next increment.
+    pub(crate) fn forget_factor(&mut self) {
+        self.elastic_factor = false;
+    }
+
+    /// Whether the factor is one of K itself.
+    pub(crate) fn is_direct(&self) -> bool {
+        self.coarse.is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,278 @@
+//! Solves with a factorised system: condensed on its interface, bordered, and expanded again; not its
+//! assembly.
+
+use super::System;
+use crate::error::Inaccurate;
+use crate::linear::conjugate::{Conjugate, Interface};
+use crate::timings::timed;
+use crate::vector::SparseVector;
+use crate::vector::largest;
+use moreau_algebra::square;
+use nalgebra::{DMatrix, DVector};
+use std::time::Instant;
+
+/// Residual of a solve with the factor, over the size of the terms that it is a difference of, up
+/// to which the factor is right: a thousand times what rounding leaves.
+const ACCURATE: f64 = 1e-12;
+
+/// A load q of unknown factor in a condensed system, and the equation that decides it:
+/// q·u + c λ = m.
+#[derive(Debug)]
+pub(crate) struct Border {
+    /// q at the unknowns \[N\].
+    applied: Vec<f64>,
+    /// L⁻¹ q.
+    forward: Vec<f64>,
+    /// q̃, q condensed on the interface \[N\].
+    load: DVector<f64>,
+    /// c + q·u of the interior under q alone, the interface held \[N·mm\].
+    compliance: f64,
+    /// m less what the interior does under the other loads, the interface held \[N·mm\].
+    missing: f64,
+}
+
+/// The system condensed on its interface: S = L_cc L_ccᵀ − σ 1 and the condensed load.
+#[derive(Debug)]
+pub(crate) struct Condensed {
+    /// S \[N/mm\], in the order of the interface unknowns.
+    pub(crate) stiffness: DMatrix<f64>,
+    /// f̃ \[N\].
+    pub(crate) load: DVector<f64>,
+    /// The load of the system \[N\].
+    applied: Vec<f64>,
+    /// L⁻¹ of the load of the system.
+    forward: Vec<f64>,
+}
+
+impl System {
+    /// Condenses the factorised system under a load given at every degree of freedom \[N\].
+    pub(crate) fn condense(&mut self, load: Vec<f64>) -> Condensed {
+        let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
+        drop(load);
+        let mut forward = self.restricted(&applied);
+        timed(&mut self.timings.solution, || {
+            self.cholesky.forward(&mut forward)
+        });
+        let clock = Instant::now();
+        let first = forward.len() - self.interface;
+        let mut stiffness = square(&self.cholesky.trailing(self.interface));
+        for i in 0..self.interface {
+            stiffness[(i, i)] -= self.shift;
+        }
+        let load = self.cholesky.trailing_times(&forward[first..]);
+        self.timings.contact += clock.elapsed();
+        Condensed {
+            stiffness,
+            load,
+            applied,
+            forward,
+        }
+    }
+
+    /// Borders the condensed system with the load q of unknown factor λ and the equation
+    /// q·u + c λ = m; λ is eliminated, which leaves the system as symmetric as it was:
+    /// S + q̃ q̃ᵀ / (c + κ) with κ = q_i·K_ii⁻¹ q_i.
+    pub(crate) fn border(
+        &mut self,
+        condensed: &mut Condensed,
+        load: &SparseVector,
+        (compliance, missing): (f64, f64),
+    ) -> Border {
+        let applied: Vec<f64> = self.dofs.iter().map(|&dof| load.at(dof)).collect();
+        let mut forward = self.restricted(&applied);
+        timed(&mut self.timings.solution, || {
+            self.cholesky.forward(&mut forward)
+        });
+        let first = forward.len() - self.interface;
+        let interior = |a: &[f64], b: &[f64]| -> f64 {
+            let pairs = a[..first].iter().zip(&b[..first]);
+            pairs.map(|(a, b)| a * b).sum()
+        };
+        let border = Border {
+            load: self.cholesky.trailing_times(&forward[first..]),
+            compliance: compliance + interior(&forward, &forward),
+            missing: missing - interior(&forward, &condensed.forward),
+            applied,
+            forward,
+        };
+        let scale = 1.0 / border.compliance;
+        condensed
+            .stiffness
+            .ger(scale, &border.load, &border.load, 1.0);
+        condensed
+            .load
+            .axpy(scale * border.missing, &border.load, 1.0);
+        border
+    }
+
+    /// The factor of the load of a bordered system for the interface displacements x; the load
+    /// takes its part in what [`System::expand`] makes of them.
+    pub(crate) fn factor(
+        &self,
+        border: &Border,
+        condensed: &mut Condensed,
+        x: &DVector<f64>,
+    ) -> f64 {
+        let factor = (border.missing - border.load.dot(x)) / border.compliance;
+        let interior = condensed.forward.len() - self.interface;
+        let pairs = condensed.forward.iter_mut().zip(&border.forward);
+        pairs.take(interior).for_each(|(f, w)| *f += factor * w);
+        let pairs = condensed.applied.iter_mut().zip(&border.applied);
+        pairs.for_each(|(f, q)| *f += factor * q);
+        factor
+    }
+
+    /// Solves the factorised system, without a shift, for a load at every degree of freedom \[N\];
+    /// prescribed displacements in `d_u` are left as they are.
+    ///
+    /// # Errors
+    /// [`Inaccurate`] where the factor does not solve the system.
+    pub(crate) fn solve(&mut self, load: &[f64], d_u: &mut [f64]) -> Result<(), Inaccurate> {
+        let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
+        let mut solution = self.restricted(&applied);
+        let clock = Instant::now();
+        self.cholesky.forward(&mut solution);
+        self.cholesky.backward(&mut solution);
+        let mut solution = self.prolonged(solution);
+        let outcome = self.improve(&applied, &mut solution, Interface::Free);
+        self.timings.solution += clock.elapsed();
+        for (&dof, u) in self.dofs.iter().zip(solution) {
+            d_u[dof] = u;
+        }
+        outcome
+    }
+
+    /// Displacement of all free degrees of freedom for the interface displacements x, written to
+    /// `d_u` at every degree of freedom; prescribed ones are left as they are. `contact` are the
+    /// contact forces \[N\], under which the interface may do what it does.
+    ///
+    /// # Errors
+    /// [`Inaccurate`] where the factor does not solve the system.
+    pub(crate) fn expand(
+        &mut self,
+        condensed: Condensed,
+        x: &DVector<f64>,
+        (contact, interface): (&SparseVector, Interface<'_>),
+        d_u: &mut [f64],
+    ) -> Result<(), Inaccurate> {
+        let mut solution = condensed.forward;
+        let first = solution.len() - self.interface;
+        // (K + σE) u = f + t + σx has L⁻¹ of its right-hand side equal to L_ccᵀ x down here.
+        let tail = self.cholesky.trailing_transposed_times(x.as_slice());
+        solution[first..].copy_from_slice(tail.as_slice());
+        let clock = Instant::now();
+        self.cholesky.backward(&mut solution);
+        let mut solution = self.prolonged(solution);
+        let mut applied = condensed.applied;
+        for (dof, f) in contact.iter().filter(|&(dof, _)| self.is_free(dof)) {
+            applied[self.position[dof] as usize] += f;
+        }
+        let outcome = self.improve(&applied, &mut solution, interface);
+        self.timings.solution += clock.elapsed();
+        for (&dof, u) in self.dofs.iter().zip(solution) {
+            d_u[dof] = u;
+        }
+        outcome
+    }
+
+    /// x ← (K + what is tied)⁻¹ x, at the unknowns.
+    pub(crate) fn solve_tied(&mut self, x: &mut [f64]) {
+        let clock = Instant::now();
+        self.cholesky.forward(x);
+        self.cholesky.backward(x);
+        self.timings.solution += clock.elapsed();
+    }
+
+    /// The degrees of freedom of the unknowns, in their order.
+    pub(crate) fn unknowns(&self) -> impl Iterator<Item = usize> {
+        self.dofs.iter().copied()
+    }
+
+    /// f − K u at the unknowns, and what rounding leaves of it, with f a sum of forces as large as `given`.
+    pub(crate) fn left(&self, f: &[f64], u: &[f64], given: f64) -> (Vec<f64>, f64) {
+        let rounding = given + self.stiffest * largest(u.iter().copied());
+        (self.matrix.residual(u, f), ACCURATE * rounding)
+    }
+
+    /// Writes displacements of the unknowns to `d_u` at every degree of freedom.
+    pub(crate) fn spread(&self, u: &[f64], d_u: &mut [f64]) {
+        for (&dof, u) in self.dofs.iter().zip(u) {
+            d_u[dof] = *u;
+        }
+    }
+
+    /// A load on the unknowns that are factorised.
+    fn restricted(&self, load: &[f64]) -> Vec<f64> {
+        let coarse = self.coarse.as_ref();
+        coarse.map_or_else(|| load.to_vec(), |c| c.restrict(load))
+    }
+
+    /// Displacements of all unknowns by those that are factorised.
+    fn prolonged(&self, solution: Vec<f64>) -> Vec<f64> {
+        let Some(coarse) = &self.coarse else {
+            return solution;
+        };
+        let mut all = vec![0.0; self.size()];
+        coarse.prolong(&solution, &mut all);
+        all
+    }
+
+    /// Makes u solve K u = f but for what the factor lacks: rounding, or what the coarse space does
+    /// not have.
+    fn improve(
+        &mut self,
+        f: &[f64],
+        u: &mut [f64],
+        interface: Interface<'_>,
+    ) -> Result<(), Inaccurate> {
+        let Some(coarse) = &self.coarse else {
+            let rows = match interface {
+                Interface::Free => self.size(),
+                // Down there x is given, and the forces are those of the contact problem.
+                Interface::Held | Interface::Yields(_) => self.size() - self.interface,
+            };
+            return self.refine(f, u, rows);
+        };
+        let mut system = Conjugate {
+            matrix: &self.matrix,
+            coarse,
+            cholesky: &mut self.cholesky,
+            interface,
+            size: self.interface,
+        };
+        self.conjugate += system.improve(f, u);
+        Ok(())
+    }
+
+    /// Checks the first `rows` rows of K u = f, with the others of u given, and corrects u once
+    /// where they do not hold: faults of memory and of kernels corrupt a factor silently. The first
+    /// solve with a factor tells; later ones are of another matrix.
+    fn refine(&mut self, f: &[f64], u: &mut [f64], rows: usize) -> Result<(), Inaccurate> {
+        if !self.current {
+            return Ok(());
+        }
+        let mut refined = false;
+        loop {
+            let mut residual = self.matrix.residual(u, f);
+            residual[rows..].fill(0.0);
+            let found = largest(residual.iter().copied());
+            let motion = largest(u.iter().copied());
+            let expected = ACCURATE * (largest(f.iter().copied()) + self.stiffest * motion);
+            // A displacement that is not finite has no bound.
+            if found.is_finite() && found <= expected {
+                return Ok(());
+            }
+            if refined {
+                self.elastic_factor = false;
+                return Err(Inaccurate { found, expected });
+            }
+            self.cholesky.forward(&mut residual);
+            residual[rows..].fill(0.0);
+            self.cholesky.backward(&mut residual);
+            for (u, correction) in u.iter_mut().zip(residual) {
+                *u += correction;
+            }
+            refined = true;
+        }
+    }
+}

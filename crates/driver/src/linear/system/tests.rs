@@ -1,0 +1,322 @@
+//! Assembly and solves of small systems against dense ones.
+
+use super::*;
+use crate::error::Inaccurate;
+use crate::linear::conjugate::Interface;
+use crate::vector::largest;
+use crate::{Axis, Driver, Model, Settings, Step};
+use moreau_laws::{Elastic, VonMises};
+use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
+use nalgebra::{DMatrix, DVector};
+
+/// A block held at its left side and pulled at the other, factorised, with its load.
+fn pulled(memory: Option<u64>) -> (System, Vec<f64>) {
+    pulled_about(memory, None)
+}
+
+/// With a node on the interface, if one is given.
+fn pulled_about(memory: Option<u64>, pivot: Option<usize>) -> (System, Vec<f64>) {
+    let (x, y) = (uniform(0.0, 10.0, 6), uniform(0.0, 5.0, 3));
+    let mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
+    let model = Model::new(mesh, PlaneStrain::default())
+        .material(
+            "block",
+            Elastic::new(210e3, 0.3).expect("valid"),
+            Integration::Reduced,
+        )
+        .expect("valid");
+    let settings = Settings {
+        memory,
+        ..Settings::default()
+    };
+    let mut driver = Driver::new(model, settings).expect("valid");
+    let step = Step::new("pull")
+        .fix("block.left", &[Axis::X, Axis::Y])
+        .pressure("block.right", -100.0);
+    let end = driver.loading(&step).expect("valid");
+    let mut system = driver.prepare(&end, pivot).expect("held");
+    system.factorise(true).expect("definite");
+    let mut load = vec![0.0; 2 * driver.mesh.nodes().len()];
+    end.force.add_to(&mut load, 1.0);
+    (system, load)
+}
+
+#[test]
+fn a_factor_that_is_a_little_wrong_is_corrected() {
+    let (mut system, load) = pulled(None);
+    let solve = |system: &mut System| {
+        let mut u = vec![0.0; load.len()];
+        let outcome = system.solve(&load, &mut u);
+        (u, outcome)
+    };
+    let (right, outcome) = solve(&mut system);
+    assert_eq!(outcome, Ok(()));
+    system.cholesky.factor_mut()[100] *= 1.0 + 1e-8;
+    let (u, outcome) = solve(&mut system);
+    assert_eq!(outcome, Ok(()));
+    let largest_error = largest(u.iter().zip(&right).map(|(u, v)| u - v));
+    assert!(largest_error < 1e-11 * largest(right.iter().copied()));
+}
+
+/// A symmetric matrix from what it does to every unknown.
+fn dense(matrix: &Matrix) -> DMatrix<f64> {
+    let n = matrix.pattern.size();
+    let column = |k: usize| {
+        let mut unit = vec![0.0; n];
+        unit[k] = -1.0;
+        DVector::from_vec(matrix.residual(&unit, &vec![0.0; n]))
+    };
+    DMatrix::from_columns(&(0..n).map(column).collect::<Vec<_>>())
+}
+
+#[test]
+fn the_coarse_stiffness_is_that_of_its_displacements() {
+    let (own, load) = pulled(None);
+    let (mut system, _) = pulled(Some(8 * own.factor_entries() as u64 - 8));
+    let coarse = system.coarse.as_ref().expect("no room");
+    let (fine, m) = (system.size(), coarse.dofs.len());
+    assert!(m < fine);
+    let column = |k: usize| {
+        let (mut unit, mut v) = (vec![0.0; m], vec![0.0; fine]);
+        unit[k] = 1.0;
+        coarse.prolong(&unit, &mut v);
+        DVector::from_vec(v)
+    };
+    let p = DMatrix::from_columns(&(0..m).map(column).collect::<Vec<_>>());
+    let k = dense(&system.matrix);
+    let difference = dense(&coarse.matrix) - p.transpose() * &k * &p;
+    assert!(difference.amax() < 1e-12 * k.amax());
+    let f = DVector::from_fn(fine, |i, _| (i as f64).sin());
+    let restricted = DVector::from_vec(coarse.restrict(f.as_slice()));
+    assert!((restricted - p.transpose() * f).norm() < 1e-12);
+    // Brought to the solution of K itself, though not at once.
+    let mut u = vec![0.0; load.len()];
+    let mut exact = u.clone();
+    let mut own = own;
+    own.solve(&load, &mut exact).expect("accurate");
+    let mut left = load.clone();
+    for _ in 0..5 {
+        let mut more = vec![0.0; load.len()];
+        system.solve(&left, &mut more).expect("accurate");
+        u.iter_mut().zip(more).for_each(|(u, v)| *u += v);
+        let known: Vec<f64> = system.dofs.iter().map(|&dof| u[dof]).collect();
+        let f: Vec<f64> = system.dofs.iter().map(|&dof| load[dof]).collect();
+        let r = system.matrix.residual(&known, &f);
+        system
+            .dofs
+            .iter()
+            .zip(r)
+            .for_each(|(&dof, r)| left[dof] = r);
+    }
+    assert!(system.conjugate > 5);
+    let size = largest(exact.iter().copied());
+    let error = largest(u.iter().zip(&exact).map(|(a, b)| a - b));
+    assert!(error < 1e-8 * size, "{error:e} of {size:e}");
+}
+
+/// With nodes that are held in one direction, in both and in none: against a sum over the cells that
+/// knows nothing of numbers or orders.
+#[test]
+fn the_stiffness_is_the_sum_of_those_of_the_cells() {
+    let (x, y) = (uniform(0.0, 10.0, 5), uniform(0.0, 5.0, 4));
+    let mesh = block2("block", CellKind::Quad8, &x, &y)
+        .expect("valid")
+        .map(|[x, y]| [x + 0.05 * y * y, y + 0.02 * x * y])
+        .expect("valid");
+    let steel = Elastic::new(210e3, 0.3).expect("valid");
+    let model = Model::new(mesh, PlaneStrain::default())
+        .material("block", steel, Integration::Reduced)
+        .expect("valid");
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    let step = Step::new("hold")
+        .fix("block.left", &[Axis::X, Axis::Y])
+        .fix("block.bottom", &[Axis::Y])
+        .fix("block.right", &[Axis::X]);
+    let end = driver.loading(&step).expect("valid");
+    let system = driver.prepare(&end, None).expect("held");
+    let dofs = 2 * driver.mesh.nodes().len();
+    let mut sum: DMatrix<f64> = DMatrix::zeros(dofs, dofs);
+    for block in &mut driver.blocks {
+        let rest = vec![0.0; dofs];
+        block.evaluate(&rest, Stiffness::Total(0.0), &mut |cell| {
+            let own: Vec<usize> = cell
+                .nodes
+                .iter()
+                .flat_map(|&a| [2 * a, 2 * a + 1])
+                .collect();
+            let mut entries = cell.stiffness.iter();
+            for (i, &p) in own.iter().enumerate() {
+                for &q in &own[i..] {
+                    let k = entries.next().expect("a triangle");
+                    sum[(p, q)] += k;
+                    if p != q {
+                        sum[(q, p)] += k;
+                    }
+                }
+            }
+        });
+    }
+    assert!(system.size() < dofs - 20);
+    let own = &system.dofs;
+    let expected = DMatrix::from_fn(own.len(), own.len(), |i, j| sum[(own[i], own[j])]);
+    let difference = (dense(&system.matrix) - &expected).amax();
+    assert!(difference < 1e-14 * expected.amax(), "{difference:e}");
+    // And what couples the unknowns to what is held.
+    let mut coupled: DMatrix<f64> = DMatrix::zeros(dofs, dofs);
+    for &(unknown, held, k) in &system.couplings {
+        assert!(system.is_free(unknown) && !system.is_free(held));
+        coupled[(unknown, held)] += k;
+    }
+    for &p in own {
+        for q in (0..dofs).filter(|&q| !system.is_free(q)) {
+            assert!((coupled[(p, q)] - sum[(p, q)]).abs() < 1e-14 * expected.amax());
+        }
+    }
+}
+
+/// Whether the elastic stiffness is kept or assembled anew.
+#[test]
+fn the_stiffness_is_the_same_whatever_is_kept() {
+    let steel = VonMises::new(210e3, 0.3, 300.0).expect("valid");
+    let (x, y) = (uniform(0.0, 10.0, 6), uniform(0.0, 5.0, 3));
+    let mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
+    let model = Model::new(mesh, PlaneStrain::default())
+        .material("block", steel, Integration::Reduced)
+        .expect("valid");
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    let step = Step::new("pull")
+        .fix("block.left", &[Axis::X, Axis::Y])
+        .displace("block.right", Axis::X, 0.05);
+    let end = driver.loading(&step).expect("valid");
+    let mut system = driver.prepare(&end, None).expect("held");
+    let nodes = driver.mesh.nodes().iter();
+    let stretched = |x: &[f64; 2]| [1e-3 * x[0] * x[1], -1e-3 * x[1]];
+    let d_u: Vec<f64> = nodes.flat_map(stretched).collect();
+    let missing = end.displacement.iter().map(|(&dof, &u)| (dof, u)).collect();
+    let mut assembled = |system: &mut System, part: f64| {
+        let stiffness = Stiffness::Plastic(part);
+        let assembly = system.assemble(&mut driver.blocks, &d_u, &missing, stiffness);
+        assert!(assembly.flows);
+        (system.matrix.values().to_vec(), assembly)
+    };
+    assert!(system.keeps_elastic);
+    let kept = [1.0, 0.3].map(|part| assembled(&mut system, part));
+    system.keeps_elastic = false;
+    system.couplings.clear();
+    system.matrix = Matrix::new(system.matrix.pattern.clone());
+    for ((values, assembly), part) in kept.into_iter().zip([1.0, 0.3]) {
+        let (again, other) = assembled(&mut system, part);
+        assert_eq!(assembly.internal, other.internal);
+        let close = |a: &[f64], b: &[f64]| {
+            let size = largest(a.iter().copied());
+            assert!(size > 0.0);
+            assert!(largest(a.iter().zip(b).map(|(a, b)| a - b)) < 1e-14 * size);
+        };
+        close(&values, &again);
+        close(&assembly.coupling, &other.coupling);
+    }
+}
+
+#[test]
+fn a_corrupt_factor_is_told_and_not_used_again() {
+    for by in [1.5, -1.0, f64::NAN, f64::INFINITY] {
+        let (mut system, load) = pulled(None);
+        system.cholesky.factor_mut()[0] *= by;
+        let mut u = vec![0.0; load.len()];
+        let outcome = system.solve(&load, &mut u);
+        let Err(Inaccurate { found, expected }) = outcome else {
+            panic!("a factor wrong by {by} passes");
+        };
+        assert!(
+            found > expected || !found.is_finite(),
+            "{by}: {found} {expected}"
+        );
+        assert!(!system.holds_elastic_factor());
+        // What is assembled still is the stiffness: another factor of it is right.
+        system.factorise(true).expect("definite");
+        assert_eq!(system.solve(&load, &mut u), Ok(()));
+    }
+}
+
+/// K u − λ q = f and q·u + c λ = m against dense algebra.
+#[test]
+fn a_load_of_unknown_factor_is_solved_for_as_by_dense_algebra() {
+    let (mut system, f) = pulled_about(None, Some(45));
+    assert!(system.interface > 0);
+    let mut q = SparseVector::default();
+    let own = system.dofs.clone();
+    own.iter()
+        .step_by(3)
+        .for_each(|&dof| q.add(dof, 1.0 + (dof as f64).sin()));
+    let (compliance, missing) = (2.0, 0.3);
+    let mut condensed = system.condense(f.clone());
+    let border = system.border(&mut condensed, &q, (compliance, missing));
+    let mut stiffness = condensed.stiffness.clone();
+    stiffness.fill_upper_triangle_with_lower_triangle();
+    let x = stiffness.lu().solve(&condensed.load).expect("regular");
+    let factor = system.factor(&border, &mut condensed, &x);
+    let n = own.len();
+    let mut bordered = DMatrix::zeros(n + 1, n + 1);
+    bordered
+        .view_mut((0, 0), (n, n))
+        .copy_from(&dense(&system.matrix));
+    // What is factorised has σ on the interface, which comes last.
+    for i in n - system.interface..n {
+        bordered[(i, i)] -= system.shift();
+    }
+    let mut right = DVector::zeros(n + 1);
+    for (i, &dof) in own.iter().enumerate() {
+        (bordered[(i, n)], bordered[(n, i)]) = (-q.at(dof), q.at(dof));
+        right[i] = f[dof];
+    }
+    (bordered[(n, n)], right[n]) = (compliance, missing);
+    let exact = bordered.lu().solve(&right).expect("regular");
+    assert!(
+        (factor / exact[n] - 1.0).abs() < 1e-9,
+        "{factor} {}",
+        exact[n]
+    );
+    let mut u = vec![0.0; f.len()];
+    let free = (&SparseVector::default(), Interface::Held);
+    system.expand(condensed, &x, free, &mut u).expect("solves");
+    let size = largest(u.iter().copied());
+    let off = own
+        .iter()
+        .zip(exact.iter())
+        .map(|(&dof, exact)| u[dof] - exact);
+    assert!(largest(off) < 1e-9 * size);
+}
+
+/// In an elastic body the forces of the tangent on what is missing are those that its motion makes.
+#[test]
+fn missing_displacements_are_out_of_balance_by_the_forces_that_they_make() {
+    let (x, y) = (uniform(0.0, 10.0, 6), uniform(0.0, 5.0, 3));
+    let mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
+    let model = Model::new(mesh, PlaneStrain::default())
+        .material(
+            "block",
+            Elastic::new(210e3, 0.3).expect("valid"),
+            Integration::Reduced,
+        )
+        .expect("valid");
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    // Pulled up by a force and to the side by a displacement.
+    let step = Step::new("pull")
+        .fix("block.left", &[Axis::X, Axis::Y])
+        .displace("block.right", Axis::X, 0.01)
+        .traction("block.right", [0.0, 2e3]);
+    let end = driver.loading(&step).expect("valid");
+    let start = driver.start_of(&end);
+    let mut system = driver.prepare(&end, None).expect("held");
+    let at_rest = vec![0.0; 2 * driver.mesh.nodes().len()];
+    let first = driver.first_iterate(&mut system, (&start, &end), at_rest.clone());
+    let imbalance = first.now.imbalance(&end, &first.held);
+    let found = first.now.once_arrived(&imbalance);
+    let mut moved = at_rest;
+    first.missing.add_to(&mut moved, 1.0);
+    let arrived = driver.first_iterate(&mut system, (&start, &end), moved);
+    assert!(arrived.missing.is_zero());
+    let exact = largest(arrived.now.imbalance(&end, &arrived.held).into_iter());
+    assert!((found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
+    assert!(exact > 1.01 * largest(imbalance.into_iter()));
+}

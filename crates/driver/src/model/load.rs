@@ -1,0 +1,257 @@
+//! Steps as an engineer writes them, and the loading they amount to; not how it is applied.
+
+use crate::error::ModelError;
+use crate::vector::SparseVector;
+use std::collections::BTreeMap;
+
+/// A coordinate direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Axis {
+    /// First coordinate (the radius, if axisymmetric).
+    X,
+    /// Second coordinate.
+    Y,
+    /// Third coordinate.
+    Z,
+}
+
+impl Axis {
+    /// 0, 1 or 2.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+}
+
+/// Letter of a coordinate direction.
+pub(crate) fn axis_letter(index: usize) -> char {
+    ['x', 'y', 'z'][index.min(2)]
+}
+
+/// One condition of a step. Values are totals at the end of the step.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Condition<const D: usize> {
+    Displace {
+        on: String,
+        axis: Axis,
+        value: f64,
+    },
+    Force {
+        on: String,
+        force: [f64; D],
+    },
+    Pressure {
+        on: String,
+        pressure: f64,
+    },
+    Traction {
+        on: String,
+        traction: [f64; D],
+    },
+    BodyForce {
+        on: String,
+        density: [f64; D],
+    },
+    Tool {
+        name: String,
+        displacement: [f64; D],
+    },
+    Push {
+        name: String,
+        axis: Axis,
+        force: f64,
+    },
+}
+
+/// A step: all conditions that hold in it, with their totals at its end. They are ramped
+/// linearly from what held at the end of the step before; what is not listed is released, and its
+/// reaction ramped to zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step<const D: usize> {
+    pub(crate) name: String,
+    pub(crate) conditions: Vec<Condition<D>>,
+}
+
+impl<const D: usize> Step<D> {
+    /// A step without conditions.
+    pub fn new(name: &str) -> Self {
+        Self {
+            name: name.into(),
+            conditions: Vec::new(),
+        }
+    }
+
+    /// Name of the step.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Holds components of the displacement of a group at zero.
+    pub fn fix(self, on: &str, axes: &[Axis]) -> Self {
+        axes.iter()
+            .fold(self, |step, &axis| step.displace(on, axis, 0.0))
+    }
+
+    /// Prescribes one component of the displacement of a group \[mm\].
+    pub fn displace(self, on: &str, axis: Axis, value: f64) -> Self {
+        self.with(Condition::Displace {
+            on: on.into(),
+            axis,
+            value,
+        })
+    }
+
+    /// A force \[N\], shared equally by the nodes of a group.
+    pub fn force(self, on: &str, force: [f64; D]) -> Self {
+        self.with(Condition::Force {
+            on: on.into(),
+            force,
+        })
+    }
+
+    /// A pressure \[MPa\] on a group of facets, positive towards the body.
+    pub fn pressure(self, on: &str, pressure: f64) -> Self {
+        self.with(Condition::Pressure {
+            on: on.into(),
+            pressure,
+        })
+    }
+
+    /// A traction \[MPa\] on a group of facets, \[78\].
+    pub fn traction(self, on: &str, traction: [f64; D]) -> Self {
+        self.with(Condition::Traction {
+            on: on.into(),
+            traction,
+        })
+    }
+
+    /// A force per volume \[N/mm³\] in a group of cells.
+    pub fn body_force(self, on: &str, density: [f64; D]) -> Self {
+        self.with(Condition::BodyForce {
+            on: on.into(),
+            density,
+        })
+    }
+
+    /// Moves a tool by a total translation from its first position \[mm\].
+    pub fn tool(self, name: &str, displacement: [f64; D]) -> Self {
+        self.with(Condition::Tool {
+            name: name.into(),
+            displacement,
+        })
+    }
+
+    /// Drives a tool along an axis by a total force on it \[N\], which it hands on to what it touches;
+    /// it moves along that axis as this asks, whatever [`Step::tool`] says of it. Along the others
+    /// it stays where it is or moves as it is told.
+    pub fn push(self, name: &str, axis: Axis, force: f64) -> Self {
+        self.with(Condition::Push {
+            name: name.into(),
+            axis,
+            force,
+        })
+    }
+
+    fn with(mut self, condition: Condition<D>) -> Self {
+        self.conditions.push(condition);
+        self
+    }
+}
+
+/// All that acts on the model at an instant: totals, not increments. A tool is a body of one node,
+/// after those of the mesh.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Loading<const D: usize> {
+    /// Prescribed displacements by degree of freedom, `D·node + axis` \[mm\].
+    pub displacement: BTreeMap<usize, f64>,
+    /// Applied forces \[N\].
+    pub force: SparseVector,
+}
+
+impl<const D: usize> Loading<D> {
+    /// The loading at the part s of the way from `self` to `end`, both with the same prescribed
+    /// degrees of freedom. At s = 1 it is `end` exactly.
+    pub fn towards(&self, end: &Self, s: f64) -> Self {
+        if s >= 1.0 {
+            return end.clone();
+        }
+        let mix = |a: f64, b: f64| a + s * (b - a);
+        Self {
+            displacement: end
+                .displacement
+                .iter()
+                .map(|(dof, &b)| {
+                    (
+                        *dof,
+                        mix(self.displacement.get(dof).copied().unwrap_or(b), b),
+                    )
+                })
+                .collect(),
+            force: self.force.with(&end.force, mix),
+        }
+    }
+
+    /// The first number that is not finite, or that is of none of so many degrees of freedom; nodes
+    /// from `tools` on are tools.
+    pub(crate) fn check(&self, tools: usize, dofs: usize) -> Result<(), ModelError> {
+        let place = |node: usize| match node.checked_sub(tools) {
+            Some(tool) => format!("tool {tool}"),
+            None => format!("node {node}"),
+        };
+        let error = |what: String, value: f64| ModelError::OutOfRange {
+            what,
+            value,
+            expected: "a finite number",
+        };
+        let last = self.displacement.last_key_value().map(|(&dof, _)| dof);
+        if let Some(dof) = last.max(self.force.last()).filter(|&dof| dof >= dofs) {
+            return Err(ModelError::OutOfRange {
+                what: "degree of freedom of a load".into(),
+                value: dof as f64,
+                expected: "one of the model",
+            });
+        }
+        for (&dof, &u) in &self.displacement {
+            if !u.is_finite() {
+                let (node, axis) = (dof / D, axis_letter(dof % D));
+                return Err(error(format!("prescribed u_{axis} of {}", place(node)), u));
+            }
+        }
+        for (dof, f) in self.force.iter() {
+            if !f.is_finite() {
+                let (node, axis) = (dof / D, axis_letter(dof % D));
+                return Err(error(format!("force f_{axis} on {}", place(node)), f));
+            }
+        }
+        Ok(())
+    }
+
+    /// Part of `previous` that this increment repeats: (this, previous) / (previous, previous),
+    /// taken over the prescribed motions, or over the forces if nothing is moved.
+    pub(crate) fn ratio(&self, previous: &Self) -> f64 {
+        let motions = |l: &Self| -> Vec<f64> { l.displacement.values().copied().collect() };
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let (new, old) = (motions(self), motions(previous));
+        let moved = dot(&old, &old);
+        if moved > 0.0 {
+            return dot(&new, &old) / moved;
+        }
+        let loaded = previous.force.inner(&previous.force);
+        if loaded > 0.0 {
+            self.force.inner(&previous.force) / loaded
+        } else {
+            0.0
+        }
+    }
+
+    /// `self − start`, for loadings with the same prescribed degrees of freedom.
+    pub(crate) fn increment_from(&self, start: &Self) -> Self {
+        Self {
+            displacement: self
+                .displacement
+                .iter()
+                .map(|(d, &u)| (*d, u - start.displacement.get(d).copied().unwrap_or(u)))
+                .collect(),
+            force: self.force.with(&start.force, |b, a| b - a),
+        }
+    }
+}

@@ -1,0 +1,474 @@
+//! The contact points of a model: their frames, gaps and slips; not the law that holds there.
+
+use crate::error::ModelError;
+use moreau_contact::{Obstacle, frame};
+use moreau_laws::{Friction, Local};
+use moreau_mesh::{Coupling, NodeKind, nearest};
+use nalgebra::{SMatrix, SVector};
+use std::collections::BTreeMap;
+
+/// A rigid tool.
+pub(crate) struct Tool<const D: usize> {
+    pub(crate) name: String,
+    pub(crate) obstacle: Box<dyn Obstacle<D>>,
+}
+
+/// Index of a tool by its name.
+pub(crate) fn tool_index<const D: usize>(
+    tools: &[Tool<D>],
+    name: &str,
+) -> Result<usize, ModelError> {
+    let names = || tools.iter().map(|t| t.name.as_str());
+    names()
+        .position(|n| n == name)
+        .ok_or_else(|| ModelError::UnknownTool {
+            name: name.into(),
+            nearest: nearest(name, names()).map(Into::into),
+        })
+}
+
+/// A node that may touch what is opposite.
+#[derive(Debug, Clone)]
+pub(crate) struct ContactPoint<const D: usize> {
+    pub(crate) node: usize,
+    /// The tool opposite; `None` for the surface of a deformable body.
+    pub(crate) tool: Option<usize>,
+    /// Index of the contact (surface and what is opposite) that it belongs to.
+    pub(crate) contact: usize,
+    /// Between tractions.
+    pub(crate) law: Friction,
+    /// The first tangent is along its projection on the surface, if it is given.
+    pub(crate) axis: Option<SVector<f64, D>>,
+    /// Distance to what is opposite at which it touches \[mm\]: the gap is the distance less this.
+    pub(crate) offset: f64,
+    /// Share of the surface \[mm²\], to turn a force into a traction.
+    pub(crate) area: f64,
+    pub(crate) kind: NodeKind,
+    /// Nodes whose displacements, with these weights, are that of the point; they add up to 1.
+    pub(crate) own: Vec<(usize, f64)>,
+}
+
+/// Least cosine between normals of a tool over an edge that is one smooth surface there.
+const SMOOTH: f64 = 0.9;
+
+impl<const D: usize> ContactPoint<D> {
+    /// Its gap on a tool, from the places of the nodes relative to that \[mm\].
+    ///
+    /// In a changed basis the gaps of the nodes have the weights that their displacements have, so that
+    /// no node is inside a curved tool where the gaps of all points are zero: as far as the tool is one
+    /// smooth surface over the edge. Beside its end, or where it is smaller, the gap is that at the point.
+    pub(crate) fn gap(
+        &self,
+        obstacle: &dyn Obstacle<D>,
+        x: impl Fn(usize) -> SVector<f64, D>,
+    ) -> f64 {
+        let at: SVector<f64, D> = self.own.iter().map(|&(a, w)| x(a) * w).sum();
+        let here = obstacle.distance(&at);
+        let n = obstacle.normal(&at);
+        let mut weighted = 0.0;
+        for &(a, w) in self.own.iter().filter(|_| self.own.len() > 1) {
+            let (way, distance, m) = (x(a) - at, obstacle.distance(&x(a)), obstacle.normal(&x(a)));
+            // A smooth surface is between its tangents at both ends.
+            let off = distance - here - 0.5 * (n + m).dot(&way);
+            if n.dot(&m) < SMOOTH || off.abs() > 0.25 * (n - m).norm() * way.norm() {
+                return here - self.offset;
+            }
+            weighted += w * (distance - here);
+        }
+        here + weighted - self.offset
+    }
+}
+
+/// Whose displacements make the relative displacement of a contact point during an increment:
+/// Σ own·v − Σ opposite·v. Forces go back with the same weights.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Footing<const D: usize> {
+    /// The node, and those that share its multiplier at the edge of an overlap or its shape function
+    /// in a changed basis.
+    pub(crate) own: Vec<(usize, f64)>,
+    /// Nodes of the surface opposite, or that of the tool.
+    pub(crate) opposite: Vec<(usize, f64)>,
+    /// Share of the surface in contact \[mm²\].
+    pub(crate) area: f64,
+    /// Normal and gap at the start of the increment, where they are those of a surface.
+    plane: Option<(SVector<f64, D>, f64)>,
+}
+
+impl<const D: usize> Footing<D> {
+    /// On a tool, a body of the one node `tool`.
+    pub(crate) fn on_tool(point: &ContactPoint<D>, tool: usize) -> Self {
+        Self {
+            own: point.own.clone(),
+            opposite: vec![(tool, 1.0)],
+            area: point.area,
+            ..Self::default()
+        }
+    }
+
+    /// On a surface, with nodes at the given positions.
+    pub(crate) fn on_surface(coupling: Coupling<D>, positions: &[[f64; D]]) -> Self {
+        let mut footing = Self {
+            own: coupling.own,
+            opposite: coupling.opposite,
+            area: coupling.area,
+            plane: None,
+        };
+        let normal = SVector::from(coupling.normal);
+        let apart = footing.relative(|a| SVector::from(positions[a]));
+        footing.plane = Some((normal, normal.dot(&apart)));
+        footing
+    }
+
+    /// Σ own·v − Σ opposite·v.
+    pub(crate) fn relative(&self, v: impl Fn(usize) -> SVector<f64, D>) -> SVector<f64, D> {
+        self.weights().map(|(a, w)| v(a) * w).sum()
+    }
+
+    /// Adds a part of the multiplier of another point to its own: rows and gaps become means by
+    /// area.
+    pub(crate) fn take_over(&mut self, other: &Self, part: f64) {
+        let (own, given) = (self.area, part * other.area);
+        let area = own + given;
+        let mean = |a: &[(usize, f64)], b: &[(usize, f64)]| -> Vec<(usize, f64)> {
+            let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
+            for (weights, share) in [(a, own), (b, given)] {
+                for &(node, weight) in weights {
+                    *sum.entry(node).or_insert(0.0) += share / area * weight;
+                }
+            }
+            sum.into_iter().collect()
+        };
+        self.own = mean(&self.own, &other.own);
+        self.opposite = mean(&self.opposite, &other.opposite);
+        self.area = area;
+        if let (Some((n, gap)), Some((m, beside))) = (&mut self.plane, other.plane) {
+            *n = (*n * own + m * given).normalize();
+            *gap = (*gap * own + beside * given) / area;
+        }
+    }
+
+    /// Nodes with their weights, negative on the opposite side.
+    pub(crate) fn weights(&self) -> impl Iterator<Item = (usize, f64)> {
+        let opposite = self.opposite.iter().map(|&(b, w)| (b, -w));
+        self.own.iter().copied().chain(opposite)
+    }
+
+    /// The nodes on both sides.
+    pub(crate) fn nodes(&self) -> Vec<usize> {
+        self.weights().map(|(a, _)| a).collect()
+    }
+
+    /// Normal and gap after a relative displacement; `None` on a tool and opposite to nothing.
+    pub(crate) fn plane(&self, slip: &SVector<f64, D>) -> Option<(SVector<f64, D>, f64)> {
+        let (normal, gap) = self.plane?;
+        Some((normal, gap + normal.dot(slip)))
+    }
+
+    /// Directions in which the relative displacement is free: those of the own node, and those in
+    /// which no node opposite is held.
+    pub(crate) fn free(&self, node: usize, is_free: impl Fn(usize) -> bool) -> [bool; D] {
+        let opposite = |i: usize| self.opposite.iter().all(|&(b, _)| is_free(D * b + i));
+        std::array::from_fn(|i| is_free(D * node + i) || (!self.opposite.is_empty() && opposite(i)))
+    }
+}
+
+/// A contact point at an instant: frame, gap and slip.
+///
+/// Where Dirichlet conditions hold components of the relative displacement, the law lives on the
+/// free subspace F alone: n acts where it is free, the tangents are those in F, and the components
+/// left over are switched off (zero slip, zero force).
+#[derive(Debug, Clone)]
+pub(crate) struct Kinematics<const D: usize> {
+    /// Unit normal and tangents: for forces in space, and from relative displacements to gap and
+    /// slip; zero where switched off.
+    pub(crate) axes: SMatrix<f64, D, D>,
+    /// Gap at the end of the step and slip of the step \[mm\], as the law sees them: a point that takes
+    /// no part in it is open.
+    pub(crate) u: Local<D>,
+    /// Gap at the end of the step, negative inside of what is opposite, whether the law holds there or
+    /// not \[mm\].
+    pub(crate) gap: f64,
+    /// Components that take part in the law.
+    pub(crate) active: [bool; D],
+    /// Whether the point is at a sharp corner of its tool.
+    pub(crate) at_corner: bool,
+    /// The law between them.
+    pub(crate) law: Friction,
+}
+
+/// Below this length the projected normal is that of a wholly prescribed normal displacement.
+const PRESCRIBED: f64 = 1e-9;
+
+impl<const D: usize> Kinematics<D> {
+    /// Of a point, from normal and gap at the end of the step, and the relative displacement of the
+    /// step.
+    pub(crate) fn new(
+        point: &ContactPoint<D>,
+        n: &SVector<f64, D>,
+        gap: f64,
+        slip: &SVector<f64, D>,
+        free: [bool; D],
+    ) -> Self {
+        let mut projected = *n;
+        for i in 0..D {
+            if !free[i] {
+                projected[i] = 0.0;
+            }
+        }
+        let length = projected.norm();
+        let dimension = free.iter().filter(|f| **f).count();
+        if dimension == 0 || length < PRESCRIBED {
+            // Nothing left to decide, whatever the prescribed motion does.
+            return Self::apart(point.law, gap);
+        }
+        let mut out = Self::apart(point.law, gap);
+        out.u[0] = gap;
+        let tangents = frame_along(n, point.axis.as_ref());
+        let q = if dimension == D {
+            tangents
+        } else {
+            frame_in(&(projected / length), free)
+        };
+        if let Friction::Anisotropic(law) = point.law
+            && D == 3
+            && dimension == 2
+        {
+            let left = q.column(1);
+            out.law = law
+                .along([1, 2].map(|k| left.dot(&tangents.column(k))))
+                .into();
+        }
+        out.axes.set_column(0, n);
+        for k in 0..dimension {
+            let e = q.column(k);
+            out.active[k] = true;
+            if k > 0 {
+                out.axes.set_column(k, &e);
+                out.u[k] = e.dot(slip);
+            }
+        }
+        out
+    }
+
+    /// With the law between the forces on an area \[mm²\] instead of that between tractions: limits of
+    /// the shear are those of what the point touches.
+    pub(crate) fn between_forces(mut self, area: f64) -> Self {
+        self.law = self.law.scaled(area);
+        self
+    }
+
+    /// A point that takes no part in the law.
+    pub(crate) fn apart(law: Friction, gap: f64) -> Self {
+        let mut u = Local::zeros();
+        u[0] = gap.abs() + f64::MIN_POSITIVE;
+        Self {
+            axes: SMatrix::zeros(),
+            u,
+            gap,
+            active: [false; D],
+            at_corner: false,
+            law,
+        }
+    }
+
+    /// Force on the body in space, for a force t in the frame \[N\].
+    pub(crate) fn force(&self, t: &Local<D>) -> SVector<f64, D> {
+        self.axes * t
+    }
+
+    /// A force in space, seen in the frame \[N\].
+    pub(crate) fn local_force(&self, f: &SVector<f64, D>) -> Local<D> {
+        self.axes.tr_mul(f)
+    }
+}
+
+/// Normal and tangents, the first of these along the projection of an axis: without an axis, or with
+/// one along the normal, they are those of [`frame`].
+fn frame_along<const D: usize>(
+    n: &SVector<f64, D>,
+    axis: Option<&SVector<f64, D>>,
+) -> SMatrix<f64, D, D> {
+    let mut q = frame(n);
+    let along = axis.map(|a| a - n * n.dot(a));
+    if let Some(along) = along.filter(|v| D == 3 && v.norm() > ALONG_NORMAL) {
+        let along = along.normalize();
+        let across = SVector::from_fn(|i, _| {
+            let (j, k) = ((i + 1) % D, (i + 2) % D);
+            n[j] * along[k] - n[k] * along[j]
+        });
+        q.set_column(1, &along);
+        q.set_column(2, &across);
+    }
+    q
+}
+
+/// Length of the projection of a unit axis on a surface below which it has no direction there.
+pub(crate) const ALONG_NORMAL: f64 = 1e-3;
+
+/// Orthonormal basis of the free coordinate subspace, first vector `e`.
+fn frame_in<const D: usize>(e: &SVector<f64, D>, free: [bool; D]) -> SMatrix<f64, D, D> {
+    let mut q = SMatrix::<f64, D, D>::zeros();
+    q.set_column(0, e);
+    let mut k = 1;
+    let mut axes: Vec<usize> = (0..D).filter(|&i| free[i]).collect();
+    axes.sort_by(|&a, &b| e[a].abs().total_cmp(&e[b].abs()));
+    for i in axes {
+        let mut v = SVector::<f64, D>::zeros();
+        v[i] = 1.0;
+        for j in 0..k {
+            let c = q.column(j).into_owned();
+            v -= c * c.dot(&v);
+        }
+        if k < D && v.norm() > 1e-6 {
+            q.set_column(k, &v.normalize());
+            k += 1;
+        }
+    }
+    q
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moreau_contact::Ball;
+    use moreau_laws::{AnisotropicCoulomb, Coulomb};
+
+    fn point<const D: usize>() -> ContactPoint<D> {
+        ContactPoint {
+            node: 0,
+            tool: Some(0),
+            contact: 0,
+            law: Coulomb::new(0.1).expect("a coefficient").into(),
+            axis: None,
+            offset: 0.0,
+            area: 1.0,
+            kind: NodeKind::Corner,
+            own: vec![(0, 1.0)],
+        }
+    }
+
+    #[test]
+    fn a_held_tangent_is_switched_off() {
+        let n = SVector::<f64, 2>::new(0.0, 1.0);
+        let k = Kinematics::new(
+            &point(),
+            &n,
+            0.15,
+            &SVector::<f64, 2>::new(0.0, -0.1),
+            [false, true],
+        );
+        assert_eq!(k.active, [true, false]);
+        assert_eq!(k.u, Local::<2>::new(0.15, 0.0));
+        assert_eq!(k.axes, nalgebra::Matrix2::new(0.0, 0.0, 1.0, 0.0));
+    }
+
+    #[test]
+    fn an_inclined_normal_acts_along_the_free_direction() {
+        let (s, c) = 0.5f64.sin_cos();
+        let n = SVector::<f64, 2>::new(-s, c);
+        let d_u = SVector::<f64, 2>::new(0.0, 0.3);
+        let k = Kinematics::new(&point(), &n, 0.3 * c, &d_u, [false, true]);
+        // Moving up by 0.3 opens the gap by 0.3 cos; the force n t_n does the same work.
+        assert!((k.local_force(&d_u) - k.u).norm() < 1e-15);
+        let t = Local::<2>::new(2.0, 0.0);
+        assert!((k.force(&t).dot(&d_u) - t.dot(&k.u)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn one_held_axis_in_space_leaves_two_components() {
+        let n = SVector::<f64, 3>::new(0.0, 1.0, 0.0);
+        let slip = SVector::<f64, 3>::new(0.0, 0.0, 0.2);
+        let k = Kinematics::new(&point(), &n, 0.0, &slip, [false, true, true]);
+        assert_eq!(k.active, [true, true, false]);
+        assert!((k.u[1].abs() - 0.2).abs() < 1e-15 && k.u[2] == 0.0);
+    }
+
+    /// Three nodes of an edge on a cylinder have no gap, nor has the point of the mid-side; where a tool is
+    /// smaller than the edge the gaps of the ends say nothing about it.
+    #[test]
+    fn gaps_have_the_weights_of_the_basis_where_a_tool_is_smooth() {
+        let (corner, rest) = (-0.2 / 0.6, 1.0 / 0.6);
+        let point = ContactPoint {
+            own: vec![(0, rest), (1, corner), (2, corner)],
+            ..point()
+        };
+        let x = [0.5, 0.0, 1.0];
+        let large = Ball::new([0.0, -10.0], 10.0).expect("a ball");
+        let on_it = |a: usize| SVector::from([x[a], f64::sqrt(100.0 - x[a] * x[a]) - 10.0]);
+        assert!(point.gap(&large, on_it).abs() < 1e-14);
+        let small = Ball::new([0.5, -0.3], 0.3).expect("a ball");
+        assert!(point.gap(&small, |a| SVector::from([x[a], 0.0])).abs() < 1e-15);
+    }
+
+    /// The first coefficient along the axis on an inclined surface; along the one tangent that a plane
+    /// of symmetry leaves, what the ellipse has there.
+    #[test]
+    fn coefficients_follow_their_axis() {
+        let law = AnisotropicCoulomb::new(0.1, 0.4).expect("coefficients");
+        let axis = SVector::<f64, 3>::new(1.0, 0.0, 1.0).normalize();
+        let point = ContactPoint {
+            law: law.into(),
+            axis: Some(axis),
+            ..point()
+        };
+        let n = SVector::<f64, 3>::new(0.0, 0.6, 0.8);
+        let k = Kinematics::new(&point, &n, 0.0, &SVector::zeros(), [true; 3]);
+        let q = k.axes;
+        assert!((q.transpose() * q - SMatrix::identity()).norm() < 1e-14);
+        assert!((q.determinant() - 1.0).abs() < 1e-14);
+        let projected = axis - n * n.dot(&axis);
+        assert!((q.column(1) - projected.normalize()).norm() < 1e-14);
+        assert_eq!(k.law, law.into());
+
+        // 1/√((cos 30°/0.1)² + (sin 30°/0.4)²) = 4/35.
+        let floor = SVector::<f64, 3>::new(0.0, 0.0, 1.0);
+        for (degrees, expected) in [(0.0f64, 0.1), (90.0, 0.4), (30.0, 4.0 / 35.0)] {
+            let (s, c) = degrees.to_radians().sin_cos();
+            let point = ContactPoint {
+                axis: Some(SVector::<f64, 3>::new(c, s, 0.0)),
+                ..point.clone()
+            };
+            let held_across = [true, false, true];
+            let k = Kinematics::new(&point, &floor, 0.0, &SVector::zeros(), held_across);
+            assert!((k.law.friction() - expected).abs() < 1e-14, "{:?}", k.law);
+            assert_eq!(k.active, [true, true, false]);
+        }
+    }
+
+    #[test]
+    fn what_moves_together_does_not_slip() {
+        let footing = Footing::<2> {
+            own: vec![(0, 0.75), (1, 0.25)],
+            opposite: vec![(2, 1.5), (3, -0.5)],
+            ..Footing::default()
+        };
+        let same = footing.relative(|_| SVector::<f64, 2>::new(0.5, 0.1));
+        assert!(same.norm() < 1e-15, "carried along: {same}");
+        // A direction is free if the own node is, or all of those opposite are.
+        assert_eq!(footing.free(0, |dof| dof != 0), [true, true]);
+        assert_eq!(footing.free(0, |dof| dof != 0 && dof != 4), [false, true]);
+    }
+
+    #[test]
+    fn what_is_taken_over_is_a_mean_by_area() {
+        let plane = |y: f64, gap| Some((SVector::<f64, 2>::new(0.0, y), gap));
+        let mut footing = Footing {
+            own: vec![(0, 1.0)],
+            opposite: vec![(2, 0.5), (3, 0.5)],
+            area: 3.0,
+            plane: plane(1.0, 0.1),
+        };
+        let held = Footing {
+            own: vec![(1, 1.0)],
+            opposite: vec![(2, 1.0)],
+            area: 2.0,
+            plane: plane(1.0, 0.5),
+        };
+        footing.take_over(&held, 0.5);
+        assert_eq!(footing.area, 4.0);
+        assert_eq!(footing.own, [(0, 0.75), (1, 0.25)]);
+        assert_eq!(footing.opposite, [(2, 0.625), (3, 0.375)]);
+        let (normal, gap) = footing.plane(&SVector::zeros()).expect("a surface");
+        assert_eq!((normal[1], gap), (1.0, 0.2));
+    }
+}

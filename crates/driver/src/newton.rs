@@ -1,0 +1,12 @@
+//! One increment by Newton's method; not the sequence of increments.
+
+pub(crate) mod candidate;
+pub(crate) mod chord;
+pub(crate) mod commit;
+pub(crate) mod control;
+pub(crate) mod increment;
+pub(crate) mod iterate;
+pub(crate) mod line_search;
+pub(crate) mod linearised;
+pub(crate) mod nested;
+pub(crate) mod unsymmetric;

@@ -1,0 +1,46 @@
+//! A converged increment and what it took; not what it makes of the state.
+
+use crate::model::points::Kinematics;
+use moreau_contact::ContactSolution;
+
+/// What an increment has counted.
+#[derive(Debug, Default)]
+pub(crate) struct Counts {
+    pub(crate) newton: usize,
+    pub(crate) solves: usize,
+    pub(crate) contact: usize,
+    /// Iterations of the contact solver in the last solve.
+    pub(crate) last_contact: usize,
+    pub(crate) shortened: usize,
+    pub(crate) factorisations: usize,
+    /// Iterations of conjugate gradients, and steps for what a symmetric tangent lacks.
+    pub(crate) linear: usize,
+    /// [`StepReport::contact_solves`].
+    pub(crate) contact_solves: usize,
+    pub(crate) residuals: Vec<f64>,
+    /// [`StepReport::criticality`].
+    pub(crate) criticality: Option<(usize, f64)>,
+    /// Whether the statuses have left a rigid motion free on the way.
+    pub(crate) undetermined: bool,
+}
+
+impl Counts {
+    /// Whether the last step has left about as much out of balance as the one before.
+    pub(crate) fn no_longer_improves(&self) -> bool {
+        match self.residuals.as_slice() {
+            [.., before, now] => *now >= 0.25 * before,
+            _ => false,
+        }
+    }
+}
+
+/// A converged increment, not yet committed.
+pub(crate) struct Candidate<const D: usize> {
+    pub(crate) d_u: Vec<f64>,
+    pub(crate) internal: Vec<f64>,
+    pub(crate) kinematics: Vec<Kinematics<D>>,
+    /// Forces and statuses; the displacements are those of the linearised problem.
+    pub(crate) solution: ContactSolution<D>,
+    pub(crate) out_of_balance: f64,
+    pub(crate) counts: Counts,
+}

@@ -1,0 +1,303 @@
+//! How far to go along a Newton step; not which step.
+
+use crate::assembly::block::Stiffness;
+use crate::driver::Driver;
+use crate::linear::system::System;
+use crate::model::load::Loading;
+use crate::newton::iterate::Iterate;
+use crate::vector::SparseVector;
+use crate::vector::{imbalance, largest};
+
+/// Step lengths that are tried before the last is taken.
+const TRIALS: usize = 12;
+
+/// Slope of ΔΦ at a step length over that at zero, below which the length is accepted.
+const ACCEPTED_SLOPE: f64 = 0.5;
+
+/// A Newton step from an iterate.
+pub(crate) struct Line<'a, const D: usize> {
+    pub(crate) end: &'a Loading<D>,
+    /// What the step adds to the applied forces \[N\].
+    pub(crate) growth: SparseVector,
+    /// The degrees of freedom that are prescribed.
+    pub(crate) held: &'a [usize],
+    /// Displacements of the step, at every degree of freedom.
+    pub(crate) step: &'a [f64],
+    /// Contact forces at its end \[N\].
+    pub(crate) target: &'a SparseVector,
+    /// Whether the iterate has all prescribed displacements and the motions of tools already.
+    pub(crate) complete: bool,
+    /// Imbalance left by the contact solver \[N\].
+    pub(crate) slack: f64,
+    /// Whether the tangent at its end is likely to be needed.
+    pub(crate) tangent: bool,
+    /// Imbalance that a step of an unsymmetric tangent may leave \[N\]; `None` of a symmetric one, of
+    /// which ΔΦ decides.
+    pub(crate) allowed: Option<f64>,
+}
+
+impl<const D: usize> Line<'_, D> {
+    fn displacement(&self, now: &Iterate, s: f64) -> Vec<f64> {
+        now.d_u
+            .iter()
+            .zip(self.step)
+            .map(|(u, v)| u + s * v)
+            .collect()
+    }
+
+    /// Contact forces between those of both ends.
+    fn contact(&self, now: &Iterate, s: f64) -> SparseVector {
+        now.contact.with(self.target, |a, b| a + s * (b - a))
+    }
+
+    /// Force that nothing balances at the part s of the step, at every degree of freedom; zero at
+    /// those held.
+    fn imbalance(&self, internal: &[f64], contact: &SparseVector, s: f64) -> Vec<f64> {
+        let growth = self.growth.scaled(s);
+        imbalance(internal, &[&self.end.force, &growth, contact], self.held)
+    }
+
+    /// Slope of ΔΦ along the step, where the imbalance is this.
+    fn slope(&self, imbalance: &[f64]) -> f64 {
+        let pairs = self.step.iter().zip(imbalance);
+        -pairs.map(|(v, r)| v * r).sum::<f64>()
+    }
+}
+
+fn norm(v: &[f64]) -> f64 {
+    v.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+impl<const D: usize> Driver<D> {
+    /// Goes along a Newton step: all the way, unless that overshoots the minimum of ΔΦ with contact
+    /// forces between those of both ends. Friction that changes can make ΔΦ no potential of the
+    /// step, which then does not begin downhill; there the norm of the imbalance decides; where the tangent
+    /// is not symmetric, the largest imbalance of the last iterations, so that kinks are passed.
+    pub(crate) fn search(
+        &mut self,
+        system: &mut System,
+        line: &Line<'_, D>,
+        now: Iterate,
+    ) -> Iterate {
+        let none = SparseVector::default();
+        let d_u = line.displacement(&now, 1.0);
+        let stiffness = match line.tangent {
+            true => Stiffness::Plastic(1.0),
+            false => Stiffness::None,
+        };
+        let assembly = system.assemble(&mut self.blocks, &d_u, &none, stiffness);
+        let scale = self.force_scale(&assembly, line.end, line.target);
+        let before = line.imbalance(&now.assembly.internal, &now.contact, 0.0);
+        let (at_start, before) = (line.slope(&before), norm(&before));
+        let after = line.imbalance(&assembly.internal, line.target, 1.0);
+        let (at_end, left) = (line.slope(&after), largest(after.iter().copied()));
+        let overshoots = match line.allowed {
+            Some(allowed) => left > allowed,
+            None if at_start < 0.0 => at_end > ACCEPTED_SLOPE * at_start.abs(),
+            None => norm(&after) > before,
+        };
+        drop(after);
+        // While prescribed displacements or motions are missing, ΔΦ is not what the step minimises; in balance
+        // its slope is rounding.
+        if !line.complete || !overshoots || left <= self.target(system, scale, &d_u) + line.slack {
+            return Iterate {
+                d_u,
+                assembly,
+                contact: line.target.clone(),
+                part: 1.0,
+            };
+        }
+        let s = match line.allowed {
+            Some(allowed) => self.backtrack(system, line, &now, |r| {
+                largest(r.iter().copied()) <= allowed
+            }),
+            None if at_start < 0.0 => self.minimise(system, line, &now, at_start, at_end),
+            None => self.backtrack(system, line, &now, |r| norm(r) < before),
+        };
+        let d_u = line.displacement(&now, s);
+        Iterate {
+            assembly: system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Plastic(1.0)),
+            d_u,
+            contact: line.contact(&now, s),
+            part: s,
+        }
+    }
+
+    /// Step length at which the slope of ΔΦ about vanishes, by the Illinois variant of regula
+    /// falsi between the slopes at 0 and at 1.
+    fn minimise(
+        &mut self,
+        system: &mut System,
+        line: &Line<'_, D>,
+        now: &Iterate,
+        at_start: f64,
+        at_end: f64,
+    ) -> f64 {
+        let none = SparseVector::default();
+        let (mut low, mut high) = ((0.0, at_start), (1.0, at_end));
+        let mut last_side = 0.0;
+        let mut s = 1.0;
+        for _ in 0..TRIALS {
+            let margin = 0.05 * (high.0 - low.0);
+            s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            s = s.clamp(low.0 + margin, high.0 - margin);
+            let trial = line.displacement(now, s);
+            let at = system.assemble(&mut self.blocks, &trial, &none, Stiffness::None);
+            let slope = line.slope(&line.imbalance(&at.internal, &line.contact(now, s), s));
+            if slope.abs() <= ACCEPTED_SLOPE * at_start.abs() {
+                break;
+            }
+            // An end that stays twice weighs half.
+            if slope > 0.0 {
+                high = (s, slope);
+                low.1 *= if last_side > 0.0 { 0.5 } else { 1.0 };
+            } else {
+                low = (s, slope);
+                high.1 *= if last_side < 0.0 { 0.5 } else { 1.0 };
+            }
+            last_side = slope;
+        }
+        s
+    }
+
+    /// Step length at which the imbalance will do.
+    fn backtrack(
+        &mut self,
+        system: &mut System,
+        line: &Line<'_, D>,
+        now: &Iterate,
+        will_do: impl Fn(&[f64]) -> bool,
+    ) -> f64 {
+        let none = SparseVector::default();
+        let mut s = 1.0;
+        for _ in 0..TRIALS {
+            s *= 0.5;
+            let trial = line.displacement(now, s);
+            let at = system.assemble(&mut self.blocks, &trial, &none, Stiffness::None);
+            if will_do(&line.imbalance(&at.internal, &line.contact(now, s), s)) {
+                break;
+            }
+        }
+        s
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear::conjugate::Interface;
+    use crate::{Axis, Model, Settings, Step};
+    use moreau_laws::VonMises;
+    use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
+
+    /// A strip held over half of its width and pulled at the other end.
+    fn strip() -> Driver<2> {
+        let steel = VonMises::new(210e3, 0.3, 300.0).expect("valid");
+        let (x, y) = (uniform(0.0, 10.0, 8), uniform(0.0, 20.0, 8));
+        let mut mesh = block2("strip", CellKind::Quad8, &x, &y).expect("valid");
+        mesh.node_group_where("ligament", "strip.bottom", |x| x[0] <= 5.0)
+            .expect("not empty");
+        let model = Model::new(mesh, PlaneStrain::default())
+            .material("strip", steel, Integration::Reduced)
+            .expect("valid");
+        Driver::new(model, Settings::default()).expect("valid")
+    }
+
+    fn pull(driver: &Driver<2>, traction: f64) -> Loading<2> {
+        let step = Step::new("pull")
+            .fix("strip.left", &[Axis::X])
+            .fix("ligament", &[Axis::Y])
+            .pressure("strip.top", -traction);
+        driver.loading(&step).expect("valid")
+    }
+
+    /// ΔΦ, \[74\], without contact.
+    fn potential(driver: &Driver<2>, end: &Loading<2>, d_u: &[f64]) -> f64 {
+        let potentials = driver.blocks.iter().map(|b| b.potential(d_u));
+        let stored: f64 = potentials.sum::<Option<f64>>().expect("a potential");
+        stored - end.force.dot(d_u)
+    }
+
+    /// Close to collapse in one increment: the imbalance rises on the way, ΔΦ never does.
+    #[test]
+    fn the_potential_decreases_from_iterate_to_iterate() {
+        let mut driver = strip();
+        let end = pull(&driver, 258.0);
+        let mut start = end.clone();
+        start.force = SparseVector::default();
+        let mut system = driver.prepare(&end, None).expect("held");
+        let mut potentials = Vec::new();
+        let report = driver
+            .increment(&mut system, &start, &end, &mut |driver, now| {
+                if now.newton > 0 {
+                    potentials.push(potential(driver, &end, now.d_u));
+                }
+            })
+            .expect("converges");
+        assert!(report.plastic_fraction > 0.05);
+        assert!(report.residuals.windows(2).any(|r| r[1] > r[0]));
+        let size = potentials[0].abs();
+        for pair in potentials.windows(2) {
+            assert!(pair[1] <= pair[0] + 1e-10 * size, "{potentials:?}");
+        }
+    }
+
+    /// Four times the elastic answer, which would end higher than it began.
+    #[test]
+    fn a_step_that_overshoots_is_shortened_to_where_the_potential_is_least() {
+        let mut driver = strip();
+        let end = pull(&driver, 200.0);
+        let mut system = driver.prepare(&end, None).expect("held");
+        let rest = vec![0.0; 2 * driver.mesh.nodes().len()];
+        let none = SparseVector::default();
+        let assembly = system.assemble(&mut driver.blocks, &rest, &none, Stiffness::Plastic(1.0));
+        system.factorise(true).expect("elastic");
+        let (mut load, mut step) = (rest.clone(), rest.clone());
+        end.force.add_to(&mut load, 1.0);
+        let condensed = system.condense(load);
+        system
+            .expand(
+                condensed,
+                &nalgebra::DVector::zeros(0),
+                (&none, Interface::Held),
+                &mut step,
+            )
+            .expect("accurate");
+        step.iter_mut().for_each(|u| *u *= 4.0);
+        let now = Iterate {
+            d_u: rest,
+            assembly,
+            contact: SparseVector::default(),
+            part: 0.0,
+        };
+        let held = system.held_dofs();
+        let line = Line {
+            end: &end,
+            growth: SparseVector::default(),
+            held: &held,
+            step: &step,
+            target: &none,
+            complete: true,
+            slack: 0.0,
+            tangent: true,
+            allowed: None,
+        };
+        let next = driver.search(&mut system, &line, now);
+        assert!(next.part < 1.0);
+        let length = next.d_u.iter().zip(&step).map(|(u, s)| u * s).sum::<f64>()
+            / step.iter().map(|s| s * s).sum::<f64>();
+        assert!(length > 0.1 && length < 0.6, "{length}");
+        let reached = potential(&driver, &end, &next.d_u);
+        assert!(reached < 0.0 && reached < potential(&driver, &end, &step));
+        // Not far from the least value on the line.
+        let least = (1..=100)
+            .map(|k| {
+                step.iter()
+                    .map(|u| u * k as f64 / 100.0)
+                    .collect::<Vec<_>>()
+            })
+            .map(|u| potential(&driver, &end, &u))
+            .fold(0.0, f64::min);
+        assert!(reached < 0.7 * least, "{reached} {least}");
+    }
+}

@@ -1,0 +1,254 @@
+//! A linearised increment and its contact problem: condensed on the interface, or tied in the factor; not
+//! the iteration that it is a step of.
+
+use crate::driver::Driver;
+use crate::error::StepError;
+use crate::interface::condensation::Condensation;
+use crate::interface::tied::Tied;
+use crate::linear::conjugate::Interface;
+use crate::linear::system::System;
+use crate::model::load::Loading;
+use crate::model::points::Kinematics;
+use crate::newton::candidate::Counts;
+use crate::vector::SparseVector;
+use crate::vector::largest;
+use moreau_contact::{ContactError, ContactSolution, Springs, TiedProblem, solve_tied};
+use moreau_laws::Local;
+use nalgebra::DVector;
+use std::time::Instant;
+
+/// Stiffness against motions that the statuses leave free, over that of the interface: softer than any
+/// body and stiffer than rounding; more of it where forces that are as small keep the statuses from
+/// settling.
+const SOFT: [f64; 2] = [1e-10, 1e-6];
+
+/// Part of the forces in play that it may carry where nothing else needs to.
+const CARRIED: f64 = 1e-2;
+
+/// An increment linearised at an iterate.
+pub(crate) struct Linearised<'a, const D: usize> {
+    pub(crate) kinematics: &'a [Kinematics<D>],
+    pub(crate) loading: &'a Loading<D>,
+    /// Prescribed displacements that the step makes up for.
+    pub(crate) missing: &'a SparseVector,
+    /// The last contact solution.
+    pub(crate) guess: Option<&'a ContactSolution<D>>,
+    /// A load q of unknown factor, and c and m of q·u + c λ = m.
+    pub(crate) border: Option<(&'a SparseVector, f64, f64)>,
+    /// Residual that the contact solution may keep \[N\].
+    pub(crate) enough: f64,
+}
+
+/// Its solution.
+pub(crate) struct Answer<const D: usize> {
+    pub(crate) solution: ContactSolution<D>,
+    /// Displacements of the step, at every degree of freedom.
+    pub(crate) step: Vec<f64>,
+    /// What the step adds to the unknown factor of a load.
+    pub(crate) growth: f64,
+}
+
+impl<const D: usize> Driver<D> {
+    /// Solves a linearised increment under a load at every degree of freedom \[N\].
+    pub(crate) fn answer(
+        &self,
+        system: &mut System,
+        linearised: &Linearised<'_, D>,
+        load: Vec<f64>,
+        counts: &mut Counts,
+    ) -> Result<Answer<D>, StepError> {
+        let answer = match system.is_tied() {
+            true => self.answer_tied(system, linearised, load, counts)?,
+            false => self.answer_condensed(system, linearised, load, counts)?,
+        };
+        counts.contact += answer.solution.iterations;
+        counts.last_contact = answer.solution.iterations;
+        Ok(answer)
+    }
+
+    fn answer_tied(
+        &self,
+        system: &mut System,
+        linearised: &Linearised<'_, D>,
+        load: Vec<f64>,
+        counts: &mut Counts,
+    ) -> Result<Answer<D>, StepError> {
+        let kinematics = linearised.kinematics;
+        let iteration = counts.newton;
+        let contact = |source: ContactError| StepError::Contact { iteration, source };
+        let mut step = vec![0.0; load.len()];
+        linearised.missing.add_to(&mut step, 1.0);
+        let (stiffest, floats) = (system.shift(), system.floats);
+        let loading = linearised.loading;
+        let mut tied = Tied::new(self, system, kinematics, &load, linearised.border);
+        let method = self.settings.contact.springs();
+        let (compliance, tolerance) = method.ok_or(ContactError::Singular).map_err(contact)?;
+        let previous = self.previous_forces(kinematics);
+        let last = match linearised.guess {
+            Some(s) if counts.newton > 1 => &s.force,
+            _ => &previous,
+        };
+        let suspended = tied.suspended(self, kinematics);
+        let springs: Vec<Springs<D>> = (0..previous.len())
+            .map(|i| Springs {
+                compliance: compliance + suspended[i],
+                force: Local::from_fn(|j, _| match suspended[i][j] > 0.0 {
+                    true => last[i][j],
+                    false => {
+                        if j > 0 {
+                            previous[i][j]
+                        } else {
+                            0.0
+                        }
+                    }
+                }),
+            })
+            .collect();
+        let largest_load = tied.largest_load();
+        let given = previous
+            .iter()
+            .map(|t| t.norm())
+            .fold(largest_load, f64::max);
+        let mut solve = |c: f64, enough: f64| {
+            tied.hold(c);
+            let mut problem = TiedProblem {
+                structure: &mut tied,
+                origin: kinematics.iter().map(|k| k.u).collect(),
+                friction: kinematics.iter().map(|k| k.law).collect(),
+                springs: springs.clone(),
+                load: largest_load,
+                previous: previous.clone(),
+            };
+            solve_tied(&mut problem, linearised.guess, (tolerance, enough))
+        };
+        let determined = |(s, z): (ContactSolution<D>, DVector<f64>)| match floats
+            && !self.is_held(loading, &s.status)
+        {
+            true => Err(ContactError::Singular),
+            false => Ok((s, z)),
+        };
+        let (mut solution, z) = solve(0.0, linearised.enough)
+            .and_then(determined)
+            .or_else(|error| {
+                counts.undetermined |= error == ContactError::Singular;
+                nearest(error, stiffest, |c| {
+                    let (solution, z) = solve(c, 0.0)?;
+                    let scale = solution
+                        .force
+                        .iter()
+                        .map(|t| t.norm())
+                        .fold(given, f64::max);
+                    Ok((solution, z, scale))
+                })
+            })
+            .map_err(contact)?;
+        // The law holds where the springs of what is suspended end, not where the bodies are.
+        let own = solution.displacement.iter_mut().zip(&solution.irreversible);
+        for ((u, obeys), c) in own.zip(&suspended) {
+            (0..D).filter(|&j| c[j] > 0.0).for_each(|j| u[j] = obeys[j]);
+        }
+        counts.contact_solves += tied.solves;
+        let growth = tied.expand(&z, &mut step)?;
+        Ok(Answer {
+            solution,
+            step,
+            growth,
+        })
+    }
+
+    fn answer_condensed(
+        &self,
+        system: &mut System,
+        linearised: &Linearised<'_, D>,
+        load: Vec<f64>,
+        counts: &mut Counts,
+    ) -> Result<Answer<D>, StepError> {
+        let (kinematics, guess) = (linearised.kinematics, linearised.guess);
+        let mut step = vec![0.0; load.len()];
+        linearised.missing.add_to(&mut step, 1.0);
+        let mut condensed = system.condense(load);
+        let border = linearised.border.map(|(load, compliance, missing)| {
+            system.border(&mut condensed, load, (compliance, missing))
+        });
+        let iteration = counts.newton;
+        let contact = |source: ContactError| StepError::Contact { iteration, source };
+        let clock = Instant::now();
+        let points = (self.points.as_slice(), self.footings.as_slice());
+        let seam = (std::mem::take(&mut condensed.stiffness), &condensed.load);
+        let previous = self.previous_forces(kinematics);
+        let force = match guess {
+            Some(s) if counts.newton > 1 => s.force.clone(),
+            _ => previous.clone(),
+        };
+        let mut condensation =
+            Condensation::new(system, seam, points, kinematics, (previous, &force))
+                .map_err(contact)?;
+        let problem = &mut condensation.problem;
+        let method = &self.settings.contact;
+        let solution = method
+            .approach(problem, guess, linearised.enough)
+            .or_else(|error| {
+                counts.undetermined = true;
+                let found = nearest(error, system.shift(), |c| {
+                    problem.hold(c);
+                    let solution = method.solve(problem, guess)?;
+                    let scale = problem.force_scale(&solution.force);
+                    Ok((solution, (), scale))
+                });
+                found.map(|(solution, ())| solution)
+            })
+            .map_err(contact)?;
+        system.timings.contact += clock.elapsed();
+        // On a path the stiffness is not that of the structure alone.
+        counts.criticality = (border.is_none())
+            .then(|| condensation.problem.criticality(&solution.status))
+            .flatten();
+        let x = condensation.interface(&solution.motion);
+        let growth = border.map_or(0.0, |b| system.factor(&b, &mut condensed, &x));
+        let target = self.contact_forces(kinematics, &solution.force);
+        // A load of unknown factor is found with the interface.
+        let yielding = (!system.is_direct() && linearised.border.is_none())
+            .then(|| condensation.yielding(&solution.status))
+            .flatten();
+        let give = yielding
+            .as_ref()
+            .map(|y| |g: &DVector<f64>| y.displacement(g));
+        let interface = match &give {
+            Some(give) => Interface::Yields(give),
+            None => Interface::Held,
+        };
+        system.expand(condensed, &x, (&target, interface), &mut step)?;
+        Ok(Answer {
+            solution,
+            step,
+            growth,
+        })
+    }
+}
+
+/// A contact problem that is singular, as where all that touches slips or nothing is left to press: of its
+/// solutions, which differ by a rigid motion, the one nearest to where the bodies are, found with a proximal
+/// term c. There is none where a body falls or slides away: what holds it here would have to carry its
+/// load, of which `scale` tells the size.
+fn nearest<const D: usize, T>(
+    error: ContactError,
+    stiffest: f64,
+    mut solve: impl FnMut(f64) -> Result<(ContactSolution<D>, T, f64), ContactError>,
+) -> Result<(ContactSolution<D>, T), ContactError> {
+    if error != ContactError::Singular {
+        return Err(error);
+    }
+    for c in SOFT.map(|part| part * stiffest) {
+        let Ok((solution, other, scale)) = solve(c) else {
+            continue;
+        };
+        let motion = largest(solution.motion.iter().flatten().copied());
+        let carries = c * motion > CARRIED * scale;
+        return if carries {
+            Err(error)
+        } else {
+            Ok((solution, other))
+        };
+    }
+    Err(error)
+}

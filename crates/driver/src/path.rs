@@ -1,0 +1,7 @@
+//! The sequence of increments, and where it ends: collapse and buckling; not one increment.
+
+pub(crate) mod buckling;
+pub(crate) mod increments;
+pub(crate) mod loading;
+pub(crate) mod mechanism;
+pub(crate) mod ramp;

@@ -1,0 +1,124 @@
+//! What a step asks of a model, degree of freedom by degree of freedom; not the conditions of a step
+//! themselves.
+
+use crate::driver::Driver;
+use crate::error::ModelError;
+use crate::model::load::{Condition, Loading, Step, axis_letter};
+use crate::model::points::tool_index;
+use std::collections::BTreeMap;
+
+impl<const D: usize> Driver<D> {
+    /// The loading at the end of a step.
+    ///
+    /// # Errors
+    /// Unknown groups and tools, displacements prescribed twice, numbers that are not finite.
+    pub fn loading(&self, step: &Step<D>) -> Result<Loading<D>, ModelError> {
+        let mesh = &self.mesh;
+        let mut loading = Loading::default();
+        let mut add = |node: usize, share: f64, vector: &[f64; D]| {
+            for i in 0..D {
+                loading.force.add(D * node + i, share * vector[i]);
+            }
+        };
+        let mut moved: BTreeMap<usize, f64> = BTreeMap::new();
+        for condition in &step.conditions {
+            match condition {
+                Condition::Displace { on, axis, value } => {
+                    if axis.index() >= D {
+                        return Err(ModelError::OutOfRange {
+                            what: format!("direction of the displacement of {on:?}"),
+                            value: axis.index() as f64,
+                            expected: "a direction below the dimension of the model",
+                        });
+                    }
+                    for node in mesh.node_group(on)? {
+                        let dof = D * node + axis.index();
+                        if let Some(&first) = moved.get(&dof)
+                            && first != *value
+                        {
+                            return Err(ModelError::TwoDisplacements {
+                                step: step.name.clone(),
+                                node,
+                                axis: axis_letter(axis.index()),
+                                first,
+                                second: *value,
+                            });
+                        }
+                        moved.insert(dof, *value);
+                    }
+                }
+                Condition::Force { on, force } => {
+                    let nodes = mesh.node_group(on)?;
+                    for &node in &nodes {
+                        add(node, 1.0 / nodes.len() as f64, force);
+                    }
+                }
+                Condition::Pressure { on, pressure } => {
+                    for s in self.measure.facet_shares(mesh, mesh.facet_group(on)?) {
+                        add(s.node, -pressure, &s.normal);
+                    }
+                }
+                Condition::Traction { on, traction } => {
+                    for s in self.measure.facet_shares(mesh, mesh.facet_group(on)?) {
+                        add(s.node, s.area, traction);
+                    }
+                }
+                Condition::BodyForce { on, density } => {
+                    for (node, share) in self.measure.volume_shares(mesh, mesh.cell_group(on)?) {
+                        add(node, share, density);
+                    }
+                }
+                Condition::Tool { .. } | Condition::Push { .. } => {}
+            }
+        }
+        // A tool that is not mentioned stays where it is.
+        let tools = self.mesh_dofs()..self.state.displacement.len();
+        moved.extend(tools.map(|dof| (dof, self.state.displacement[dof])));
+        for condition in &step.conditions {
+            if let Condition::Tool { name, displacement } = condition {
+                let node = self.tool_node(tool_index(&self.tools, name)?);
+                moved.extend((0..D).map(|i| (D * node + i, displacement[i])));
+            }
+        }
+        for condition in &step.conditions {
+            if let Condition::Push { name, axis, force } = condition {
+                let node = self.tool_node(tool_index(&self.tools, name)?);
+                let translations = self.measure.rigid_modes(&[0.0; D]);
+                if !translations
+                    .iter()
+                    .any(|m| m.get(axis.index()) == Some(&1.0))
+                {
+                    return Err(ModelError::OutOfRange {
+                        what: format!("direction of the force on tool {name:?}"),
+                        value: axis.index() as f64,
+                        expected: "a direction in which the analysis lets a tool move",
+                    });
+                }
+                moved.remove(&(D * node + axis.index()));
+                loading.force.add(D * node + axis.index(), *force);
+            }
+        }
+        loading.displacement = moved;
+        loading.check(self.mesh.nodes().len(), self.state.displacement.len())?;
+        Ok(loading)
+    }
+
+    /// The loading that holds now, with the prescribed displacements of `end`: those that are new
+    /// start where the body is, and the reactions of those released become forces.
+    pub(crate) fn start_of(&self, end: &Loading<D>) -> Loading<D> {
+        let state = &self.state;
+        let mut start = state.loading.clone();
+        for dof in state.loading.displacement.keys() {
+            if !end.displacement.contains_key(dof) {
+                let reaction = self.nodal_reaction(dof / D)[dof % D];
+                start.force.add(*dof, reaction);
+            }
+        }
+        start.displacement = end
+            .displacement
+            .keys()
+            .map(|&dof| (dof, state.displacement[dof]))
+            .collect();
+        start
+    }
+}

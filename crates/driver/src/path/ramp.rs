@@ -1,0 +1,480 @@
+//! A step under way: increments in sequence, halved where they fail; not the increment itself.
+
+use crate::driver::Driver;
+use crate::error::ModelError;
+use crate::error::StepError;
+use crate::model::load::{Loading, Step};
+use crate::newton::control::Control;
+use crate::path::increments::Increments;
+use crate::report::collapse::Collapse;
+use crate::report::{Iteration, StepReport};
+use crate::saved::{Reader, write_loading};
+use crate::settings::Nesting;
+use crate::vector::SparseVector;
+use crate::vector::largest;
+
+/// A step under way: the loadings at both of its ends, and how far it has come.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ramp<const D: usize> {
+    step: String,
+    start: Loading<D>,
+    end: Loading<D>,
+    increments: Increments,
+    /// Equal pieces done: counted, so that their ends are exact multiples of the base.
+    whole: usize,
+    done: f64,
+    /// Length of the next attempt.
+    length: f64,
+    /// Easy increments in a row.
+    easy: usize,
+    /// Times that the next increment has been halved.
+    cuts: usize,
+    /// Plastic fraction of the last converged increment.
+    plastic_fraction: f64,
+    /// Work of the loads at the end of the step on the displacements of the step so far \[N·mm\].
+    work: f64,
+    /// How the structure yielded to the loads in the last two increments, the last one first.
+    yielded: [Option<Yielded>; 2],
+    /// The load factor as an unknown, once that is what it takes.
+    path: Option<Path>,
+}
+
+/// Stiffness against the loads of a step in an increment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Yielded {
+    /// Mean of λ.
+    factor: f64,
+    /// Δλ over the work of the whole loads on the displacements of the increment \[1/(N·mm)\].
+    stiffness: f64,
+}
+
+impl Yielded {
+    /// The increment from λ = `before` to `after`, in which the loads of the whole step do `work`
+    /// \[N·mm\]; `None` where they do none.
+    fn between(before: f64, after: f64, work: f64) -> Option<Self> {
+        (work > 0.0).then(|| Self {
+            factor: 0.5 * (before + after),
+            stiffness: (after - before) / work,
+        })
+    }
+
+    /// Where two increments in a row tend to if λ = λ∞ − A/(w + w₀) over the work w: the square root of
+    /// the stiffness is then linear in λ, and zero at λ∞. `None` where nothing yields.
+    fn limit(first: Self, last: Self) -> Option<f64> {
+        let roots = [first, last].map(|y| y.stiffness.sqrt());
+        let softer = roots[1] < (1.0 - SOFTER) * roots[0] && last.factor > first.factor;
+        softer.then(|| {
+            let ahead = roots[1] / (roots[0] - roots[1]);
+            last.factor + (last.factor - first.factor) * ahead
+        })
+    }
+}
+
+/// How the path of equilibria is followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Path {
+    /// Compliance of the spring that the loads are applied through \[N·mm\].
+    compliance: f64,
+    /// Motion of its far end in the next attempt \[N·mm\].
+    length: f64,
+    /// Δλ of the last increment.
+    last: f64,
+    /// The largest λ so far.
+    peak: f64,
+    /// [`Collapse::growth`] in the last increment; infinite before the first.
+    growth: f64,
+    /// Whether that was the end.
+    ended: bool,
+}
+
+/// Least relative loss of the root of the stiffness from which a limit load is estimated.
+const SOFTER: f64 = 0.02;
+
+/// Compliance of the spring, over that of the structure: small, to stay on the path where the
+/// structure softens.
+const SPRING: f64 = 1e-2;
+
+/// Times that an increment is halved at most where a tool moves through a body.
+const MOST_CUTS: usize = 30;
+
+impl<const D: usize> Ramp<D> {
+    /// Part of the step that has been done, in [0, 1].
+    pub fn done(&self) -> f64 {
+        self.done
+    }
+
+    /// Whether the step is done.
+    pub fn is_done(&self) -> bool {
+        self.whole >= self.increments.pieces()
+    }
+
+    /// Appends all that [`Ramp::read`] needs.
+    pub fn write(&self, out: &mut Vec<f64>) {
+        write_loading(&self.start, out);
+        write_loading(&self.end, out);
+        out.extend([self.whole as f64, self.done, self.length]);
+        out.extend([self.easy as f64, self.cuts as f64, self.plastic_fraction]);
+        out.extend([self.work, f64::from(u8::from(self.path.is_some()))]);
+        for y in self.yielded {
+            let numbers = |y: Yielded| [1.0, y.factor, y.stiffness];
+            out.extend(y.map_or([0.0; 3], numbers));
+        }
+        if let Some(p) = &self.path {
+            out.extend([p.compliance, p.length, p.last, p.peak, p.growth]);
+            out.push(f64::from(u8::from(p.ended)));
+        }
+    }
+
+    /// The ramp of a step in the increments that it began with, as [`Ramp::write`] left it.
+    ///
+    /// # Errors
+    /// [`ModelError::Saved`] for numbers that are too few.
+    pub fn read(
+        step: &Step<D>,
+        increments: Increments,
+        from: &mut Reader<'_>,
+    ) -> Result<Self, ModelError> {
+        let mut ramp = Self {
+            step: step.name.clone(),
+            start: from.loading()?,
+            end: from.loading()?,
+            increments,
+            whole: from.count()?,
+            done: from.number()?,
+            length: from.number()?,
+            easy: from.count()?,
+            cuts: from.count()?,
+            plastic_fraction: from.number()?,
+            work: from.number()?,
+            yielded: [None; 2],
+            path: None,
+        };
+        let on_path = from.count()? == 1;
+        for y in &mut ramp.yielded {
+            let (known, factor, stiffness) = (from.count()?, from.number()?, from.number()?);
+            *y = (known == 1).then_some(Yielded { factor, stiffness });
+        }
+        if on_path {
+            ramp.path = Some(Path {
+                compliance: from.number()?,
+                length: from.number()?,
+                last: from.number()?,
+                peak: from.number()?,
+                growth: from.number()?,
+                ended: from.count()? == 1,
+            });
+        }
+        Ok(ramp)
+    }
+}
+
+impl<const D: usize> Ramp<D> {
+    /// The loads of the whole step \[N\].
+    fn load(&self) -> SparseVector {
+        self.end
+            .force
+            .with(&self.start.force, |end, start| end - start)
+    }
+
+    /// Whether something that the step prescribes is moved.
+    fn moves(&self) -> bool {
+        self.start.displacement != self.end.displacement
+    }
+
+    /// Takes note of an increment from λ = `before`, and of the work that the loads of the whole step
+    /// did in it.
+    fn converged(&mut self, report: &StepReport, before: f64, work: f64) {
+        let yielded = Yielded::between(before, report.fraction, work);
+        self.yielded = [yielded, self.yielded[0]];
+        self.cuts = 0;
+        self.plastic_fraction = report.plastic_fraction;
+        self.work += work;
+    }
+
+    /// The load factor that the last two increments tend to, no less than what was reached; `None` where
+    /// nothing yields, or something is moved.
+    fn estimated_limit(&self) -> Option<f64> {
+        let [Some(last), Some(first)] = self.yielded else {
+            return None;
+        };
+        let limit = Yielded::limit(first, last).filter(|_| !self.moves());
+        limit.map(|limit| limit.max(self.done))
+    }
+
+    /// The error of a step that has been cut as far as allowed.
+    fn stopped(&self, cause: StepError, smallest: f64) -> StepError {
+        let last = self.plastic_fraction;
+        let plastic_fraction = match &cause {
+            StepError::NotConverged {
+                plastic_fraction, ..
+            } => plastic_fraction.max(last),
+            _ => last,
+        };
+        StepError::Stopped {
+            step: self.step.clone(),
+            reached: self.done,
+            smallest,
+            plastic_fraction,
+            limit: self.estimated_limit(),
+            moves: self.moves(),
+            cause: Box::new(cause),
+        }
+    }
+}
+
+impl<const D: usize> Driver<D> {
+    /// Begins a step in a number of equal increments or in [`Increments`]; none is applied yet.
+    ///
+    /// # Errors
+    /// See [`Driver::loading`].
+    pub fn begin(
+        &self,
+        step: &Step<D>,
+        increments: impl Into<Increments>,
+    ) -> Result<Ramp<D>, ModelError> {
+        let end = self.loading(step)?;
+        let increments = increments.into();
+        Ok(Ramp {
+            step: step.name.clone(),
+            start: self.start_of(&end),
+            end,
+            increments,
+            whole: 0,
+            done: 0.0,
+            length: increments.start,
+            easy: 0,
+            cuts: 0,
+            plastic_fraction: 0.0,
+            work: 0.0,
+            yielded: [None; 2],
+            path: None,
+        })
+    }
+
+    /// Applies the next increment of a step, halving it as often as it takes, and doubling again
+    /// after one that converges, as [`Increments`] say; `watch` sees every iterate of every attempt.
+    ///
+    /// Where only loads grow and an increment of theirs fails, their factor becomes an unknown: the
+    /// step goes along the path of equilibria, on to its end or to collapse.
+    /// [`StepReport::fraction`] is then that factor.
+    ///
+    /// # Errors
+    /// [`StepError::Collapse`] where displacements grow at a constant load;
+    /// [`StepError::Stopped`] when the increment has been halved as often as the settings allow;
+    /// what converged before is kept. [`StepError::Model`] for a step that makes no sense.
+    pub fn proceed(
+        &mut self,
+        ramp: &mut Ramp<D>,
+        watch: &mut dyn FnMut(&Iteration<'_>),
+    ) -> Result<StepReport, StepError> {
+        // One that was read may be of another model.
+        let (nodes, dofs) = (self.mesh.nodes().len(), self.state.displacement.len());
+        ramp.start.check(nodes, dofs)?;
+        ramp.end.check(nodes, dofs)?;
+        let pieces = ramp.increments.pieces();
+        let base = 1.0 / pieces as f64;
+        loop {
+            if let Some(path) = ramp.path {
+                return self.follow(ramp, path, watch);
+            }
+            let next = (ramp.whole + 1) as f64 * base;
+            let at_end = ramp.done + ramp.length >= next - 1e-9 * base;
+            let target = match at_end {
+                true if ramp.whole + 1 >= pieces => 1.0,
+                true => next,
+                false => ramp.done + ramp.length,
+            };
+            let loading = ramp.start.towards(&ramp.end, target);
+            let cuts = ramp.cuts;
+            let watch = &mut |i: &Iteration<'_>| watch(&Iteration { cuts, ..*i });
+            match self.advance_watched(&loading, watch) {
+                Ok(mut report) => {
+                    report.fraction = target;
+                    report.cuts = cuts;
+                    let before = std::mem::replace(&mut ramp.done, target);
+                    ramp.whole += usize::from(at_end);
+                    let iterations = report.newton_iterations;
+                    ramp.length = ramp
+                        .increments
+                        .next(ramp.length, &mut ramp.easy, iterations);
+                    ramp.converged(&report, before, self.last_work(&ramp.load()));
+                    return Ok(report);
+                }
+                Err(error @ StepError::Model(_)) => return Err(error),
+                Err(cause) => {
+                    // Halved exactly, and until it is not what has just failed.
+                    ramp.length *= 0.5;
+                    while ramp.length >= (1.0 - 1e-9) * (target - ramp.done) {
+                        ramp.length *= 0.5;
+                    }
+                    ramp.cuts += 1;
+                    // How far contact can follow is known, and shorter increments get there.
+                    let follows = matches!(cause, StepError::Passage { .. });
+                    let cuts = if follows {
+                        MOST_CUTS
+                    } else {
+                        self.settings.cuts
+                    };
+                    let fewest = ramp.increments.start * 0.5f64.powi(cuts as i32);
+                    let smallest = ramp.increments.min.unwrap_or(fewest);
+                    ramp.path = self.path(ramp).filter(|_| !follows);
+                    if ramp.path.is_none() && ramp.length < smallest {
+                        let stopped = ramp.stopped(cause, 2.0 * ramp.length);
+                        return Err(self.loose_tool(&ramp.end).map_or(stopped, Into::into));
+                    }
+                }
+            }
+        }
+    }
+
+    /// The path of a step that moves nothing, from after its first increment on.
+    fn path(&self, ramp: &Ramp<D>) -> Option<Path> {
+        let moves = ramp.moves();
+        let (last, before) = self.state.last.as_ref()?;
+        let load = ramp.load();
+        let square = load.inner(&load);
+        if moves
+            || self.settings.nesting != Nesting::Inside
+            || !(ramp.done > 0.0 && square > 0.0 && ramp.work > 0.0)
+        {
+            return None;
+        }
+        let factor = before.force.inner(&load) / square;
+        let compliance = SPRING * ramp.work / ramp.done;
+        let length = load.dot(last) + compliance * factor;
+        (length > 0.0).then_some(Path {
+            compliance,
+            length,
+            last: factor,
+            peak: ramp.done,
+            growth: f64::INFINITY,
+            ended: false,
+        })
+    }
+
+    /// Applies the next increment along a path, halved as often as it takes.
+    fn follow(
+        &mut self,
+        ramp: &mut Ramp<D>,
+        mut path: Path,
+        watch: &mut dyn FnMut(&Iteration<'_>),
+    ) -> Result<StepReport, StepError> {
+        let load = ramp.load();
+        if path.ended {
+            return Err(StepError::Collapse {
+                step: ramp.step.clone(),
+                collapse: Collapse {
+                    load_factor: path.peak,
+                    growth: path.growth,
+                    upper_bound: self.upper_bound(&load, ramp.done),
+                },
+            });
+        }
+        let mut halved = 0;
+        loop {
+            let mut control = Control {
+                factor: ramp.done,
+                load: &load,
+                start: ramp.done,
+                last: path.last,
+                compliance: path.compliance,
+                length: path.length,
+            };
+            let cuts = ramp.cuts;
+            let watch = &mut |i: &Iteration<'_>| watch(&Iteration { cuts, ..*i });
+            let mut outcome = self.advance_along(&mut control, watch);
+            let done = control.factor;
+            if let Ok(None) = outcome {
+                // The path passes the end of the step: to the end, then.
+                let end = ramp.end.clone();
+                outcome = self.advance_watched(&end, watch).map(|mut report| {
+                    report.fraction = 1.0;
+                    ramp.whole = ramp.increments.pieces();
+                    Some(report)
+                });
+            } else if let Ok(Some(report)) = &mut outcome {
+                report.fraction = done;
+            }
+            match outcome {
+                Ok(Some(mut report)) => {
+                    report.cuts = cuts;
+                    let work = self.last_work(&load);
+                    let before = std::mem::replace(&mut ramp.done, report.fraction);
+                    ramp.converged(&report, before, work);
+                    path.last = report.fraction - before;
+                    path.peak = path.peak.max(report.fraction);
+                    path.growth = path.last * (ramp.work / work).abs() / path.peak;
+                    let moved = &self.state.displacement[..self.mesh_dofs()];
+                    let motion = largest(moved.iter().copied());
+                    path.ended = path.growth <= Collapse::FLAT || motion > self.mesh.size();
+                    if report.newton_iterations <= 2 * Increments::EASY && halved == 0 {
+                        path.length *= 2.0;
+                    }
+                    ramp.path = Some(path);
+                    return Ok(report);
+                }
+                Err(error @ StepError::Model(_)) => return Err(error),
+                Ok(None) => {}
+                Err(cause) => {
+                    path.length *= 0.5;
+                    ramp.path = Some(path);
+                    ramp.cuts += 1;
+                    halved += 1;
+                    if halved > self.settings.cuts {
+                        let stopped = ramp.stopped(cause, path.last.abs());
+                        return Err(self.loose_tool(&ramp.end).map_or(stopped, Into::into));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Work of loads on the displacements of the last increment \[N·mm\].
+    fn last_work(&self, load: &SparseVector) -> f64 {
+        self.state
+            .last
+            .as_ref()
+            .map_or(0.0, |(d_u, _)| load.dot(d_u))
+    }
+
+    /// Applies a step in a number of equal increments or in [`Increments`] to its end, as [`Driver::proceed`] does. `observe` sees
+    /// the driver after every converged increment.
+    ///
+    /// # Errors
+    /// See [`Driver::begin`] and [`Driver::proceed`].
+    pub fn run(
+        &mut self,
+        step: &Step<D>,
+        increments: impl Into<Increments>,
+        mut observe: impl FnMut(&Self, &StepReport),
+    ) -> Result<Vec<StepReport>, StepError> {
+        let mut ramp = self.begin(step, increments)?;
+        let mut reports = Vec::new();
+        while !ramp.is_done() {
+            let report = self.proceed(&mut ramp, &mut |_| {})?;
+            observe(self, &report);
+            reports.push(report);
+        }
+        Ok(reports)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// λ = 1 − A/(w + w₀) in three steps of λ, whose ends and not whose means would be a hundredth off.
+    #[test]
+    fn two_increments_of_a_hyperbola_tend_to_its_limit() {
+        let (a, w0) = (0.6, 0.9);
+        let work = |factor: f64| a / (1.0 - factor) - w0;
+        let of = |before: f64, after: f64| {
+            Yielded::between(before, after, work(after) - work(before)).expect("work is done")
+        };
+        let limit = Yielded::limit(of(0.70, 0.72), of(0.72, 0.74)).expect("it yields");
+        assert!((limit - 1.0).abs() < 1e-3, "{limit}");
+        assert_eq!(Yielded::between(0.2, 0.4, 0.0), None);
+        let elastic = Yielded::between(0.0, 0.2, 3.0).expect("work is done");
+        assert_eq!(Yielded::limit(elastic, elastic), None);
+    }
+}
