@@ -94,11 +94,15 @@ pub(crate) fn largest(values: impl Iterator<Item = f64>) -> f64 {
     })
 }
 
-/// Forces less the internal ones, at every degree of freedom \[N\]; zero at those held.
-pub(crate) fn imbalance(internal: &[f64], forces: &[&SparseVector], held: &[usize]) -> Vec<f64> {
+/// Forces less the internal ones, at every degree of freedom \[N\]; zero at those prescribed.
+pub(crate) fn residual(
+    internal: &[f64],
+    forces: &[&SparseVector],
+    prescribed: &[usize],
+) -> Vec<f64> {
     let mut left: Vec<f64> = internal.iter().map(|f| -f).collect();
     forces.iter().for_each(|f| f.add_to(&mut left, 1.0));
-    held.iter().for_each(|&d| left[d] = 0.0);
+    prescribed.iter().for_each(|&dof| left[dof] = 0.0);
     left
 }
 

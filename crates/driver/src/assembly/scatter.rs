@@ -129,7 +129,7 @@ impl Scatter {
 
 /// Hands on the stiffness of a cell between its unknowns and its prescribed displacements: the
 /// degrees of freedom of the one and of the other, and the entry.
-pub(crate) fn couplings<const D: usize>(
+pub(crate) fn prescribed_columns<const D: usize>(
     cell: &CellResult<'_>,
     position: &[u32],
     sink: &mut dyn FnMut(usize, usize, f64),

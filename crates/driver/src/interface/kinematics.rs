@@ -4,10 +4,7 @@ use crate::driver::Driver;
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::model::points::{ContactPoint, Footing, Kinematics};
-use crate::newton::iterate::slack;
 use crate::vector::SparseVector;
-use crate::vector::largest;
-use moreau_contact::ContactSolution;
 use moreau_laws::Local;
 use nalgebra::SVector;
 
@@ -92,36 +89,5 @@ impl<const D: usize> Driver<D> {
             }
         }
         forces
-    }
-
-    /// Whether gaps and slips of the displacements themselves obey the law with the forces of the
-    /// linearised problem: once that is solved exactly, they do on a plane, and on a curved obstacle
-    /// where the step is small.
-    pub(crate) fn law_holds(
-        &self,
-        system: &System,
-        kinematics: &[Kinematics<D>],
-        solution: &ContactSolution<D>,
-        scale: f64,
-    ) -> bool {
-        let stiffness = system.shift();
-        // Below this the difference of two positions is rounding.
-        let (low, high) = self.mesh.bounds();
-        let reach = largest(low.iter().chain(&high).copied());
-        let rounding = 16.0 * f64::EPSILON * reach * stiffness;
-        let tolerance = self.settings.tolerance * scale + slack(solution) + rounding;
-        let holds = |i: usize| {
-            let elastic = solution.irreversible[i] - solution.displacement[i];
-            let mut u = kinematics[i].u + elastic;
-            let mut t = solution.force[i];
-            for j in 0..D {
-                if !kinematics[i].active[j] {
-                    (u[j], t[j]) = (0.0, 0.0);
-                }
-            }
-            // α of the size of the structure's stiffness, as in the contact problem.
-            kinematics[i].law.natural_map(&u, &t, stiffness).norm() <= tolerance
-        };
-        solution.exact && (0..kinematics.len()).all(holds)
     }
 }

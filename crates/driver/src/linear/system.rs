@@ -3,13 +3,13 @@
 
 use crate::assembly::block::{Block, Stiffness};
 use crate::assembly::numbering::Numbering;
-use crate::assembly::scatter::{FIXED, Scatter, couplings};
+use crate::assembly::scatter::{FIXED, Scatter, prescribed_columns};
 use crate::error::ModelError;
 use crate::linear::coarse::Coarse;
 use crate::settings::Seam;
 use crate::timings::{Timings, timed};
 use crate::vector::SparseVector;
-use crate::vector::imbalance;
+use crate::vector::residual;
 use moreau_algebra::Matrix;
 use moreau_algebra::{Cholesky, NotPositiveDefinite, Pattern, TooLarge};
 use moreau_mesh::Mesh;
@@ -33,6 +33,8 @@ pub(crate) struct System {
     position: Vec<u32>,
     /// Degree of freedom at a position.
     dofs: Vec<usize>,
+    /// The degrees of freedom without one, ascending.
+    prescribed: Vec<usize>,
     /// Number of interface unknowns: the last of the system.
     interface: usize,
     /// A node of the interface that no contact point needs.
@@ -41,7 +43,7 @@ pub(crate) struct System {
     scatter: Vec<Scatter>,
     /// Entries of the elastic K that is kept between an unknown and a prescribed displacement: their
     /// degrees of freedom.
-    couplings: Vec<(usize, usize, f64)>,
+    prescribed_columns: Vec<(usize, usize, f64)>,
     /// Whether the elastic stiffness is kept, so that only what flow adds to it is assembled anew.
     keeps_elastic: bool,
     /// K.
@@ -74,7 +76,7 @@ pub(crate) struct Assembly {
     /// ∫ Bᵀσ dΩ at every degree of freedom \[N\].
     pub(crate) internal: Vec<f64>,
     /// K times the prescribed displacements that are still missing \[N\]; empty if none are.
-    pub(crate) coupling: Vec<f64>,
+    pub(crate) prescribed_load: Vec<f64>,
     /// Whether plastic strain grows anywhere.
     pub(crate) flows: bool,
     /// Whether the system has the stiffness that belongs to these forces.
@@ -82,12 +84,11 @@ pub(crate) struct Assembly {
 }
 
 impl Assembly {
-    /// The load of a Newton step under forces, at every degree of freedom \[N\]; it uses the coupling
-    /// up.
-    pub(crate) fn load(&mut self, forces: &[&SparseVector]) -> Vec<f64> {
-        let mut load = imbalance(&self.internal, forces, &[]);
-        let pairs = load.iter_mut().zip(std::mem::take(&mut self.coupling));
-        pairs.for_each(|(f, coupling)| *f -= coupling);
+    /// The load of a Newton step under forces, at every degree of freedom \[N\].
+    pub(crate) fn load(&self, forces: &[&SparseVector]) -> Vec<f64> {
+        let mut load = residual(&self.internal, forces, &[]);
+        let pairs = load.iter_mut().zip(&self.prescribed_load);
+        pairs.for_each(|(f, prescribed)| *f -= prescribed);
         load
     }
 }
@@ -248,12 +249,15 @@ impl System {
                 room: gigabytes(room),
             })?;
         Ok(Self {
+            prescribed: (0..position.len())
+                .filter(|&dof| position[dof] == FIXED)
+                .collect(),
             position,
             dofs,
             interface,
             pivot,
             scatter,
-            couplings: Vec::new(),
+            prescribed_columns: Vec::new(),
             keeps_elastic: pattern.entries() <= KEPT,
             matrix: Matrix::new(pattern),
             coarse,
@@ -297,10 +301,8 @@ impl System {
     }
 
     /// The degrees of freedom that are prescribed, ascending.
-    pub(crate) fn held_dofs(&self) -> Vec<usize> {
-        (0..self.position.len())
-            .filter(|&dof| !self.is_free(dof))
-            .collect()
+    pub(crate) fn prescribed(&self) -> &[usize] {
+        &self.prescribed
     }
 
     /// σ \[N/mm\]: of the size of the elastic stiffness of an interface node.
@@ -329,12 +331,12 @@ impl System {
             self.matrix.reset();
             self.coarse.iter_mut().for_each(|c| c.matrix.reset());
         }
-        let mut coupling = Vec::new();
+        let mut prescribed_load = Vec::new();
         let missing = (!missing.is_zero()).then_some(missing);
         if let Some(missing) = missing {
-            coupling.resize(d_u.len(), 0.0);
-            for &(unknown, prescribed, k) in &self.couplings {
-                coupling[unknown] += k * missing.at(prescribed);
+            prescribed_load.resize(d_u.len(), 0.0);
+            for &(unknown, prescribed, k) in &self.prescribed_columns {
+                prescribed_load[unknown] += k * missing.at(prescribed);
             }
         }
         let (position, coarse) = (&self.position, &mut self.coarse);
@@ -350,8 +352,8 @@ impl System {
                     coarse.add(k, &cell);
                 }
                 if let Some(missing) = missing {
-                    couplings::<D>(&cell, position, &mut |unknown, prescribed, k| {
-                        coupling[unknown] += k * missing.at(prescribed);
+                    prescribed_columns::<D>(&cell, position, &mut |unknown, prescribed, k| {
+                        prescribed_load[unknown] += k * missing.at(prescribed);
                     });
                 }
             });
@@ -362,7 +364,7 @@ impl System {
         self.timings.assembly += clock.elapsed();
         Assembly {
             internal,
-            coupling,
+            prescribed_load,
             flows,
             stiffness: with_stiffness,
         }
@@ -378,13 +380,13 @@ impl System {
         let clock = Instant::now();
         let rest = vec![0.0; self.position.len()];
         let keeps = self.keeps_elastic;
-        let (position, all) = (&self.position, &mut self.couplings);
+        let (position, all) = (&self.position, &mut self.prescribed_columns);
         let (coarse, (pattern, values)) = (&mut self.coarse, self.matrix.values_mut());
         for (k, (block, scatter)) in blocks.iter_mut().zip(&self.scatter).enumerate() {
             block.evaluate(&rest, Stiffness::Total(0.0), &mut |cell| {
                 scatter.add::<D>(&cell, position, pattern, values);
                 if keeps {
-                    couplings::<D>(&cell, position, &mut |unknown, prescribed, k| {
+                    prescribed_columns::<D>(&cell, position, &mut |unknown, prescribed, k| {
                         all.push((unknown, prescribed, k));
                     });
                 }

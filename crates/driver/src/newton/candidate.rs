@@ -17,6 +17,8 @@ pub(crate) struct Counts {
     pub(crate) linear: usize,
     /// [`StepReport::contact_solves`].
     pub(crate) contact_solves: usize,
+    /// Factorisations, and iterations of conjugate gradients, that the system had done before.
+    pub(crate) before: (usize, usize),
     pub(crate) residuals: Vec<f64>,
     /// [`StepReport::criticality`].
     pub(crate) criticality: Option<(usize, f64)>,

@@ -86,7 +86,8 @@ impl<const D: usize> Driver<D> {
         let watch = &mut |_: &Self, now: &Iteration<'_>| watch(now);
         let first = control.loading(&start);
         let ends = (&start, &first);
-        let outcome = self.balance(&mut system, ends, guess, Some(control), watch);
+        let increment = self.begin_increment(&mut system, ends, guess, Some(control));
+        let outcome = self.balance(&mut system, increment, watch);
         self.system = Some(system);
         let candidate = outcome?;
         self.check_passage(&candidate.d_u)?;

@@ -3,42 +3,74 @@
 
 use crate::assembly::block::Stiffness;
 use crate::driver::Driver;
-use crate::error::{Imbalance, ModelError, StepError};
+use crate::error::StepError;
 use crate::linear::system::System;
-use crate::model::load::{Loading, axis_letter};
+use crate::model::load::Loading;
+use crate::model::points::Kinematics;
 use crate::newton::candidate::{Candidate, Counts};
 use crate::newton::chord::Chord;
 use crate::newton::control::Control;
-use crate::newton::iterate::{Iterate, slack};
-use crate::newton::line_search::Line;
+use crate::newton::criteria::slack;
+use crate::newton::iterate::Iterate;
+use crate::newton::line_search::NewtonStep;
 use crate::newton::linearised::Linearised;
 use crate::report::{Iteration, StepReport};
-use crate::vector::SparseVector;
-use crate::vector::largest;
-use moreau_contact::ContactError;
+use crate::vector::{SparseVector, largest};
+use moreau_contact::{ContactError, ContactSolution};
 use std::borrow::Cow;
 
-/// Where an increment begins.
-pub(crate) struct Start {
-    /// The degrees of freedom that are prescribed.
-    pub(crate) held: Vec<usize>,
-    /// Prescribed displacements that the first iterate does not have.
-    pub(crate) missing: SparseVector,
-    pub(crate) now: Iterate,
-    /// Factorisations, and iterations of conjugate gradients, done before.
-    pub(crate) done: (usize, usize),
-}
-
-/// How far an increment may move anything, in sizes of the mesh, of what it prescribes and of the
-/// widest gap.
-const FARTHEST: f64 = 10.0;
-
 /// Part of the tolerance at which an increment with tied contacts is accepted as long as steps make the
-/// imbalance smaller.
+/// residual smaller.
 const WELL: f64 = 1e-2;
 
-/// Parts of what flow adds to the stiffness that are tried in turn where the tangent is a mechanism.
-const BLENDS: [f64; 4] = [1.0 - 1e-4, 0.99, 0.8, 0.0];
+/// An increment on its way from one loading to another.
+pub(crate) struct Increment<'a, 'c, const D: usize> {
+    start: &'a Loading<D>,
+    /// Under control a guess, as the displacements are.
+    end: Cow<'a, Loading<D>>,
+    control: Option<&'a mut Control<'c>>,
+    pub(crate) iterate: Iterate,
+    /// Prescribed displacements that the iterate does not have, and the next step makes up for \[mm\].
+    pub(crate) missing: SparseVector,
+    /// The last solution of the contact problem.
+    solution: Option<ContactSolution<D>>,
+    chord: Chord,
+    pub(crate) counts: Counts,
+}
+
+/// How far an iterate is from balance.
+struct Balance<const D: usize> {
+    /// Of the contact points, where the prescribed displacements have arrived.
+    kinematics: Vec<Kinematics<D>>,
+    /// At every degree of freedom \[N\]; zero at those prescribed.
+    residual: Vec<f64>,
+    /// Its largest entry \[N\].
+    largest: f64,
+    /// Size of the forces in play \[N\].
+    scale: f64,
+    /// The largest entry at which the increment is accepted \[N\].
+    accepted: f64,
+}
+
+impl<'a, 'c, const D: usize> Increment<'a, 'c, D> {
+    /// Whether the iterate has all prescribed displacements.
+    fn has_arrived(&self) -> bool {
+        self.missing.is_zero()
+    }
+
+    /// Whether the next step moves tools: the first, where some are prescribed to move.
+    fn moves_tools(&self, first_tool: usize) -> bool {
+        let (start, end) = (&self.start.displacement, &self.end.displacement);
+        self.counts.newton == 1 && !start.range(first_tool..).eq(end.range(first_tool..))
+    }
+
+    /// Takes note of what the system did since `before`, its counts at the start.
+    pub(crate) fn count(&mut self, system: &System) {
+        let (factorisations, conjugate) = self.counts.before;
+        self.counts.factorisations = system.factorisations - factorisations;
+        self.counts.linear += system.conjugate - conjugate;
+    }
+}
 
 impl<const D: usize> Driver<D> {
     /// Applies the increment from one loading to another and commits it; `watch` sees every
@@ -51,296 +83,278 @@ impl<const D: usize> Driver<D> {
         watch: &mut dyn FnMut(&Self, &Iteration<'_>),
     ) -> Result<StepReport, StepError> {
         let guess = self.predictor(start, end);
-        let candidate = self.balance(system, (start, end), guess, None, watch)?;
+        let increment = self.begin_increment(system, (start, end), guess, None);
+        let candidate = self.balance(system, increment, watch)?;
         self.check_passage(&candidate.d_u)?;
         self.commit(start, end, candidate)
     }
 
-    /// Finds the equilibrium at the end of an increment from a first guess of its displacements.
-    /// Under control the loading at the end is a first guess too.
-    pub(crate) fn balance(
+    /// An increment at its first iterate: a guess of the displacement increments, under the committed
+    /// contact forces. Under control the loading at the end is a first guess too.
+    pub(crate) fn begin_increment<'a, 'c>(
         &mut self,
         system: &mut System,
-        (start, end): (&Loading<D>, &Loading<D>),
-        guess: Vec<f64>,
-        mut control: Option<&mut Control<'_>>,
-        watch: &mut dyn FnMut(&Self, &Iteration<'_>),
-    ) -> Result<Candidate<D>, StepError> {
-        let mut end = Cow::Borrowed(end);
-        let Start {
-            held,
-            mut missing,
-            mut now,
-            done,
-        } = self.first_iterate(system, (start, &end), guess);
-        let mut counts = Counts {
-            solves: 1,
-            ..Counts::default()
-        };
-        let mut solution = self.state.solution.clone();
-        let mut chord = Chord::default();
-        loop {
-            // The step to come makes up for what is missing.
-            let arrived = missing.is_zero();
-            let kinematics = if arrived {
-                self.kinematics(system, &end, &now.d_u)
-            } else {
-                let mut reached = now.d_u.clone();
-                missing.add_to(&mut reached, 1.0);
-                self.kinematics(system, &end, &reached)
-            };
-            if now.part >= 1.0
-                && let Some(s) = &solution
-            {
-                // The normals may have turned with the step.
-                now.contact = self.contact_forces(&kinematics, &s.force);
-            }
-            let residual = now.imbalance(&end, &held);
-            let out_of_balance = largest(residual.iter().copied());
-            let scale = self.force_scale(&now.assembly, &end, &now.contact);
-            if counts.newton > 0 {
-                counts.residuals.push(out_of_balance);
-            }
-            let iteration = Iteration {
-                increment: self.state.increment + 1,
-                cuts: 0,
-                newton: counts.newton,
-                contact_iterations: counts.last_contact,
-                out_of_balance,
-                scale,
-                d_u: &now.d_u[..self.mesh_dofs()],
-                residual: &residual[..self.mesh_dofs()],
-                status: solution.as_ref().map_or(&[], |s| &s.status),
-            };
-            watch(self, &iteration);
-            // Forces of an iterative contact solver are out of balance by what it left.
-            let left = solution.as_ref().map_or(0.0, slack);
-            let balance = self.target(system, scale, &now.d_u) + left;
-            // Ties round off more than forces do: what another step makes smaller is no rounding yet.
-            let rounded = !system.is_tied()
-                || out_of_balance <= WELL * self.settings.tolerance * scale
-                || counts.no_longer_improves();
-            let balanced = now.part >= 1.0
-                && out_of_balance <= balance
-                && rounded
-                && self.is_near(system, &now.d_u, (start, &end));
-            if balanced
-                && let Some(s) = solution.take_if(|s| self.law_holds(system, &kinematics, s, scale))
-            {
-                counts.factorisations = system.factorisations - done.0;
-                counts.linear += system.conjugate - done.1;
-                let candidate = Candidate {
-                    d_u: now.d_u,
-                    internal: now.assembly.internal,
-                    kinematics,
-                    solution: s,
-                    out_of_balance,
-                    counts,
-                };
-                return Ok(candidate);
-            }
-            if counts.newton >= self.settings.iterations && counts.undetermined {
-                // The motion that the statuses left free has no end.
-                let (iteration, source) = (counts.newton, ContactError::Singular);
-                return Err(StepError::Contact { iteration, source });
-            }
-            if counts.newton >= self.settings.iterations || !out_of_balance.is_finite() {
-                return Err(self.not_converged(&residual, counts.newton, balance));
-            }
-            let imbalance = match arrived {
-                true => out_of_balance,
-                false => now.once_arrived(&residual),
-            };
-            drop(residual);
-            counts.newton += 1;
-
-            let worth = system.steps_per_factorisation();
-            // What a symmetric tangent lacks is that of its own iterate.
-            let symmetric = self.is_symmetric();
-            let fresh = !(symmetric && arrived && chord.serves(out_of_balance, balance, worth));
-            if fresh {
-                self.linearise(system, &mut now, &missing)?;
-            }
-            chord.begin(out_of_balance, fresh);
-            let mut load = now.assembly.load(&[&end.force]);
-            let missing = std::mem::take(&mut missing);
-            // What a tool has moved is missing in the first iterate as well.
-            let tools = self.mesh_dofs()..;
-            let moved = counts.newton == 1
-                && !(start.displacement.range(tools.clone())).eq(end.displacement.range(tools));
-            let complete = !moved && arrived;
-            // Where the step is linear it may be the last; what a tool has moved is no imbalance yet.
-            let exact = !now.assembly.flows || moved || control.is_some();
-            let enough = match exact {
-                true => 0.0,
-                false => chord.contact_residual(imbalance, balance),
-            };
-            let accuracy = (chord.contact_residual(imbalance, balance), balance);
-            let mut unsymmetric = self.unsymmetric(system, &now, imbalance, accuracy);
-            let (step, growth, target) = loop {
-                let linearised = Linearised {
-                    kinematics: &kinematics,
-                    loading: &end,
-                    missing: &missing,
-                    guess: solution.as_ref(),
-                    border: control
-                        .as_ref()
-                        .map(|c| (c.load, c.compliance, c.missing(&now.d_u))),
-                    enough,
-                };
-                let load = match &unsymmetric {
-                    None => std::mem::take(&mut load),
-                    Some(u) => u.load(&load),
-                };
-                let answer = self.answer(system, &linearised, load, &mut counts)?;
-                let target = self.contact_forces(&kinematics, &answer.solution.force);
-                solution = Some(answer.solution);
-                if self.settles(&mut unsymmetric, &now, &answer.step, &held) {
-                    break (answer.step, answer.growth, target);
-                }
-                counts.linear += 1;
-            };
-            let slack = solution.as_ref().map_or(0.0, slack);
-            let elastic = system.holds_elastic_factor() && !now.assembly.flows;
-            let line = Line {
-                tangent: !(elastic || symmetric && chord.may_serve(balance, worth)),
-                allowed: self.allowed(&counts.residuals),
-                end: &end,
-                growth: control
-                    .as_ref()
-                    .map_or_else(SparseVector::default, |c| c.load.scaled(growth)),
-                held: &held,
-                step: &step,
-                target: &target,
-                complete,
-                slack,
-            };
-            now = self.search(system, &line, now);
-            chord.taken(now.part);
-            counts.shortened += usize::from(now.part < 1.0);
-            if let Some(control) = &mut control {
-                control.factor += now.part * growth;
-                end = Cow::Owned(control.loading(start));
-            }
-        }
-    }
-
-    /// The first iterate, at a guess of the displacement increments and under the committed contact
-    /// forces.
-    pub(crate) fn first_iterate(
-        &mut self,
-        system: &mut System,
-        (start, end): (&Loading<D>, &Loading<D>),
+        (start, end): (&'a Loading<D>, &'a Loading<D>),
         mut d_u: Vec<f64>,
-    ) -> Start {
+        control: Option<&'a mut Control<'c>>,
+    ) -> Increment<'a, 'c, D> {
         // Tools resist nothing: they are where they shall be from the first.
         for (&dof, u) in end.displacement.range(self.mesh_dofs()..) {
             d_u[dof] = u - start.displacement.get(&dof).unwrap_or(u);
         }
         let missing = self.missing(start, end, &d_u);
         system.untie();
-        Start {
-            held: system.held_dofs(),
-            now: Iterate {
-                assembly: system.assemble(
-                    &mut self.blocks,
-                    &d_u,
-                    &missing,
-                    Stiffness::Plastic(1.0),
-                ),
+        let tangent = Stiffness::Plastic(1.0);
+        Increment {
+            start,
+            end: Cow::Borrowed(end),
+            control,
+            iterate: Iterate {
+                assembly: system.assemble(&mut self.blocks, &d_u, &missing, tangent),
                 d_u,
                 contact: self.state.contact.clone(),
                 part: 0.0,
             },
             missing,
-            done: (system.factorisations, system.conjugate),
+            solution: self.state.solution.clone(),
+            chord: Chord::default(),
+            counts: Counts {
+                solves: 1,
+                before: (system.factorisations, system.conjugate),
+                ..Counts::default()
+            },
         }
     }
 
-    /// Out-of-balance force at which an increment is accepted \[N\]: the tolerance, or the rounding of
-    /// internal forces where the body moves almost rigidly, or is let go: a stress that has vanished is
-    /// what rounding left of the largest so far.
-    pub(crate) fn target(&self, system: &System, scale: f64, d_u: &[f64]) -> f64 {
-        // Of the size of the mesh, no position has a smaller part.
-        let (size, moved) = (self.mesh.size(), &d_u[..self.mesh_dofs()]);
-        let motion = largest(moved.iter().copied()).max(self.state.farthest);
-        let motion = motion.clamp(f64::EPSILON * size, size);
-        let rounding = 64.0 * f64::EPSILON * system.stiffest() * motion;
-        (self.settings.tolerance * scale).max(rounding)
-    }
-
-    /// Whether nothing has gone so far that forces are rounding: what slides away is in balance with
-    /// anything there. What falls may go as far as to what stops it.
-    fn is_near(
-        &self,
-        system: &System,
-        d_u: &[f64],
-        (start, end): (&Loading<D>, &Loading<D>),
-    ) -> bool {
-        let moved = largest(d_u[..self.mesh_dofs()].iter().copied());
-        let prescribed = end.displacement.iter();
-        let told = largest(prescribed.map(|(dof, u)| u - start.displacement.get(dof).unwrap_or(u)));
-        let reach = self.mesh.size() + told;
-        moved <= FARTHEST * reach || {
-            let before = self.kinematics(system, start, &vec![0.0; d_u.len()]);
-            let gap = largest(before.iter().map(|k| k.u[0]));
-            moved <= FARTHEST * (reach + gap)
-        }
-    }
-
-    /// Makes the system that of the tangent at an iterate: factorised, where contacts are not tied in its
-    /// factor.
-    pub(crate) fn linearise(
+    /// Finds the equilibrium at the end of an increment.
+    pub(crate) fn balance(
         &mut self,
         system: &mut System,
-        now: &mut Iterate,
-        missing: &SparseVector,
-    ) -> Result<(), StepError> {
-        if !system.is_tied() {
-            return self.factorise(system, now, missing);
+        mut increment: Increment<'_, '_, D>,
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>),
+    ) -> Result<Candidate<D>, StepError> {
+        loop {
+            let balance = self.balance_of(system, &mut increment);
+            self.tell(&increment, &balance, watch);
+            if let Some(solution) = self.accepted(system, &mut increment, &balance) {
+                increment.count(system);
+                return Ok(Candidate {
+                    d_u: increment.iterate.d_u,
+                    internal: increment.iterate.assembly.internal,
+                    kinematics: balance.kinematics,
+                    solution,
+                    out_of_balance: balance.largest,
+                    counts: increment.counts,
+                });
+            }
+            self.check_progress(&increment, &balance)?;
+            let step = self.newton_step(system, &mut increment, balance)?;
+            self.go_along(system, &mut increment, &step);
         }
-        if !now.assembly.stiffness {
-            let tangent = Stiffness::Plastic(1.0);
-            now.assembly = system.assemble(&mut self.blocks, &now.d_u, missing, tangent);
+    }
+
+    /// Where the iterate stands, with the normals of where it is.
+    fn balance_of(&self, system: &System, increment: &mut Increment<'_, '_, D>) -> Balance<D> {
+        let arrived = increment.has_arrived();
+        let (iterate, end) = (&mut increment.iterate, &*increment.end);
+        let kinematics = if arrived {
+            self.kinematics(system, end, &iterate.d_u)
+        } else {
+            let mut reached = iterate.d_u.clone();
+            increment.missing.add_to(&mut reached, 1.0);
+            self.kinematics(system, end, &reached)
+        };
+        if iterate.part >= 1.0
+            && let Some(solution) = &increment.solution
+        {
+            // The normals may have turned with the step.
+            iterate.contact = self.contact_forces(&kinematics, &solution.force);
+        }
+        let residual = iterate.residual(end, system.prescribed());
+        let largest = largest(residual.iter().copied());
+        let scale = self.force_scale(&iterate.assembly, end, &iterate.contact);
+        if increment.counts.newton > 0 {
+            increment.counts.residuals.push(largest);
+        }
+        // Forces of an iterative contact solver are out of balance by what it left.
+        let left = increment.solution.as_ref().map_or(0.0, slack);
+        Balance {
+            accepted: self.accepted_residual(system, scale, &iterate.d_u) + left,
+            kinematics,
+            residual,
+            largest,
+            scale,
+        }
+    }
+
+    fn tell(
+        &self,
+        increment: &Increment<'_, '_, D>,
+        balance: &Balance<D>,
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>),
+    ) {
+        let iteration = Iteration {
+            increment: self.state.increment + 1,
+            cuts: 0,
+            newton: increment.counts.newton,
+            contact_iterations: increment.counts.last_contact,
+            out_of_balance: balance.largest,
+            scale: balance.scale,
+            d_u: &increment.iterate.d_u[..self.mesh_dofs()],
+            residual: &balance.residual[..self.mesh_dofs()],
+            status: increment.solution.as_ref().map_or(&[], |s| &s.status),
+        };
+        watch(self, &iteration);
+    }
+
+    /// The contact solution of an iterate that is in balance and obeys the contact law; `None` of any
+    /// other.
+    fn accepted(
+        &self,
+        system: &System,
+        increment: &mut Increment<'_, '_, D>,
+        balance: &Balance<D>,
+    ) -> Option<ContactSolution<D>> {
+        let iterate = &increment.iterate;
+        // Ties round off more than forces do: what another step makes smaller is no rounding yet.
+        let rounded = !system.is_tied()
+            || balance.largest <= WELL * self.settings.tolerance * balance.scale
+            || increment.counts.no_longer_improves();
+        let balanced = iterate.part >= 1.0
+            && balance.largest <= balance.accepted
+            && rounded
+            && self.is_near(system, &iterate.d_u, (increment.start, &increment.end));
+        let holds = |s: &mut ContactSolution<D>| {
+            balanced && self.law_holds(system, &balance.kinematics, s, balance.scale)
+        };
+        increment.solution.take_if(holds)
+    }
+
+    /// # Errors
+    /// After too many iterations, or where forces are no numbers.
+    fn check_progress(
+        &self,
+        increment: &Increment<'_, '_, D>,
+        balance: &Balance<D>,
+    ) -> Result<(), StepError> {
+        let iteration = increment.counts.newton;
+        let ends = iteration >= self.settings.iterations;
+        if ends && increment.counts.undetermined {
+            // The motion that the statuses left free has no end.
+            let source = ContactError::Singular;
+            return Err(StepError::Contact { iteration, source });
+        }
+        if ends || !balance.largest.is_finite() {
+            return Err(self.not_converged(&balance.residual, iteration, balance.accepted));
         }
         Ok(())
     }
 
-    /// Factorises the tangent at an iterate. Where that is a mechanism, as a plastic tangent may be
-    /// far from the solution, more and more of the elastic stiffness is blended in: the step is
-    /// then shorter and still downhill.
-    pub(crate) fn factorise(
+    /// Solves the increment linearised at its iterate.
+    fn newton_step(
         &mut self,
         system: &mut System,
-        now: &mut Iterate,
-        missing: &SparseVector,
-    ) -> Result<(), StepError> {
-        let elastic = !now.assembly.flows;
-        if !(now.assembly.stiffness || elastic && system.holds_elastic_factor()) {
-            let tangent = Stiffness::Plastic(1.0);
-            now.assembly = system.assemble(&mut self.blocks, &now.d_u, missing, tangent);
-        }
-        let mut outcome = system.factorise(elastic);
-        for part in BLENDS {
-            if outcome.is_ok() {
-                break;
+        increment: &mut Increment<'_, '_, D>,
+        balance: Balance<D>,
+    ) -> Result<NewtonStep, StepError> {
+        let arrived = increment.has_arrived();
+        let imbalance = match arrived {
+            true => balance.largest,
+            false => increment.iterate.once_arrived(&balance.residual),
+        };
+        increment.counts.newton += 1;
+        self.renew_tangent(system, increment, balance.largest, balance.accepted)?;
+        // What a tool has moved is missing in the first iterate as well, and is no imbalance yet.
+        let moved = increment.moves_tools(self.mesh_dofs());
+        let flows = increment.iterate.assembly.flows;
+        let expected = increment
+            .chord
+            .contact_residual(imbalance, balance.accepted);
+        // Where the step is linear it may be the last.
+        let exact = !flows || moved || increment.control.is_some();
+        let enough = if exact { 0.0 } else { expected };
+        let accuracy = (expected, balance.accepted);
+        let mut unsymmetric = self.unsymmetric(system, &increment.iterate, imbalance, accuracy);
+        let missing = std::mem::take(&mut increment.missing);
+        let load = increment.iterate.assembly.load(&[&increment.end.force]);
+        let (step, factor, contact) = loop {
+            let linearised = Linearised {
+                kinematics: &balance.kinematics,
+                loading: &increment.end,
+                missing: &missing,
+                guess: increment.solution.as_ref(),
+                border: increment
+                    .control
+                    .as_ref()
+                    .map(|c| (c.load, c.compliance, c.missing(&increment.iterate.d_u))),
+                enough,
+            };
+            let load = match &unsymmetric {
+                None => load.clone(),
+                Some(u) => u.load(&load),
+            };
+            let answer = self.answer(system, &linearised, load, &mut increment.counts)?;
+            let contact = self.contact_forces(&balance.kinematics, &answer.solution.force);
+            increment.solution = Some(answer.solution);
+            let (iterate, prescribed) = (&increment.iterate, system.prescribed());
+            if self.settles(&mut unsymmetric, iterate, &answer.step, prescribed) {
+                break (answer.step, answer.growth, contact);
             }
-            let blended = Stiffness::Plastic(part);
-            now.assembly = system.assemble(&mut self.blocks, &now.d_u, missing, blended);
-            outcome = system.factorise(false);
-        }
-        if let Err(dof) = outcome
-            && let Some(tool) = (dof / D).checked_sub(self.mesh.nodes().len())
-        {
-            let tool = self.tools[tool].name.clone();
-            let motion = format!("translation along {}", axis_letter(dof % D));
-            return Err(ModelError::FreeTool { tool, motion }.into());
-        }
-        outcome.map_err(|dof| StepError::Mechanism {
-            node: dof / D,
-            axis: axis_letter(dof % D),
-            position: self.mesh.nodes()[dof / D].to_vec(),
+            increment.counts.linear += 1;
+        };
+        let last = increment
+            .chord
+            .may_serve(balance.accepted, system.steps_per_factorisation());
+        let elastic = system.holds_elastic_factor() && !flows;
+        Ok(NewtonStep {
+            displacement: step,
+            factor,
+            growth: match &increment.control {
+                Some(control) => control.load.scaled(factor),
+                None => SparseVector::default(),
+            },
+            contact,
+            complete: !moved && arrived,
+            slack: increment.solution.as_ref().map_or(0.0, slack),
+            tangent: !(elastic || self.is_symmetric() && last),
+            allowed: self.allowed(&increment.counts.residuals),
         })
+    }
+
+    /// Takes the tangent at the iterate, unless the factor of an earlier one serves.
+    fn renew_tangent(
+        &mut self,
+        system: &mut System,
+        increment: &mut Increment<'_, '_, D>,
+        imbalance: f64,
+        accepted: f64,
+    ) -> Result<(), StepError> {
+        let worth = system.steps_per_factorisation();
+        // What a symmetric tangent lacks is that of its own iterate.
+        let serves = self.is_symmetric()
+            && increment.has_arrived()
+            && increment.chord.serves(imbalance, accepted, worth);
+        if !serves {
+            self.linearise(system, &mut increment.iterate, &increment.missing)?;
+        }
+        increment.chord.begin(imbalance, !serves);
+        Ok(())
+    }
+
+    /// Goes along a step as far as it leads towards balance.
+    fn go_along(
+        &mut self,
+        system: &mut System,
+        increment: &mut Increment<'_, '_, D>,
+        step: &NewtonStep,
+    ) {
+        let part = self.search(system, &increment.end, step, &mut increment.iterate);
+        increment.chord.taken(part);
+        increment.counts.shortened += usize::from(part < 1.0);
+        if let Some(control) = &mut increment.control {
+            control.factor += part * step.factor;
+            increment.end = Cow::Owned(control.loading(increment.start));
+        }
     }
 
     /// First guess of the displacement increments: the last increment again, as far as the load
@@ -372,35 +386,5 @@ impl<const D: usize> Driver<D> {
             missing.add(dof, increment - d_u[dof]);
         }
         missing
-    }
-
-    pub(crate) fn not_converged(
-        &self,
-        residual: &[f64],
-        iterations: usize,
-        target: f64,
-    ) -> StepError {
-        StepError::NotConverged {
-            iterations,
-            out_of_balance: largest(residual.iter().copied()),
-            tolerance: target,
-            worst: self.worst(&residual[..self.mesh_dofs()]),
-            plastic_fraction: self.plastic_fraction(),
-        }
-    }
-
-    /// The five nodes with the largest force that nothing balances, worst first; `residual` has an
-    /// entry for every degree of freedom \[N\].
-    pub fn worst(&self, residual: &[f64]) -> Vec<Imbalance> {
-        let norm = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>().sqrt();
-        let force: Vec<f64> = residual.chunks(D).map(norm).collect();
-        let mut order: Vec<usize> = (0..force.len()).collect();
-        order.sort_by(|&a, &b| force[b].total_cmp(&force[a]));
-        let imbalance = |&node: &usize| Imbalance {
-            node,
-            position: self.mesh.nodes()[node].to_vec(),
-            force: force[node],
-        };
-        order.iter().take(5).map(imbalance).collect()
     }
 }

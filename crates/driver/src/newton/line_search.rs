@@ -5,8 +5,7 @@ use crate::driver::Driver;
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::newton::iterate::Iterate;
-use crate::vector::SparseVector;
-use crate::vector::{imbalance, largest};
+use crate::vector::{SparseVector, largest, residual};
 
 /// Step lengths that are tried before the last is taken.
 const TRIALS: usize = 12;
@@ -15,51 +14,66 @@ const TRIALS: usize = 12;
 const ACCEPTED_SLOPE: f64 = 0.5;
 
 /// A Newton step from an iterate.
-pub(crate) struct Line<'a, const D: usize> {
-    pub(crate) end: &'a Loading<D>,
-    /// What the step adds to the applied forces \[N\].
+pub(crate) struct NewtonStep {
+    /// Displacements of the step, at every degree of freedom \[mm\].
+    pub(crate) displacement: Vec<f64>,
+    /// What it adds to the unknown factor of a load; zero where none is unknown.
+    pub(crate) factor: f64,
+    /// What that adds to the applied forces \[N\].
     pub(crate) growth: SparseVector,
-    /// The degrees of freedom that are prescribed.
-    pub(crate) held: &'a [usize],
-    /// Displacements of the step, at every degree of freedom.
-    pub(crate) step: &'a [f64],
     /// Contact forces at its end \[N\].
-    pub(crate) target: &'a SparseVector,
+    pub(crate) contact: SparseVector,
     /// Whether the iterate has all prescribed displacements and the motions of tools already.
     pub(crate) complete: bool,
-    /// Imbalance left by the contact solver \[N\].
+    /// Out-of-balance force left by the contact solver \[N\].
     pub(crate) slack: f64,
     /// Whether the tangent at its end is likely to be needed.
     pub(crate) tangent: bool,
-    /// Imbalance that a step of an unsymmetric tangent may leave \[N\]; `None` of a symmetric one, of
+    /// Residual that a step of an unsymmetric tangent may leave \[N\]; `None` of a symmetric one, of
     /// which ΔΦ decides.
     pub(crate) allowed: Option<f64>,
 }
 
+/// The way along a step from an iterate.
+struct Line<'a, const D: usize> {
+    end: &'a Loading<D>,
+    from: &'a Iterate,
+    step: &'a NewtonStep,
+}
+
 impl<const D: usize> Line<'_, D> {
-    fn displacement(&self, now: &Iterate, s: f64) -> Vec<f64> {
-        now.d_u
-            .iter()
-            .zip(self.step)
-            .map(|(u, v)| u + s * v)
-            .collect()
+    fn displacement(&self, s: f64) -> Vec<f64> {
+        let pairs = self.from.d_u.iter().zip(&self.step.displacement);
+        pairs.map(|(u, v)| u + s * v).collect()
     }
 
     /// Contact forces between those of both ends.
-    fn contact(&self, now: &Iterate, s: f64) -> SparseVector {
-        now.contact.with(self.target, |a, b| a + s * (b - a))
+    fn contact(&self, s: f64) -> SparseVector {
+        self.from
+            .contact
+            .with(&self.step.contact, |a, b| a + s * (b - a))
     }
 
-    /// Force that nothing balances at the part s of the step, at every degree of freedom; zero at
-    /// those held.
-    fn imbalance(&self, internal: &[f64], contact: &SparseVector, s: f64) -> Vec<f64> {
-        let growth = self.growth.scaled(s);
-        imbalance(internal, &[&self.end.force, &growth, contact], self.held)
+    /// Out-of-balance force at the part s of the step under contact forces, at every degree of freedom;
+    /// zero at those prescribed.
+    fn residual(
+        &self,
+        system: &System,
+        internal: &[f64],
+        contact: &SparseVector,
+        s: f64,
+    ) -> Vec<f64> {
+        let growth = self.step.growth.scaled(s);
+        residual(
+            internal,
+            &[&self.end.force, &growth, contact],
+            system.prescribed(),
+        )
     }
 
-    /// Slope of ΔΦ along the step, where the imbalance is this.
-    fn slope(&self, imbalance: &[f64]) -> f64 {
-        let pairs = self.step.iter().zip(imbalance);
+    /// Slope of ΔΦ along the step, where the residual is this.
+    fn slope(&self, residual: &[f64]) -> f64 {
+        let pairs = self.step.displacement.iter().zip(residual);
         -pairs.map(|(v, r)| v * r).sum::<f64>()
     }
 }
@@ -69,58 +83,78 @@ fn norm(v: &[f64]) -> f64 {
 }
 
 impl<const D: usize> Driver<D> {
-    /// Goes along a Newton step: all the way, unless that overshoots the minimum of ΔΦ with contact
-    /// forces between those of both ends. Friction that changes can make ΔΦ no potential of the
-    /// step, which then does not begin downhill; there the norm of the imbalance decides; where the tangent
-    /// is not symmetric, the largest imbalance of the last iterations, so that kinks are passed.
+    /// Goes along a Newton step, and returns the part taken: all of it, unless that overshoots the minimum
+    /// of ΔΦ with contact forces between those of both ends. Friction that changes can make ΔΦ no potential
+    /// of the step, which then does not begin downhill; there the norm of the residual decides; where the
+    /// tangent is not symmetric, the largest residual of the last iterations, so that kinks are passed.
     pub(crate) fn search(
         &mut self,
         system: &mut System,
-        line: &Line<'_, D>,
-        now: Iterate,
-    ) -> Iterate {
+        end: &Loading<D>,
+        step: &NewtonStep,
+        iterate: &mut Iterate,
+    ) -> f64 {
         let none = SparseVector::default();
-        let d_u = line.displacement(&now, 1.0);
-        let stiffness = match line.tangent {
+        let line = Line {
+            end,
+            from: iterate,
+            step,
+        };
+        let d_u = line.displacement(1.0);
+        let stiffness = match step.tangent {
             true => Stiffness::Plastic(1.0),
             false => Stiffness::None,
         };
         let assembly = system.assemble(&mut self.blocks, &d_u, &none, stiffness);
-        let scale = self.force_scale(&assembly, line.end, line.target);
-        let before = line.imbalance(&now.assembly.internal, &now.contact, 0.0);
+        let scale = self.force_scale(&assembly, end, &step.contact);
+        let before = line.residual(
+            system,
+            &line.from.assembly.internal,
+            &line.from.contact,
+            0.0,
+        );
         let (at_start, before) = (line.slope(&before), norm(&before));
-        let after = line.imbalance(&assembly.internal, line.target, 1.0);
+        let after = line.residual(system, &assembly.internal, &step.contact, 1.0);
         let (at_end, left) = (line.slope(&after), largest(after.iter().copied()));
-        let overshoots = match line.allowed {
+        let overshoots = match step.allowed {
             Some(allowed) => left > allowed,
             None if at_start < 0.0 => at_end > ACCEPTED_SLOPE * at_start.abs(),
             None => norm(&after) > before,
         };
-        drop(after);
         // While prescribed displacements or motions are missing, ΔΦ is not what the step minimises; in balance
         // its slope is rounding.
-        if !line.complete || !overshoots || left <= self.target(system, scale, &d_u) + line.slack {
-            return Iterate {
+        let enough = self.accepted_residual(system, scale, &d_u) + step.slack;
+        if !step.complete || !overshoots || left <= enough {
+            *iterate = Iterate {
                 d_u,
                 assembly,
-                contact: line.target.clone(),
+                contact: step.contact.clone(),
                 part: 1.0,
             };
+            return 1.0;
         }
-        let s = match line.allowed {
-            Some(allowed) => self.backtrack(system, line, &now, |r| {
-                largest(r.iter().copied()) <= allowed
-            }),
-            None if at_start < 0.0 => self.minimise(system, line, &now, at_start, at_end),
-            None => self.backtrack(system, line, &now, |r| norm(r) < before),
+        let s = match step.allowed {
+            Some(allowed) => {
+                self.backtrack(system, &line, |r| largest(r.iter().copied()) <= allowed)
+            }
+            None if at_start < 0.0 => self.minimise(system, &line, at_start, at_end),
+            None => self.backtrack(system, &line, |r| norm(r) < before),
         };
-        let d_u = line.displacement(&now, s);
-        Iterate {
+        let d_u = line.displacement(s);
+        *iterate = Iterate {
             assembly: system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Plastic(1.0)),
+            contact: line.contact(s),
             d_u,
-            contact: line.contact(&now, s),
             part: s,
-        }
+        };
+        s
+    }
+
+    /// The residual at the part s of a step.
+    fn residual_along(&mut self, system: &mut System, line: &Line<'_, D>, s: f64) -> Vec<f64> {
+        let (trial, none) = (line.displacement(s), SparseVector::default());
+        let at = system.assemble(&mut self.blocks, &trial, &none, Stiffness::None);
+        line.residual(system, &at.internal, &line.contact(s), s)
     }
 
     /// Step length at which the slope of ΔΦ about vanishes, by the Illinois variant of regula
@@ -129,11 +163,9 @@ impl<const D: usize> Driver<D> {
         &mut self,
         system: &mut System,
         line: &Line<'_, D>,
-        now: &Iterate,
         at_start: f64,
         at_end: f64,
     ) -> f64 {
-        let none = SparseVector::default();
         let (mut low, mut high) = ((0.0, at_start), (1.0, at_end));
         let mut last_side = 0.0;
         let mut s = 1.0;
@@ -141,9 +173,7 @@ impl<const D: usize> Driver<D> {
             let margin = 0.05 * (high.0 - low.0);
             s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
             s = s.clamp(low.0 + margin, high.0 - margin);
-            let trial = line.displacement(now, s);
-            let at = system.assemble(&mut self.blocks, &trial, &none, Stiffness::None);
-            let slope = line.slope(&line.imbalance(&at.internal, &line.contact(now, s), s));
+            let slope = line.slope(&self.residual_along(system, line, s));
             if slope.abs() <= ACCEPTED_SLOPE * at_start.abs() {
                 break;
             }
@@ -160,21 +190,17 @@ impl<const D: usize> Driver<D> {
         s
     }
 
-    /// Step length at which the imbalance will do.
+    /// Step length at which the residual will do.
     fn backtrack(
         &mut self,
         system: &mut System,
         line: &Line<'_, D>,
-        now: &Iterate,
         will_do: impl Fn(&[f64]) -> bool,
     ) -> f64 {
-        let none = SparseVector::default();
         let mut s = 1.0;
         for _ in 0..TRIALS {
             s *= 0.5;
-            let trial = line.displacement(now, s);
-            let at = system.assemble(&mut self.blocks, &trial, &none, Stiffness::None);
-            if will_do(&line.imbalance(&at.internal, &line.contact(now, s), s)) {
+            if will_do(&self.residual_along(system, line, s)) {
                 break;
             }
         }
@@ -264,26 +290,25 @@ mod tests {
             )
             .expect("accurate");
         step.iter_mut().for_each(|u| *u *= 4.0);
-        let now = Iterate {
+        let mut iterate = Iterate {
             d_u: rest,
             assembly,
             contact: SparseVector::default(),
             part: 0.0,
         };
-        let held = system.held_dofs();
-        let line = Line {
-            end: &end,
-            growth: SparseVector::default(),
-            held: &held,
-            step: &step,
-            target: &none,
+        let step = NewtonStep {
+            displacement: step,
+            factor: 0.0,
+            growth: none.clone(),
+            contact: none.clone(),
             complete: true,
             slack: 0.0,
             tangent: true,
             allowed: None,
         };
-        let next = driver.search(&mut system, &line, now);
-        assert!(next.part < 1.0);
+        let part = driver.search(&mut system, &end, &step, &mut iterate);
+        let (next, step) = (iterate, step.displacement);
+        assert!(part < 1.0 && next.part == part);
         let length = next.d_u.iter().zip(&step).map(|(u, s)| u * s).sum::<f64>()
             / step.iter().map(|s| s * s).sum::<f64>();
         assert!(length > 0.1 && length < 0.6, "{length}");

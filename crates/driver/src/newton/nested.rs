@@ -6,16 +6,71 @@ use crate::error::StepError;
 use crate::interface::condensation::Condensation;
 use crate::linear::system::System;
 use crate::model::load::Loading;
-use crate::newton::candidate::{Candidate, Counts};
+use crate::model::points::Kinematics;
+use crate::newton::candidate::Candidate;
 use crate::newton::chord::FORCING;
-use crate::newton::increment::Start;
-use crate::newton::iterate::Iterate;
-use crate::newton::line_search::Line;
+use crate::newton::increment::Increment;
+use crate::newton::line_search::NewtonStep;
 use crate::report::{Iteration, StepReport};
-use crate::vector::SparseVector;
-use crate::vector::largest;
+use crate::vector::{SparseVector, largest};
 use moreau_contact::{ContactError, ContactSolution, uzawa_steps};
 use moreau_laws::{Local, Status};
+
+/// Contact forces on their way to the fixed point t = proj(t − α ũ(t)).
+struct Uzawa<const D: usize> {
+    /// t \[N\].
+    force: Vec<Local<D>>,
+    /// α \[N/mm\].
+    alpha: Vec<f64>,
+    /// α by which the residual is measured \[N/mm\].
+    common: Vec<f64>,
+    /// t and ũ before the last correction.
+    before: Option<(Vec<Local<D>>, Vec<Local<D>>)>,
+}
+
+/// What a nonlinear solve under frozen contact forces answers.
+struct Response<const D: usize> {
+    kinematics: Vec<Kinematics<D>>,
+    /// Gaps and slips u \[mm\].
+    displacement: Vec<Local<D>>,
+    status: Vec<Status>,
+    /// Largest natural-map residual \[N\].
+    residual: f64,
+}
+
+impl<const D: usize> Uzawa<D> {
+    /// The correction \[90′\].
+    fn correct(&mut self, response: &Response<D>) {
+        let (u, law) = (&response.displacement, |i: usize| {
+            &response.kinematics[i].law
+        });
+        let all = 0..self.force.len();
+        let shifted: Vec<Local<D>> = all.clone().map(|i| law(i).shifted(&u[i])).collect();
+        self.shorten(&shifted);
+        let corrected = all.map(|i| law(i).correct(&u[i], &self.force[i], self.alpha[i]));
+        let corrected = corrected.collect();
+        let force = std::mem::replace(&mut self.force, corrected);
+        self.before = Some((force, shifted));
+    }
+
+    /// Lowers α where the last correction overshot: a contraction needs α ‖Δũ‖ < 2 ‖Δt‖, from which it
+    /// keeps away.
+    fn shorten(&mut self, shifted: &[Local<D>]) {
+        let Some((old_force, old_shifted)) = &self.before else {
+            return;
+        };
+        let moved = |a: &[Local<D>], b: &[Local<D>], weight: &dyn Fn(usize) -> f64| {
+            let square = |i: usize| (a[i] - b[i]).norm_squared() * weight(i);
+            (0..a.len()).map(square).sum::<f64>().sqrt()
+        };
+        let answer = moved(shifted, old_shifted, &|i| self.alpha[i]);
+        let change = moved(&self.force, old_force, &|i| 1.0 / self.alpha[i]);
+        if change > 0.0 && answer > 1.2 * change {
+            let factor = 0.8 * change / answer;
+            self.alpha.iter_mut().for_each(|a| *a *= factor);
+        }
+    }
+}
 
 impl<const D: usize> Driver<D> {
     /// Applies an increment as section 7.2 of the paper does: t ← proj(t − α ũ(t)), where u(t)
@@ -31,112 +86,103 @@ impl<const D: usize> Driver<D> {
         (tolerance, iterations): (f64, usize),
         watch: &mut dyn FnMut(&Iteration<'_>),
     ) -> Result<StepReport, StepError> {
-        let Start {
-            held,
-            mut missing,
-            mut now,
-            done,
-        } = self.first_iterate(system, (start, end), self.predictor(start, end));
-        let mut counts = Counts::default();
-        let kinematics = self.kinematics(system, end, &now.d_u);
-        let mut t = self.previous_forces(&kinematics);
+        let guess = self.predictor(start, end);
+        let mut increment = self.begin_increment(system, (start, end), guess, None);
+        increment.counts.solves = 0;
+        let mut uzawa = self.prediction(system, end, &mut increment)?;
+        let mut left = f64::INFINITY;
+        for _ in 0..iterations {
+            self.solve_bulk(system, end, &uzawa.force, &mut increment)?;
+            let response = self.response(system, end, &uzawa, &increment);
+            let iterate = &increment.iterate;
+            let scale = self.force_scale(&iterate.assembly, end, &iterate.contact);
+            let residual = iterate.residual(end, system.prescribed());
+            left = response.residual;
+            increment.counts.contact += 1;
+            watch(&Iteration {
+                increment: self.state.increment + 1,
+                cuts: 0,
+                newton: increment.counts.newton,
+                contact_iterations: 1,
+                out_of_balance: left,
+                scale,
+                d_u: &iterate.d_u[..self.mesh_dofs()],
+                residual: &residual[..self.mesh_dofs()],
+                status: &response.status,
+            });
+            if left <= tolerance * scale {
+                self.check_passage(&iterate.d_u)?;
+                increment.count(system);
+                let out_of_balance = largest(residual.into_iter());
+                let candidate = candidate(increment, uzawa.force, response, out_of_balance);
+                return self.commit(start, end, candidate);
+            }
+            uzawa.correct(&response);
+        }
+        let iterate = &increment.iterate;
+        let source = ContactError::NotConverged {
+            solver: "Uzawa around the nonlinear solve",
+            iterations,
+            residual: left,
+            tolerance: tolerance * self.force_scale(&iterate.assembly, end, &iterate.contact),
+        };
+        let iteration = 0;
+        Err(StepError::Contact { iteration, source })
+    }
+
+    /// The committed forces, and α of the tangent at the first iterate.
+    fn prediction(
+        &mut self,
+        system: &mut System,
+        end: &Loading<D>,
+        increment: &mut Increment<'_, '_, D>,
+    ) -> Result<Uzawa<D>, StepError> {
         let contact = |source: ContactError| StepError::Contact {
             iteration: 0,
             source,
         };
-        self.factorise(system, &mut now, &missing)?;
-        let condensed = system.condense(vec![0.0; now.d_u.len()]);
+        let kinematics = self.kinematics(system, end, &increment.iterate.d_u);
+        let force = self.previous_forces(&kinematics);
+        self.factorise(system, &mut increment.iterate, &increment.missing)?;
+        let condensed = system.condense(vec![0.0; increment.iterate.d_u.len()]);
         let points = (self.points.as_slice(), self.footings.as_slice());
         let seam = (condensed.stiffness, &condensed.load);
-        let condensation = Condensation::new(system, seam, points, &kinematics, (t.clone(), &t))
-            .map_err(contact)?;
-        let mut alpha = uzawa_steps(&condensation.problem).map_err(contact)?;
-        let common: Vec<f64> = (0..t.len())
-            .map(|i| condensation.problem.alpha(i))
+        let forces = (force.clone(), force.as_slice());
+        let condensation =
+            Condensation::new(system, seam, points, &kinematics, forces).map_err(contact)?;
+        let problem = &condensation.problem;
+        Ok(Uzawa {
+            alpha: uzawa_steps(problem).map_err(contact)?,
+            common: (0..force.len()).map(|i| problem.alpha(i)).collect(),
+            force,
+            before: None,
+        })
+    }
+
+    /// Gaps, slips, statuses and residual of a body in balance with frozen contact forces.
+    fn response(
+        &self,
+        system: &System,
+        end: &Loading<D>,
+        uzawa: &Uzawa<D>,
+        increment: &Increment<'_, '_, D>,
+    ) -> Response<D> {
+        let kinematics = self.kinematics(system, end, &increment.iterate.d_u);
+        let displacement: Vec<Local<D>> = kinematics
+            .iter()
+            .map(|k| Local::from_fn(|j, _| if k.active[j] || j == 0 { k.u[j] } else { 0.0 }))
             .collect();
-        let mut left = f64::INFINITY;
-        let mut before: Option<(Vec<Local<D>>, Vec<Local<D>>)> = None;
-        for _ in 0..iterations {
-            let kinematics = self.kinematics(system, end, &now.d_u);
-            now.contact = self.contact_forces(&kinematics, &t);
-            now = self.solve_bulk(system, end, &held, now, &mut missing, &mut counts)?;
-            counts.solves += 1;
-            let kinematics = self.kinematics(system, end, &now.d_u);
-            let u: Vec<Local<D>> = kinematics
-                .iter()
-                .map(|k| Local::from_fn(|j, _| if k.active[j] || j == 0 { k.u[j] } else { 0.0 }))
-                .collect();
-            let law = |i: usize| &kinematics[i].law;
-            let scale = self.force_scale(&now.assembly, end, &now.contact);
-            let residual = (0..t.len())
-                .map(|i| law(i).natural_map(&u[i], &t[i], common[i]).norm())
-                .fold(0.0, f64::max);
-            counts.contact += 1;
-            left = residual;
-            let status: Vec<Status> = (0..t.len())
-                .map(|i| law(i).status(&u[i], &t[i], common[i]))
-                .collect();
-            let unbalanced = now.imbalance(end, &held);
-            watch(&Iteration {
-                increment: self.state.increment + 1,
-                cuts: 0,
-                newton: counts.newton,
-                contact_iterations: 1,
-                out_of_balance: residual,
-                scale,
-                d_u: &now.d_u[..self.mesh_dofs()],
-                residual: &unbalanced[..self.mesh_dofs()],
-                status: &status,
-            });
-            if residual <= tolerance * scale {
-                self.check_passage(&now.d_u)?;
-                counts.factorisations = system.factorisations - done.0;
-                counts.linear = system.conjugate - done.1;
-                let candidate = Candidate {
-                    out_of_balance: largest(unbalanced.into_iter()),
-                    d_u: now.d_u,
-                    internal: now.assembly.internal,
-                    kinematics,
-                    solution: ContactSolution {
-                        irreversible: u.clone(),
-                        motion: vec![Local::zeros(); u.len()],
-                        displacement: u,
-                        force: t,
-                        status,
-                        iterations: counts.contact,
-                        residual,
-                        exact: true,
-                    },
-                    counts,
-                };
-                return self.commit(start, end, candidate);
-            }
-            let shifted: Vec<Local<D>> = (0..t.len()).map(|i| law(i).shifted(&u[i])).collect();
-            if let Some((old_t, old_shifted)) = &before {
-                // A contraction needs α ‖Δũ‖ < 2 ‖Δt‖; keep away from the limit.
-                let moved = |a: &[Local<D>], b: &[Local<D>], weight: &dyn Fn(usize) -> f64| {
-                    let square = |i: usize| (a[i] - b[i]).norm_squared() * weight(i);
-                    (0..a.len()).map(square).sum::<f64>().sqrt()
-                };
-                let answer = moved(&shifted, old_shifted, &|i| alpha[i]);
-                let change = moved(&t, old_t, &|i| 1.0 / alpha[i]);
-                if change > 0.0 && answer > 1.2 * change {
-                    let factor = 0.8 * change / answer;
-                    alpha.iter_mut().for_each(|a| *a *= factor);
-                }
-            }
-            let corrected = (0..t.len())
-                .map(|i| law(i).correct(&u[i], &t[i], alpha[i]))
-                .collect();
-            before = Some((std::mem::replace(&mut t, corrected), shifted));
+        let (u, t, alpha) = (&displacement, &uzawa.force, &uzawa.common);
+        let law = |i: usize| &kinematics[i].law;
+        let map = |i: usize| law(i).natural_map(&u[i], &t[i], alpha[i]).norm();
+        Response {
+            residual: (0..t.len()).map(map).fold(0.0, f64::max),
+            status: (0..t.len())
+                .map(|i| law(i).status(&u[i], &t[i], alpha[i]))
+                .collect(),
+            displacement,
+            kinematics,
         }
-        let solution = ContactError::NotConverged {
-            solver: "Uzawa around the nonlinear solve",
-            iterations,
-            residual: left,
-            tolerance: tolerance * self.force_scale(&now.assembly, end, &now.contact),
-        };
-        Err(contact(solution))
     }
 
     /// Newton on the bulk under frozen contact forces.
@@ -144,58 +190,81 @@ impl<const D: usize> Driver<D> {
         &mut self,
         system: &mut System,
         end: &Loading<D>,
-        held: &[usize],
-        mut now: Iterate,
-        missing: &mut SparseVector,
-        counts: &mut Counts,
-    ) -> Result<Iterate, StepError> {
-        for _ in 0..self.settings.iterations {
-            let residual = now.imbalance(end, held);
-            let scale = self.force_scale(&now.assembly, end, &now.contact);
-            let complete = missing.is_zero();
+        force: &[Local<D>],
+        increment: &mut Increment<'_, '_, D>,
+    ) -> Result<(), StepError> {
+        let kinematics = self.kinematics(system, end, &increment.iterate.d_u);
+        let contact = self.contact_forces(&kinematics, force);
+        increment.iterate.contact = contact.clone();
+        increment.counts.solves += 1;
+        let last = increment.counts.newton + self.settings.iterations;
+        loop {
+            let iterate = &mut increment.iterate;
+            let residual = iterate.residual(end, system.prescribed());
+            let scale = self.force_scale(&iterate.assembly, end, &iterate.contact);
             let worst = largest(residual.iter().copied());
-            if complete && worst <= self.target(system, scale, &now.d_u) {
-                return Ok(now);
+            let complete = increment.missing.is_zero();
+            let accepted = self.accepted_residual(system, scale, &iterate.d_u);
+            if complete && worst <= accepted {
+                return Ok(());
             }
-            if !worst.is_finite() {
-                break;
+            if !worst.is_finite() || increment.counts.newton == last {
+                return Err(self.not_converged(&residual, self.settings.iterations, accepted));
             }
-            counts.newton += 1;
-            self.factorise(system, &mut now, missing)?;
-            let load = now.assembly.load(&[&end.force, &now.contact]);
+            increment.counts.newton += 1;
+            self.factorise(system, iterate, &increment.missing)?;
+            let load = iterate.assembly.load(&[&end.force, &iterate.contact]);
             let mut step = vec![0.0; load.len()];
-            std::mem::take(missing).add_to(&mut step, 1.0);
+            std::mem::take(&mut increment.missing).add_to(&mut step, 1.0);
             let expected = FORCING * largest(load.iter().copied());
-            let mut unsymmetric = self.unsymmetric(system, &now, worst, (expected, 0.0));
+            let mut unsymmetric = self.unsymmetric(system, iterate, worst, (expected, 0.0));
             loop {
                 match &unsymmetric {
                     None => system.solve(&load, &mut step)?,
                     Some(u) => system.solve(&u.load(&load), &mut step)?,
                 }
-                if self.settles(&mut unsymmetric, &now, &step, held) {
+                if self.settles(&mut unsymmetric, iterate, &step, system.prescribed()) {
                     break;
                 }
             }
-            let target = now.contact.clone();
-            let line = Line {
-                tangent: true,
-                allowed: self.allowed(&[worst]),
-                end,
+            let step = NewtonStep {
+                displacement: step,
+                factor: 0.0,
                 growth: SparseVector::default(),
-                held,
-                step: &step,
-                target: &target,
+                contact: contact.clone(),
                 complete,
                 slack: 0.0,
+                tangent: true,
+                allowed: self.allowed(&[worst]),
             };
-            now = self.search(system, &line, now);
+            self.search(system, end, &step, iterate);
         }
-        let residual = now.imbalance(end, held);
-        let target = self.target(
-            system,
-            self.force_scale(&now.assembly, end, &now.contact),
-            &now.d_u,
-        );
-        Err(self.not_converged(&residual, self.settings.iterations, target))
+    }
+}
+
+/// The increment at the fixed point.
+fn candidate<const D: usize>(
+    increment: Increment<'_, '_, D>,
+    force: Vec<Local<D>>,
+    response: Response<D>,
+    out_of_balance: f64,
+) -> Candidate<D> {
+    let u = response.displacement;
+    Candidate {
+        out_of_balance,
+        d_u: increment.iterate.d_u,
+        internal: increment.iterate.assembly.internal,
+        kinematics: response.kinematics,
+        solution: ContactSolution {
+            irreversible: u.clone(),
+            motion: vec![Local::zeros(); u.len()],
+            displacement: u,
+            force,
+            status: response.status,
+            iterations: increment.counts.contact,
+            residual: response.residual,
+            exact: true,
+        },
+        counts: increment.counts,
     }
 }

@@ -1,0 +1,137 @@
+//! When an increment is in balance, and what is told of one that is not.
+
+use crate::driver::Driver;
+use crate::error::{Imbalance, StepError};
+use crate::linear::system::{Assembly, System};
+use crate::model::load::Loading;
+use crate::model::points::Kinematics;
+use crate::vector::SparseVector;
+use crate::vector::largest;
+use moreau_contact::ContactSolution;
+
+/// How far an increment may move anything, in sizes of the mesh, of what it prescribes and of the
+/// widest gap.
+const FARTHEST: f64 = 10.0;
+
+/// What an increment may be off by, over the residual of its contact solution: that weighs
+/// displacements with a somewhat smaller α.
+const CONTACT_SLACK: f64 = 10.0;
+
+/// What an increment may be off by for its contact solution \[N\]. One that is not exact excuses
+/// nothing.
+pub(crate) fn slack<const D: usize>(solution: &ContactSolution<D>) -> f64 {
+    match solution.exact {
+        true => CONTACT_SLACK * solution.residual,
+        false => 0.0,
+    }
+}
+
+impl<const D: usize> Driver<D> {
+    /// Size of the forces in play at the nodes, against which imbalance is judged \[N\]. What a tool
+    /// carries is a sum of them.
+    pub(crate) fn force_scale(
+        &self,
+        assembly: &Assembly,
+        end: &Loading<D>,
+        contact: &SparseVector,
+    ) -> f64 {
+        let nodes = self.mesh_dofs();
+        let given = end.force.iter().chain(contact.iter());
+        let given = given.filter(|&(dof, _)| dof < nodes).map(|(_, f)| f);
+        let internal = assembly.internal[..nodes].iter().copied();
+        largest(given.chain(internal)).max(f64::MIN_POSITIVE)
+    }
+
+    /// Out-of-balance force at which an increment is accepted \[N\]: the tolerance, or the rounding of
+    /// internal forces where the body moves almost rigidly, or is let go: a stress that has vanished is
+    /// what rounding left of the largest so far.
+    pub(crate) fn accepted_residual(&self, system: &System, scale: f64, d_u: &[f64]) -> f64 {
+        // Of the size of the mesh, no position has a smaller part.
+        let (size, moved) = (self.mesh.size(), &d_u[..self.mesh_dofs()]);
+        let motion = largest(moved.iter().copied()).max(self.state.farthest);
+        let motion = motion.clamp(f64::EPSILON * size, size);
+        let rounding = 64.0 * f64::EPSILON * system.stiffest() * motion;
+        (self.settings.tolerance * scale).max(rounding)
+    }
+
+    /// Whether nothing has gone so far that forces are rounding: what slides away is in balance with
+    /// anything there. What falls may go as far as to what stops it.
+    pub(crate) fn is_near(
+        &self,
+        system: &System,
+        d_u: &[f64],
+        (start, end): (&Loading<D>, &Loading<D>),
+    ) -> bool {
+        let moved = largest(d_u[..self.mesh_dofs()].iter().copied());
+        let prescribed = end.displacement.iter();
+        let told = largest(prescribed.map(|(dof, u)| u - start.displacement.get(dof).unwrap_or(u)));
+        let reach = self.mesh.size() + told;
+        moved <= FARTHEST * reach || {
+            let before = self.kinematics(system, start, &vec![0.0; d_u.len()]);
+            let gap = largest(before.iter().map(|k| k.u[0]));
+            moved <= FARTHEST * (reach + gap)
+        }
+    }
+
+    /// Whether gaps and slips of the displacements themselves obey the law with the forces of the
+    /// linearised problem: once that is solved exactly, they do on a plane, and on a curved obstacle
+    /// where the step is small.
+    pub(crate) fn law_holds(
+        &self,
+        system: &System,
+        kinematics: &[Kinematics<D>],
+        solution: &ContactSolution<D>,
+        scale: f64,
+    ) -> bool {
+        let stiffness = system.shift();
+        // Below this the difference of two positions is rounding.
+        let (low, high) = self.mesh.bounds();
+        let reach = largest(low.iter().chain(&high).copied());
+        let rounding = 16.0 * f64::EPSILON * reach * stiffness;
+        let tolerance = self.settings.tolerance * scale + slack(solution) + rounding;
+        let holds = |i: usize| {
+            let elastic = solution.irreversible[i] - solution.displacement[i];
+            let mut u = kinematics[i].u + elastic;
+            let mut t = solution.force[i];
+            for j in 0..D {
+                if !kinematics[i].active[j] {
+                    (u[j], t[j]) = (0.0, 0.0);
+                }
+            }
+            // α of the size of the structure's stiffness, as in the contact problem.
+            kinematics[i].law.natural_map(&u, &t, stiffness).norm() <= tolerance
+        };
+        solution.exact && (0..kinematics.len()).all(holds)
+    }
+
+    /// The error of an increment that iterations have not brought into balance.
+    pub(crate) fn not_converged(
+        &self,
+        residual: &[f64],
+        iterations: usize,
+        target: f64,
+    ) -> StepError {
+        StepError::NotConverged {
+            iterations,
+            out_of_balance: largest(residual.iter().copied()),
+            tolerance: target,
+            worst: self.worst(&residual[..self.mesh_dofs()]),
+            plastic_fraction: self.plastic_fraction(),
+        }
+    }
+
+    /// The five nodes with the largest force that nothing balances, worst first; `residual` has an
+    /// entry for every degree of freedom \[N\].
+    pub fn worst(&self, residual: &[f64]) -> Vec<Imbalance> {
+        let norm = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>().sqrt();
+        let force: Vec<f64> = residual.chunks(D).map(norm).collect();
+        let mut order: Vec<usize> = (0..force.len()).collect();
+        order.sort_by(|&a, &b| force[b].total_cmp(&force[a]));
+        let imbalance = |&node: &usize| Imbalance {
+            node,
+            position: self.mesh.nodes()[node].to_vec(),
+            force: force[node],
+        };
+        order.iter().take(5).map(imbalance).collect()
+    }
+}
