@@ -78,7 +78,7 @@ pub struct StepReport {
     pub nonlinear_solves: usize,
     /// Iterations of the contact solver, summed.
     pub contact_iterations: usize,
-    /// SparseVector factorisations.
+    /// Sparse factorisations.
     pub factorisations: usize,
     /// Iterations of conjugate gradients and, where the tangent is not symmetric, steps beyond the first of each
     /// Newton iteration; none where the stiffness itself is factorised.

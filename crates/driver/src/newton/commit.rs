@@ -5,11 +5,11 @@ use crate::driver::{Driver, State};
 use crate::error::StepError;
 use crate::model::load::Loading;
 use crate::model::points::Kinematics;
-use crate::newton::candidate::Candidate;
+use crate::newton::candidate::{Candidate, Counts};
 use crate::report::{ContactRecord, Energies, StepReport};
 use crate::vector::SparseVector;
 use crate::vector::largest;
-use moreau_contact::Certificate;
+use moreau_contact::{Certificate, ContactSolution};
 use moreau_laws::{Local, Status};
 use nalgebra::SVector;
 
@@ -39,97 +39,25 @@ impl<const D: usize> Driver<D> {
             out_of_balance,
             counts,
         } = candidate;
-        let laws: Vec<_> = kinematics.iter().map(|k| k.law).collect();
-        let mut irreversible = Vec::with_capacity(kinematics.len());
-        let mut contacts = Vec::with_capacity(kinematics.len());
-        let mut corners = Vec::new();
-        let mut friction = 0.0;
-        let mut penalty = 0.0;
-        let (mut open, mut stick, mut slip) = (0, 0, 0);
-        for (i, (p, k)) in self.points.iter().zip(&kinematics).enumerate() {
-            let mut u = k.u;
-            u[0] = k.gap;
-            let mut t = solution.force[i];
-            for j in 0..D {
-                if !k.active[j] {
-                    t[j] = 0.0;
-                    if j > 0 {
-                        u[j] = 0.0;
-                    }
-                }
-            }
-            let elastic = solution.irreversible[i] - solution.displacement[i];
-            let obeying = u + elastic;
-            friction -= (1..D).map(|j| t[j] * obeying[j]).sum::<f64>();
-            // Springs in series: ½ t·C t, with C t₀* the part they held before.
-            let before = k.local_force(&self.state.contacts[i].force);
-            penalty += 0.5 * elastic[0] * t[0];
-            penalty += (1..D)
-                .map(|j| 0.5 * elastic[j] * (t[j] + before[j]))
-                .sum::<f64>();
-            penalty -= 0.5 * self.state.contacts[i].t[0] * self.state.contacts[i].spring[0];
-            irreversible.push(obeying);
-            // A point that is held along one tangent of a surface in space slips along the other.
-            let held = !(1..D).any(|j| k.active[j]);
-            let status = match solution.status[i] {
-                Status::Slip if held => Status::Stick,
-                other => other,
-            };
-            match status {
-                Status::Open => open += 1,
-                Status::Stick if !held => stick += 1,
-                Status::Slip if !held => slip += 1,
-                _ => {}
-            }
-            if k.at_corner && status != Status::Open {
-                corners.push(i);
-            }
-            contacts.push(ContactRecord {
-                contact: p.contact,
-                node: p.node,
-                position: self.mesh.nodes()[p.node],
-                kind: p.kind,
-                u,
-                t,
-                force: k.force(&t),
-                area: self.footings[i].area,
-                status,
-                held,
-                spring: elastic,
-            });
-        }
+        let record = |i: usize| self.record(i, &kinematics[i], &solution);
+        let contacts: Vec<ContactRecord<D>> = (0..kinematics.len()).map(record).collect();
         let forces: Vec<Local<D>> = contacts.iter().map(|c| c.t).collect();
-        let certificate = Certificate::new(&laws, &irreversible, &forces);
+        let obeying: Vec<Local<D>> = contacts.iter().map(|c| c.u + c.spring).collect();
+        let laws: Vec<_> = kinematics.iter().map(|k| k.law).collect();
+        let certificate = Certificate::new(&laws, &obeying, &forces);
         let contact = self.contact_forces(&kinematics, &forces);
-        let mut energies = self.state.energies;
-        energies.external_work += self.external_work(start, end, &d_u, &internal, &contact)
+        let work = self.external_work((start, end), &d_u, &internal, &contact)
             + self.closing_work(&kinematics, &contacts, &d_u);
-        energies.friction_dissipation += friction;
-        energies.penalty += penalty;
-        energies.stored = 0.0;
-        let (mut plastic_volume, mut volume) = (0.0, 0.0);
-        for block in &self.blocks {
-            let energy = block.energy();
-            energies.stored += energy.stored;
-            energies.plastic_dissipation += energy.dissipated;
-            plastic_volume += energy.plastic_volume;
-            volume += energy.volume;
-        }
-        let plastic_fraction = fraction(plastic_volume, volume);
+        let (energies, plastic_fraction) = self.energies_after(work, &kinematics, &contacts);
         all_finite(&energies, &certificate, &d_u)?;
         for block in &mut self.blocks {
             block.commit();
         }
-        let mut displacement = self.state.displacement.clone();
-        for (u, d) in displacement.iter_mut().zip(&d_u) {
-            *u += d;
-        }
-        // Prescribed values exactly, not as sums of increments.
-        for (&dof, &u) in &end.displacement {
-            displacement[dof] = u;
-        }
-        let last = self.repeatable(d_u, end);
+        let touches = |i: &usize| kinematics[*i].at_corner && contacts[*i].status != Status::Open;
+        let corners = (0..contacts.len()).filter(touches).collect();
+        let displacement = self.displacement_after(&d_u, end);
         let moved = largest(displacement[..self.mesh_dofs()].iter().copied());
+        let last = self.repeatable(d_u, end);
         self.state = State {
             increment: self.state.increment + 1,
             displacement,
@@ -142,7 +70,110 @@ impl<const D: usize> Driver<D> {
             farthest: moved.max(self.state.farthest),
             solution: Some(solution),
         };
-        Ok(StepReport {
+        let verdict = (plastic_fraction, certificate);
+        Ok(self.report(verdict, corners, out_of_balance, counts))
+    }
+
+    /// What is kept of a contact point under a solution.
+    fn record(
+        &self,
+        i: usize,
+        kinematics: &Kinematics<D>,
+        solution: &ContactSolution<D>,
+    ) -> ContactRecord<D> {
+        let (point, active) = (&self.points[i], &kinematics.active);
+        let (mut u, mut t) = (kinematics.u, solution.force[i]);
+        u[0] = kinematics.gap;
+        for j in (0..D).filter(|&j| !active[j]) {
+            t[j] = 0.0;
+            if j > 0 {
+                u[j] = 0.0;
+            }
+        }
+        // A point that is held along one tangent of a surface in space slips along the other.
+        let held = !(1..D).any(|j| active[j]);
+        let status = match solution.status[i] {
+            Status::Slip if held => Status::Stick,
+            other => other,
+        };
+        ContactRecord {
+            contact: point.contact,
+            node: point.node,
+            position: self.mesh.nodes()[point.node],
+            kind: point.kind,
+            u,
+            t,
+            force: kinematics.force(&t),
+            area: self.footings[i].area,
+            status,
+            held,
+            spring: solution.irreversible[i] - solution.displacement[i],
+        }
+    }
+
+    /// Energies at the end of an increment in which what acts from outside does this work, and the part
+    /// of the volume that flows.
+    fn energies_after(
+        &self,
+        work: f64,
+        kinematics: &[Kinematics<D>],
+        contacts: &[ContactRecord<D>],
+    ) -> (Energies, f64) {
+        let mut energies = self.state.energies;
+        energies.external_work += work;
+        let (mut friction, mut penalty) = (0.0, 0.0);
+        for (k, (c, before)) in kinematics
+            .iter()
+            .zip(contacts.iter().zip(&self.state.contacts))
+        {
+            friction -= (1..D).map(|j| c.t[j] * (c.u[j] + c.spring[j])).sum::<f64>();
+            // Springs in series: ½ t·C t, with C t₀* the part they held before.
+            let held = k.local_force(&before.force);
+            penalty += 0.5 * c.spring[0] * c.t[0];
+            penalty += (1..D)
+                .map(|j| 0.5 * c.spring[j] * (c.t[j] + held[j]))
+                .sum::<f64>();
+            penalty -= 0.5 * before.t[0] * before.spring[0];
+        }
+        energies.friction_dissipation += friction;
+        energies.penalty += penalty;
+        energies.stored = 0.0;
+        let (mut plastic_volume, mut volume) = (0.0, 0.0);
+        for block in &self.blocks {
+            let energy = block.energy();
+            energies.stored += energy.stored;
+            energies.plastic_dissipation += energy.dissipated;
+            plastic_volume += energy.plastic_volume;
+            volume += energy.volume;
+        }
+        (energies, fraction(plastic_volume, volume))
+    }
+
+    /// Displacements at the end of an increment: prescribed values exactly, not as sums of increments.
+    fn displacement_after(&self, d_u: &[f64], end: &Loading<D>) -> Vec<f64> {
+        let pairs = self.state.displacement.iter().zip(d_u);
+        let mut displacement: Vec<f64> = pairs.map(|(u, d)| u + d).collect();
+        for (&dof, &u) in &end.displacement {
+            displacement[dof] = u;
+        }
+        displacement
+    }
+
+    /// What is told of the increment that has just been committed.
+    fn report(
+        &self,
+        (plastic_fraction, certificate): (f64, Certificate),
+        corners: Vec<usize>,
+        out_of_balance: f64,
+        counts: Counts,
+    ) -> StepReport {
+        let contacts = &self.state.contacts;
+        let of = |status: Status| {
+            let counted =
+                |c: &&ContactRecord<D>| c.status == status && (!c.held || status == Status::Open);
+            contacts.iter().filter(counted).count()
+        };
+        StepReport {
             increment: self.state.increment,
             fraction: 1.0,
             newton_iterations: counts.newton,
@@ -153,11 +184,11 @@ impl<const D: usize> Driver<D> {
             contact_solves: counts.contact_solves,
             shortened_steps: counts.shortened,
             cuts: 0,
-            open,
-            stick,
-            slip,
+            open: of(Status::Open),
+            stick: of(Status::Stick),
+            slip: of(Status::Slip),
             plastic_fraction,
-            energies,
+            energies: self.state.energies,
             certificate,
             criticality: counts.criticality,
             free_motions: match counts.undetermined {
@@ -167,14 +198,13 @@ impl<const D: usize> Driver<D> {
             corners,
             out_of_balance,
             residuals: counts.residuals,
-        })
+        }
     }
 
     /// Work over the increment of applied forces and reactions, by the trapezoidal rule.
     fn external_work(
         &self,
-        start: &Loading<D>,
-        end: &Loading<D>,
+        (start, end): (&Loading<D>, &Loading<D>),
         d_u: &[f64],
         internal: &[f64],
         contact: &SparseVector,
