@@ -12,6 +12,7 @@ mod lexer;
 mod links;
 mod locked;
 mod quiet;
+mod rooms;
 mod source;
 mod tree;
 
@@ -91,6 +92,7 @@ fn violations(root: &Path) -> Result<(Tree, Vec<Violation>), Box<dyn Error>> {
     found.extend(forbidden::violations(&tree.sources));
     found.extend(headers::violations(&tree.sources));
     found.extend(elements::violations(&tree.sources));
+    found.extend(rooms::violations(&tree.sources));
     if let Some(text) = tree.text("Cargo.lock") {
         found.extend(locked::violations(text));
     }

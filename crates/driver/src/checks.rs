@@ -4,5 +4,6 @@ pub(crate) mod between;
 pub(crate) mod gaps;
 pub(crate) mod loose;
 pub(crate) mod passage;
+pub(crate) mod rigid;
 pub(crate) mod smallness;
 pub(crate) mod supports;

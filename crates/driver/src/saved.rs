@@ -2,209 +2,225 @@
 
 use crate::driver::{Driver, State};
 use crate::error::ModelError;
+use crate::linear::system::System;
 use crate::model::load::Loading;
+use crate::report::ContactRecord;
 use crate::settings::Seam;
-use crate::vector::SparseVector;
 use moreau_contact::ContactSolution;
 use moreau_laws::{Local, Status};
-use nalgebra::{SVector, Vector};
 
-/// Reads numbers in the order in which they were written.
-#[derive(Debug, Clone)]
-pub struct Reader<'a> {
-    left: &'a [f64],
+/// A list of numbers, appended to or read from: one order serves both.
+#[derive(Debug)]
+pub enum Numbers<'a> {
+    /// Values are appended.
+    Written(&'a mut Vec<f64>),
+    /// Values are replaced by those from here on.
+    Read(&'a [f64]),
 }
 
-/// Statuses as numbers.
-const STATUSES: [Status; 3] = [Status::Open, Status::Stick, Status::Slip];
-
-impl<'a> Reader<'a> {
-    /// From the first number on.
-    pub fn new(numbers: &'a [f64]) -> Self {
-        Self { left: numbers }
-    }
-
-    /// The next numbers.
+/// What is saved.
+pub trait Saved: Clone {
+    /// Hands every value to `numbers`, in an order that does not depend on whether they are written or read.
     ///
     /// # Errors
-    /// [`ModelError::Saved`] if there are fewer.
-    pub fn take(&mut self, count: usize) -> Result<&'a [f64], ModelError> {
-        let Some((head, tail)) = self.left.split_at_checked(count) else {
-            return Err(ModelError::Saved {
-                what: "numbers left",
-                found: self.left.len(),
-                expected: count,
-            });
-        };
-        self.left = tail;
-        Ok(head)
+    /// [`ModelError::Saved`] and [`ModelError::OutOfRange`] for numbers of something else; part of the
+    /// values may have been replaced then. None where they are written.
+    fn visit(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError>;
+
+    /// Appends what [`Saved::read`] needs.
+    fn write(&self, out: &mut Vec<f64>) {
+        // Only reading fails.
+        let _ = self.clone().visit(&mut Numbers::Written(out));
     }
 
-    /// The next number.
+    /// Takes over what [`Saved::write`] left of the like; nothing has changed after an error.
     ///
     /// # Errors
-    /// See [`Reader::take`].
-    pub fn number(&mut self) -> Result<f64, ModelError> {
-        Ok(self.take(1)?[0])
+    /// See [`Saved::visit`].
+    fn read(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
+        let mut read = self.clone();
+        read.visit(numbers)?;
+        *self = read;
+        Ok(())
     }
+}
 
-    /// The next number, a count.
+impl Numbers<'_> {
+    /// Values, as many as there are.
     ///
     /// # Errors
-    /// See [`Reader::take`].
-    pub fn count(&mut self) -> Result<usize, ModelError> {
-        // A number that is no count becomes one that does not fit.
-        Ok(self.number()? as usize)
-    }
-
-    /// A list of known length, with its count before it.
-    fn list(&mut self, what: &'static str, expected: usize) -> Result<&'a [f64], ModelError> {
-        let found = self.count()?;
-        if found != expected {
-            return Err(ModelError::Saved {
-                what,
-                found,
-                expected,
-            });
+    /// [`ModelError::Saved`] if fewer are left.
+    pub fn values(&mut self, values: &mut [f64]) -> Result<(), ModelError> {
+        match self {
+            Self::Written(out) => out.extend_from_slice(values),
+            Self::Read(left) => {
+                let Some((head, tail)) = left.split_at_checked(values.len()) else {
+                    return Err(ModelError::Saved {
+                        what: "numbers left",
+                        found: left.len(),
+                        expected: values.len(),
+                    });
+                };
+                values.copy_from_slice(head);
+                *left = tail;
+            }
         }
-        self.take(found)
+        Ok(())
     }
 
-    fn vectors<const D: usize>(&mut self, count: usize) -> Result<Vec<Local<D>>, ModelError> {
-        let numbers = self.take(D.saturating_mul(count))?;
-        Ok(numbers.chunks(D).map(Local::from_column_slice).collect())
+    /// One value.
+    ///
+    /// # Errors
+    /// See [`Numbers::values`].
+    pub fn value(&mut self, value: &mut f64) -> Result<(), ModelError> {
+        self.values(std::slice::from_mut(value))
     }
 
-    fn statuses(&mut self, count: usize) -> Result<Vec<Status>, ModelError> {
-        let status = |&n: &f64| {
-            STATUSES
-                .get(n as usize)
-                .copied()
-                .ok_or(ModelError::OutOfRange {
-                    what: "a saved contact status".into(),
-                    value: n,
-                    expected: "0, 1 or 2",
-                })
-        };
-        self.take(count)?.iter().map(status).collect()
+    /// A count.
+    ///
+    /// # Errors
+    /// See [`Numbers::values`].
+    pub fn count(&mut self, count: &mut usize) -> Result<(), ModelError> {
+        let mut value = *count as f64;
+        self.value(&mut value)?;
+        // A number that is no count becomes one that does not fit.
+        *count = value as usize;
+        Ok(())
     }
 
-    pub(crate) fn loading<const D: usize>(&mut self) -> Result<Loading<D>, ModelError> {
-        let prescribed = self.count()?;
-        let pairs = self.take(prescribed.saturating_mul(2))?;
-        Ok(Loading {
-            displacement: pairs.chunks(2).map(|p| (p[0] as usize, p[1])).collect(),
-            force: self.sparse()?,
+    /// Yes or no.
+    ///
+    /// # Errors
+    /// See [`Numbers::values`].
+    pub fn flag(&mut self, flag: &mut bool) -> Result<(), ModelError> {
+        let mut count = usize::from(*flag);
+        self.count(&mut count)?;
+        *flag = count == 1;
+        Ok(())
+    }
+
+    /// Something that may be missing: `empty` is replaced by what is there.
+    ///
+    /// # Errors
+    /// See [`Numbers::values`].
+    pub fn option<T>(
+        &mut self,
+        option: &mut Option<T>,
+        empty: impl FnOnce() -> T,
+        visit: impl FnOnce(&mut T, &mut Self) -> Result<(), ModelError>,
+    ) -> Result<(), ModelError> {
+        let mut there = option.is_some();
+        self.flag(&mut there)?;
+        if !there {
+            *option = None;
+            return Ok(());
+        }
+        visit(option.get_or_insert_with(empty), self)
+    }
+
+    /// A list of any length, after its length.
+    ///
+    /// # Errors
+    /// See [`Numbers::values`].
+    pub fn list(&mut self, list: &mut Vec<f64>) -> Result<(), ModelError> {
+        let mut count = list.len();
+        self.count(&mut count)?;
+        if let Self::Read(left) = self {
+            // No room is made for more than there is.
+            list.resize(count.min(left.len() + 1), 0.0);
+        }
+        self.values(list)
+    }
+
+    /// A list whose length is known, after that.
+    ///
+    /// # Errors
+    /// [`ModelError::Saved`] if it is another.
+    pub fn known(&mut self, what: &'static str, list: &mut [f64]) -> Result<(), ModelError> {
+        self.length(what, list.len())?;
+        self.values(list)
+    }
+
+    fn length(&mut self, what: &'static str, expected: usize) -> Result<(), ModelError> {
+        let mut found = expected;
+        self.count(&mut found)?;
+        if found == expected {
+            return Ok(());
+        }
+        Err(ModelError::Saved {
+            what,
+            found,
+            expected,
         })
     }
 
-    fn sparse(&mut self) -> Result<SparseVector, ModelError> {
-        let count = self.count()?;
-        let pairs = self.take(count.saturating_mul(2))?;
-        Ok(pairs.chunks(2).map(|p| (p[0] as usize, p[1])).collect())
+    fn vectors<const D: usize>(&mut self, vectors: &mut [Local<D>]) -> Result<(), ModelError> {
+        let mut vectors = vectors.iter_mut();
+        vectors.try_for_each(|v| self.values(v.as_mut_slice()))
+    }
+
+    fn status(&mut self, status: &mut Status) -> Result<(), ModelError> {
+        const STATUSES: [Status; 3] = [Status::Open, Status::Stick, Status::Slip];
+        let place = STATUSES.iter().position(|s| s == status);
+        let mut number = place.unwrap_or_default() as f64;
+        self.value(&mut number)?;
+        let known = STATUSES.get(number as usize);
+        *status = *known.ok_or(ModelError::OutOfRange {
+            what: "a saved contact status".into(),
+            value: number,
+            expected: "0, 1 or 2",
+        })?;
+        Ok(())
+    }
+
+    fn sparse<T>(&mut self, vector: &mut T) -> Result<(), ModelError>
+    where
+        T: Clone + IntoIterator<Item = (usize, f64)> + FromIterator<(usize, f64)>,
+    {
+        let pairs = vector.clone().into_iter();
+        let mut list: Vec<f64> = pairs.flat_map(|(dof, v)| [dof as f64, v]).collect();
+        self.list(&mut list)?;
+        let pairs = list.chunks_exact(2);
+        *vector = pairs.map(|pair| (pair[0] as usize, pair[1])).collect();
+        Ok(())
     }
 }
 
-fn write_list(list: &[f64], out: &mut Vec<f64>) {
-    out.push(list.len() as f64);
-    out.extend(list);
-}
-
-fn write_sparse(pairs: impl ExactSizeIterator<Item = (usize, f64)>, out: &mut Vec<f64>) {
-    out.push(pairs.len() as f64);
-    out.extend(pairs.flat_map(|(dof, value)| [dof as f64, value]));
-}
-
-fn write_vectors<const D: usize>(list: &[Local<D>], out: &mut Vec<f64>) {
-    out.extend(list.iter().flat_map(Vector::iter));
-}
-
-fn write_statuses(list: impl Iterator<Item = Status>, out: &mut Vec<f64>) {
-    out.extend(list.map(|status| match status {
-        Status::Open => 0.0,
-        Status::Stick => 1.0,
-        Status::Slip => 2.0,
-    }));
-}
-
-pub(crate) fn write_loading<const D: usize>(loading: &Loading<D>, out: &mut Vec<f64>) {
-    write_sparse(loading.displacement.iter().map(|(&dof, &u)| (dof, u)), out);
-    write_sparse(loading.force.iter(), out);
-}
-
-impl<const D: usize> Driver<D> {
-    /// Appends the committed state: all that [`Driver::read`] needs to go on as if nothing had
-    /// happened.
-    pub fn write(&self, out: &mut Vec<f64>) {
-        let state = &self.state;
-        out.extend([state.increment as f64, state.farthest]);
-        write_list(&state.displacement, out);
-        write_list(&state.internal, out);
-        write_sparse(state.contact.iter(), out);
-        write_loading(&state.loading, out);
-        out.push(f64::from(u8::from(state.last.is_some())));
-        if let Some((d_u, loading)) = &state.last {
-            write_list(d_u, out);
-            write_loading(loading, out);
-        }
-        let e = &state.energies;
-        out.extend([e.external_work, e.stored, e.plastic_dissipation]);
-        out.extend([e.friction_dissipation, e.penalty]);
-        out.push(state.contacts.len() as f64);
-        write_statuses(state.contacts.iter().map(|c| c.status), out);
-        for c in &state.contacts {
-            write_vectors(&[c.u, c.t, c.force, c.spring], out);
-            out.extend([c.area, f64::from(u8::from(c.held))]);
-        }
-        out.push(f64::from(u8::from(state.solution.is_some())));
-        if let Some(s) = &state.solution {
-            write_vectors(&s.displacement, out);
-            write_vectors(&s.irreversible, out);
-            write_vectors(&s.force, out);
-            write_statuses(s.status.iter().copied(), out);
-            out.extend([s.iterations as f64, s.residual]);
-        }
-        for block in &self.blocks {
-            write_list(&block.state(), out);
-        }
-        // An elastic factor at hand is not computed again: that counts.
-        let held = self.system.as_ref();
-        let elastic = held.is_some_and(crate::linear::system::System::holds_elastic_factor);
-        out.push(f64::from(u8::from(held.is_some())));
-        out.push(f64::from(u8::from(elastic)));
-        out.push(f64::from(u8::from(
-            held.is_some_and(crate::linear::system::System::is_tied),
-        )));
-        let pivot = held.and_then(|s| s.pivot);
-        out.push(pivot.map_or(-1.0, |node| node as f64));
+impl<const D: usize> Saved for Loading<D> {
+    fn visit(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
+        numbers.sparse(&mut self.displacement)?;
+        numbers.sparse(&mut self.force)
     }
+}
 
-    /// Takes over a state that [`Driver::write`] left of a driver of the same model.
-    ///
-    /// # Errors
-    /// [`ModelError::Saved`] and [`ModelError::OutOfRange`] for numbers of another model; the
-    /// driver is then of no use.
-    pub fn read(&mut self, from: &mut Reader<'_>) -> Result<(), ModelError> {
-        let (dofs, points) = (self.state.displacement.len(), self.points.len());
-        let (increment, farthest) = (from.count()?, from.number()?);
-        let displacement = from.list("degrees of freedom", dofs)?.to_vec();
-        let internal = from.list("degrees of freedom", dofs)?.to_vec();
-        let loads = Loading::<D> {
-            force: from.sparse()?,
-            ..Loading::default()
-        };
-        loads.check(self.mesh.nodes().len(), dofs)?;
-        let contact = loads.force;
-        let loading: Loading<D> = from.loading()?;
-        loading.check(self.mesh.nodes().len(), dofs)?;
-        let last = match from.count()? {
-            0 => None,
-            _ => Some((
-                from.list("degrees of freedom", dofs)?.to_vec(),
-                from.loading()?,
-            )),
-        };
-        let mut energies = self.state.energies;
+impl<const D: usize> Saved for ContactRecord<D> {
+    fn visit(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
+        numbers.status(&mut self.status)?;
+        numbers.flag(&mut self.held)?;
+        numbers.value(&mut self.area)?;
+        for vector in [&mut self.u, &mut self.t, &mut self.force, &mut self.spring] {
+            numbers.values(vector.as_mut_slice())?;
+        }
+        Ok(())
+    }
+}
+
+impl<const D: usize> Saved for State<D> {
+    fn visit(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
+        const DOFS: &str = "degrees of freedom";
+        let (dofs, points) = (self.displacement.len(), self.contacts.len());
+        numbers.count(&mut self.increment)?;
+        numbers.value(&mut self.farthest)?;
+        numbers.known(DOFS, &mut self.displacement)?;
+        numbers.known(DOFS, &mut self.internal)?;
+        numbers.sparse(&mut self.contact)?;
+        self.loading.visit(numbers)?;
+        let rest = || (vec![0.0; dofs], Loading::default());
+        numbers.option(&mut self.last, rest, |(d_u, loading), numbers| {
+            numbers.known(DOFS, d_u)?;
+            loading.visit(numbers)
+        })?;
+        let energies = &mut self.energies;
         for energy in [
             &mut energies.external_work,
             &mut energies.stored,
@@ -212,45 +228,96 @@ impl<const D: usize> Driver<D> {
             &mut energies.friction_dissipation,
             &mut energies.penalty,
         ] {
-            *energy = from.number()?;
+            numbers.value(energy)?;
         }
-        let found = from.count()?;
-        if found != points {
-            return Err(ModelError::Saved {
-                what: "contact points",
-                found,
-                expected: points,
-            });
+        numbers.length("contact points", points)?;
+        for contact in &mut self.contacts {
+            contact.visit(numbers)?;
         }
-        let status = from.statuses(points)?;
-        let mut contacts = self.state.contacts.clone();
-        for (contact, status) in contacts.iter_mut().zip(status) {
-            contact.status = status;
-            for vector in [&mut contact.u, &mut contact.t] {
-                *vector = SVector::from_column_slice(from.take(D)?);
-            }
-            contact.force = SVector::from_column_slice(from.take(D)?);
-            contact.spring = SVector::from_column_slice(from.take(D)?);
-            contact.area = from.number()?;
-            contact.held = from.count()? == 1;
-        }
-        let solution = match from.count()? {
-            0 => None,
-            _ => Some(ContactSolution {
-                displacement: from.vectors(points)?,
-                irreversible: from.vectors(points)?,
-                // Of the iteration that found it; the next begins where that has led.
-                motion: vec![Local::zeros(); points],
-                force: from.vectors(points)?,
-                status: from.statuses(points)?,
-                iterations: from.count()?,
-                residual: from.number()?,
-                exact: true,
-            }),
+        let open = || ContactSolution {
+            displacement: vec![Local::zeros(); points],
+            irreversible: vec![Local::zeros(); points],
+            // Of the iteration that found it; the next begins where that has led.
+            motion: vec![Local::zeros(); points],
+            force: vec![Local::zeros(); points],
+            status: vec![Status::Open; points],
+            iterations: 0,
+            residual: 0.0,
+            exact: true,
         };
+        numbers.option(&mut self.solution, open, |solution, numbers| {
+            numbers.vectors(&mut solution.displacement)?;
+            numbers.vectors(&mut solution.irreversible)?;
+            numbers.vectors(&mut solution.force)?;
+            for status in &mut solution.status {
+                numbers.status(status)?;
+            }
+            numbers.count(&mut solution.iterations)?;
+            numbers.value(&mut solution.residual)
+        })
+    }
+}
+
+/// What of a linear system decides the bits of the next increment: an elastic factor at hand is not
+/// computed again.
+#[derive(Debug, Clone, Copy, Default)]
+struct Held {
+    elastic: bool,
+    tied: bool,
+    pivot: Option<usize>,
+}
+
+impl Held {
+    fn of(system: &System) -> Self {
+        Self {
+            elastic: system.holds_elastic_factor(),
+            tied: system.is_tied(),
+            pivot: system.pivot,
+        }
+    }
+}
+
+impl Saved for Held {
+    fn visit(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
+        numbers.flag(&mut self.elastic)?;
+        numbers.flag(&mut self.tied)?;
+        numbers.option(&mut self.pivot, || 0, |node, numbers| numbers.count(node))
+    }
+}
+
+impl<const D: usize> Driver<D> {
+    /// Appends the committed state: all that [`Driver::read`] needs to go on as if nothing had
+    /// happened.
+    pub fn write(&self, out: &mut Vec<f64>) {
+        self.state.write(out);
+        for block in &self.blocks {
+            let state = block.state();
+            out.push(state.len() as f64);
+            out.extend(state);
+        }
+        let held = self.system.as_ref().map(Held::of);
+        out.push(f64::from(u8::from(held.is_some())));
+        held.iter().for_each(|held| held.write(out));
+    }
+
+    /// Takes over a state that [`Driver::write`] left of a driver of the same model.
+    ///
+    /// # Errors
+    /// [`ModelError::Saved`] and [`ModelError::OutOfRange`] for numbers of another model; the
+    /// driver is then of no use.
+    pub fn read(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
+        self.state.read(numbers)?;
+        let (nodes, dofs) = (self.mesh.nodes().len(), self.state.displacement.len());
+        let contact = Loading::<D> {
+            force: self.state.contact.clone(),
+            ..Loading::default()
+        };
+        contact.check(nodes, dofs)?;
+        self.state.loading.check(nodes, dofs)?;
         for block in &mut self.blocks {
-            let found = from.count()?;
-            let expected = block.restore(from.take(found)?);
+            let mut state = Vec::new();
+            numbers.list(&mut state)?;
+            let (found, expected) = (state.len(), block.restore(&state));
             if found != expected {
                 return Err(ModelError::Saved {
                     what: "numbers of material states in a block",
@@ -259,38 +326,27 @@ impl<const D: usize> Driver<D> {
                 });
             }
         }
-        let (held, elastic) = (from.count()? == 1, from.count()? == 1);
-        let seam = match from.count()? == 1 {
-            true => Seam::Tied,
-            false => Seam::Condensed,
-        };
-        let nodes = 0..self.mesh.nodes().len();
-        let pivot = Some(from.number()?)
-            .filter(|&n| n >= 0.0)
-            .map(|n| n as usize);
-        let pivot = pivot.filter(|node| nodes.contains(node));
-        self.state = State {
-            increment,
-            displacement,
-            last,
-            internal,
-            loading,
-            energies,
-            contacts,
-            contact,
-            farthest,
-            solution,
-        };
-        self.system = None;
-        if held {
-            let loading = self.state.loading.clone();
-            let mut system = self.elastic_system(&loading, pivot, seam)?;
-            if elastic {
-                // The elastic stiffness was positive definite when it was first factorised.
-                let _ = system.factorise(true);
-            }
-            self.system = Some(system);
-        }
+        let mut held = None;
+        numbers.option(&mut held, Held::default, Held::visit)?;
+        self.system = held.map(|held| self.system_again(held)).transpose()?;
         Ok(())
+    }
+
+    /// The linear system that was at hand.
+    fn system_again(&mut self, held: Held) -> Result<System, ModelError> {
+        let seam = if held.tied {
+            Seam::Tied
+        } else {
+            Seam::Condensed
+        };
+        let nodes = self.mesh.nodes().len();
+        let pivot = held.pivot.filter(|&node| node < nodes);
+        let loading = self.state.loading.clone();
+        let mut system = self.elastic_system(&loading, pivot, seam)?;
+        if held.elastic {
+            // The elastic stiffness was positive definite when it was first factorised.
+            let _ = system.factorise(true);
+        }
+        Ok(system)
     }
 }

@@ -77,6 +77,15 @@ impl SparseVector {
     }
 }
 
+impl IntoIterator for SparseVector {
+    type Item = (usize, f64);
+    type IntoIter = std::collections::btree_map::IntoIter<usize, f64>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.into_iter()
+    }
+}
+
 impl FromIterator<(usize, f64)> for SparseVector {
     fn from_iter<I: IntoIterator<Item = (usize, f64)>>(pairs: I) -> Self {
         Self(pairs.into_iter().collect())

@@ -8,7 +8,7 @@ use crate::newton::control::Control;
 use crate::path::increments::Increments;
 use crate::report::collapse::Collapse;
 use crate::report::{Iteration, StepReport};
-use crate::saved::{Reader, write_loading};
+use crate::saved::{Numbers, Saved};
 use crate::settings::Nesting;
 use crate::vector::SparseVector;
 use crate::vector::largest;
@@ -40,7 +40,7 @@ pub struct Ramp<const D: usize> {
 }
 
 /// Stiffness against the loads of a step in an increment.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Yielded {
     /// Mean of λ.
     factor: f64,
@@ -71,7 +71,7 @@ impl Yielded {
 }
 
 /// How the path of equilibria is followed.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Path {
     /// Compliance of the spring that the loads are applied through \[N·mm\].
     compliance: f64,
@@ -107,64 +107,33 @@ impl<const D: usize> Ramp<D> {
     pub fn is_done(&self) -> bool {
         self.whole >= self.increments.pieces()
     }
+}
 
-    /// Appends all that [`Ramp::read`] needs.
-    pub fn write(&self, out: &mut Vec<f64>) {
-        write_loading(&self.start, out);
-        write_loading(&self.end, out);
-        out.extend([self.whole as f64, self.done, self.length]);
-        out.extend([self.easy as f64, self.cuts as f64, self.plastic_fraction]);
-        out.extend([self.work, f64::from(u8::from(self.path.is_some()))]);
-        for y in self.yielded {
-            let numbers = |y: Yielded| [1.0, y.factor, y.stiffness];
-            out.extend(y.map_or([0.0; 3], numbers));
+impl<const D: usize> Saved for Ramp<D> {
+    fn visit(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
+        self.start.visit(numbers)?;
+        self.end.visit(numbers)?;
+        for count in [&mut self.whole, &mut self.easy, &mut self.cuts] {
+            numbers.count(count)?;
         }
-        if let Some(p) = &self.path {
-            out.extend([p.compliance, p.length, p.last, p.peak, p.growth]);
-            out.push(f64::from(u8::from(p.ended)));
+        let (done, length) = (&mut self.done, &mut self.length);
+        for value in [done, length, &mut self.plastic_fraction, &mut self.work] {
+            numbers.value(value)?;
         }
-    }
-
-    /// The ramp of a step in the increments that it began with, as [`Ramp::write`] left it.
-    ///
-    /// # Errors
-    /// [`ModelError::Saved`] for numbers that are too few.
-    pub fn read(
-        step: &Step<D>,
-        increments: Increments,
-        from: &mut Reader<'_>,
-    ) -> Result<Self, ModelError> {
-        let mut ramp = Self {
-            step: step.name.clone(),
-            start: from.loading()?,
-            end: from.loading()?,
-            increments,
-            whole: from.count()?,
-            done: from.number()?,
-            length: from.number()?,
-            easy: from.count()?,
-            cuts: from.count()?,
-            plastic_fraction: from.number()?,
-            work: from.number()?,
-            yielded: [None; 2],
-            path: None,
-        };
-        let on_path = from.count()? == 1;
-        for y in &mut ramp.yielded {
-            let (known, factor, stiffness) = (from.count()?, from.number()?, from.number()?);
-            *y = (known == 1).then_some(Yielded { factor, stiffness });
+        for yielded in &mut self.yielded {
+            numbers.option(yielded, Yielded::default, |y, numbers| {
+                numbers.value(&mut y.factor)?;
+                numbers.value(&mut y.stiffness)
+            })?;
         }
-        if on_path {
-            ramp.path = Some(Path {
-                compliance: from.number()?,
-                length: from.number()?,
-                last: from.number()?,
-                peak: from.number()?,
-                growth: from.number()?,
-                ended: from.count()? == 1,
-            });
-        }
-        Ok(ramp)
+        numbers.option(&mut self.path, Path::default, |path, numbers| {
+            let (compliance, length) = (&mut path.compliance, &mut path.length);
+            let (last, peak) = (&mut path.last, &mut path.peak);
+            for value in [compliance, length, last, peak, &mut path.growth] {
+                numbers.value(value)?;
+            }
+            numbers.flag(&mut path.ended)
+        })
     }
 }
 

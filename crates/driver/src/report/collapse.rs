@@ -3,7 +3,7 @@
 
 /// A step whose loads grow in proportion, F₀ + λ q from λ = 0 to 1, and which the structure does
 /// not carry to its end: displacements grow while λ does not.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Collapse {
     /// The largest λ in equilibrium.
     pub load_factor: f64,
@@ -26,7 +26,7 @@ pub struct Collapse {
 /// D = √(2/3) σ_y ‖ė‖ + σ_m tr ε̇: without change of volume λ⁺ bounds the limit load of the mesh
 /// whatever v is, and what elastic changes of volume there are counts at the present mean stress.
 /// Parts that stay elastic count with their present stress; there ε̇ fades on the plateau.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct UpperBound {
     /// λ⁺.
     pub load_factor: f64,

@@ -3,7 +3,7 @@
 
 use moreau_contact::Plane;
 use moreau_driver::{
-    Axis, Collapse, Driver, Increments, Model, ModelError, Nesting, Ramp, Reader, Settings, Step,
+    Axis, Collapse, Driver, Increments, Model, ModelError, Nesting, Numbers, Saved, Settings, Step,
     StepError, StepReport,
 };
 use moreau_laws::{Coulomb, Elastic, VonMises};
@@ -196,18 +196,19 @@ fn a_path_that_is_read_back_goes_on_to_the_bit() {
     assert!(matches!(end, StepError::Collapse { .. }), "{end}");
     for (k, numbers) in saved.iter().enumerate() {
         let mut other = cylinder(Settings::default());
-        let mut from = Reader::new(numbers);
+        let mut from = Numbers::Read(numbers);
         other.read(&mut from).expect("fits");
-        let mut ramp = Ramp::read(&step, Increments::equal(5), &mut from).expect("fits");
+        let mut ramp = other.begin(&step, Increments::equal(5)).expect("valid");
+        ramp.read(&mut from).expect("fits");
         for report in &reports[k..] {
             let again = other.proceed(&mut ramp, &mut |_| {}).expect("converges");
             assert_eq!(&again, report);
         }
         assert_eq!(other.proceed(&mut ramp, &mut |_| {}), Err(end.clone()));
         let short = &numbers[..numbers.len() - 1];
-        let mut from = Reader::new(short);
+        let mut from = Numbers::Read(short);
         other.read(&mut from).expect("fits");
-        let cut = Ramp::read(&step, Increments::equal(5), &mut from);
+        let cut = ramp.read(&mut from);
         assert!(matches!(cut, Err(ModelError::Saved { .. })), "{cut:?}");
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::steps::on_floor;
 use moreau_contact::GaussSeidel;
-use moreau_driver::{Axis, ModelError, Nesting, Ramp, Reader, Settings, Step, StepError};
+use moreau_driver::{Axis, ModelError, Nesting, Numbers, Saved, Settings, Step, StepError};
 
 #[test]
 fn a_body_pulled_off_its_floor_is_an_error_that_changes_nothing() {
@@ -94,21 +94,23 @@ fn a_saved_ramp_of_another_model_is_refused() {
     let ramp = driver.begin(&step, 2).expect("valid");
     let mut numbers = Vec::new();
     ramp.write(&mut numbers);
-    // Prescribed displacements by number, then no forces, then the same of the end.
-    let loading = 2 + 2 * numbers[0] as usize;
+    // Prescribed displacements by how many numbers, then no forces, then the same of the end.
+    let loading = 2 + numbers[0] as usize;
     assert_eq!(numbers[0], numbers[loading]);
     for first in [1, loading + 1] {
         let mut other = numbers.clone();
-        let last = first + 2 * (numbers[0] as usize - 1);
+        let last = first + numbers[0] as usize - 2;
         other[last] = 1e6;
-        let mut ramp = Ramp::read(&step, 2.into(), &mut Reader::new(&other)).expect("whole");
+        let mut ramp = ramp.clone();
+        ramp.read(&mut Numbers::Read(&other)).expect("whole");
         let outcome = driver.proceed(&mut ramp, &mut |_| {});
         let Err(StepError::Model(ModelError::OutOfRange { value, .. })) = outcome else {
             panic!("expected OutOfRange, got {outcome:?}");
         };
         assert_eq!((value, driver.increments()), (1e6, 0));
     }
-    let mut ramp = Ramp::read(&step, 2.into(), &mut Reader::new(&numbers)).expect("whole");
+    let mut ramp = ramp.clone();
+    ramp.read(&mut Numbers::Read(&numbers)).expect("whole");
     assert!(driver.proceed(&mut ramp, &mut |_| {}).is_ok());
 }
 

@@ -2,7 +2,7 @@
 
 use crate::collapse::collapse;
 use moreau_contact::{Ball, ContactSolver, Penalty, Plane, SemismoothNewton};
-use moreau_driver::{Axis, Driver, Model, Reader, Seam, Settings, Step, StepReport};
+use moreau_driver::{Axis, Driver, Model, Numbers, Seam, Settings, Step, StepReport};
 use moreau_laws::{
     AnisotropicCoulomb, Coulomb, Friction, Isotropic, LimitedCoulomb, Tresca, VonMises,
 };
@@ -247,7 +247,7 @@ fn a_tied_state_is_read_back_to_the_bit() {
     let mut numbers = Vec::new();
     driver.write(&mut numbers);
     let mut other = punched(Seam::Tied);
-    other.read(&mut Reader::new(&numbers)).expect("fits");
+    other.read(&mut Numbers::Read(&numbers)).expect("fits");
     let more = Step::new("more")
         .fix("block.left", &[Axis::X])
         .pressure("pressed", 360.0);

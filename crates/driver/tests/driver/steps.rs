@@ -3,7 +3,7 @@
 
 use moreau_contact::{Ball, Penalty, Plane};
 use moreau_driver::{
-    Axis, Driver, Increments, Model, ModelError, Nesting, Ramp, Reader, Settings, Step,
+    Axis, Driver, Increments, Model, ModelError, Nesting, Numbers, Saved, Settings, Step,
 };
 use moreau_laws::{Coulomb, Elastic, Status, VonMises};
 use moreau_mesh::{CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform};
@@ -333,9 +333,10 @@ fn a_state_that_is_read_back_goes_on_to_the_bit() {
         assert!(step == &lift || reports.iter().any(|r| r.plastic_fraction > 0.0));
         for (k, numbers) in saved.iter().enumerate() {
             let mut other = virgin();
-            let mut from = Reader::new(numbers);
+            let mut from = Numbers::Read(numbers);
             other.read(&mut from).expect("fits");
-            let mut ramp = Ramp::read(step, Increments::equal(4), &mut from).expect("fits");
+            let mut ramp = other.begin(step, Increments::equal(4)).expect("valid");
+            ramp.read(&mut from).expect("fits");
             for report in &reports[k..] {
                 let again = other.proceed(&mut ramp, &mut |_| {}).expect("converges");
                 assert_eq!(&again, report);
@@ -344,10 +345,12 @@ fn a_state_that_is_read_back_goes_on_to_the_bit() {
         }
         // Of another mesh, or too short.
         let mut other = on_floor([5, 2], 0.0, 0.3, Settings::default());
-        let error = other.read(&mut Reader::new(&saved[0])).expect_err("unlike");
+        let error = other
+            .read(&mut Numbers::Read(&saved[0]))
+            .expect_err("unlike");
         assert!(matches!(error, ModelError::Saved { .. }), "{error}");
         let half = &saved[0][..saved[0].len() / 2];
-        assert!(virgin().read(&mut Reader::new(half)).is_err());
+        assert!(virgin().read(&mut Numbers::Read(half)).is_err());
     }
 }
 

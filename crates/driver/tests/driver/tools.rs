@@ -2,8 +2,8 @@
 
 use moreau_contact::{Ball, Plane};
 use moreau_driver::{
-    Analysis, Axis, Collapse, Driver, Increments, Model, ModelError, Ramp, Reader, Settings, Step,
-    StepError,
+    Analysis, Axis, Collapse, Driver, Increments, Model, ModelError, Numbers, Saved, Settings,
+    Step, StepError,
 };
 use moreau_laws::{Coulomb, Status, VonMises};
 use moreau_mesh::{
@@ -356,9 +356,10 @@ fn a_driven_tool_is_read_back_to_the_bit() {
     driver.write(&mut numbers);
     ramp.write(&mut numbers);
     let mut other = cylinder(0.2);
-    let mut from = Reader::new(&numbers);
+    let mut from = Numbers::Read(&numbers);
     other.read(&mut from).expect("fits");
-    let mut again = Ramp::read(&step, Increments::equal(3), &mut from).expect("fits");
+    let mut again = other.begin(&step, Increments::equal(3)).expect("valid");
+    again.read(&mut from).expect("fits");
     while !ramp.is_done() {
         let first = driver.proceed(&mut ramp, &mut |_| {}).expect("converges");
         let second = other.proceed(&mut again, &mut |_| {}).expect("converges");

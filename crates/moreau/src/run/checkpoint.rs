@@ -1,7 +1,7 @@
 //! Checkpoints: lists of numbers in files that are whole or known not to be; not what the numbers
 //! mean.
 //!
-//! A file is the line `moreau checkpoint 4`, the CRC-32 of the resolved deck, that of the numbers
+//! A file is the line `moreau checkpoint 5`, the CRC-32 of the resolved deck, that of the numbers
 //! and their count, each as 8 bytes, and the numbers as IEEE doubles; all little endian. It is
 //! written beside its place, forced to the disk and renamed, so that a crash leaves the one before.
 
@@ -12,7 +12,7 @@ use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-const MAGIC: &[u8] = b"moreau checkpoint 4\n";
+const MAGIC: &[u8] = b"moreau checkpoint 5\n";
 
 /// Checkpoints that are kept.
 const KEPT: usize = 2;

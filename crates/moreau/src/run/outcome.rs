@@ -8,7 +8,7 @@ use super::warnings::Warnings;
 use crate::contact::Certificate;
 use crate::deck::{Deck, Setup, Units};
 use crate::driver::{
-    Collapse, Driver, Energies, ModelError, Reader, StepError, StepReport, UpperBound,
+    Collapse, Driver, Energies, ModelError, Numbers, Saved, StepError, StepReport, UpperBound,
 };
 use crate::laws::Status;
 use crate::memory;
@@ -73,6 +73,7 @@ impl Verdict {
 }
 
 /// What is counted while running.
+#[derive(Debug, Clone)]
 pub(super) struct Tally {
     factorisations: usize,
     linear: usize,
@@ -142,70 +143,49 @@ impl Tally {
         }
         self.warnings.add(driver, report, to_collapse);
     }
+}
 
-    /// Appends all that [`Tally::read`] needs.
-    pub(super) fn write(&self, out: &mut Vec<f64>) {
-        let solves = [self.factorisations, self.linear, self.solves];
-        let counts = [self.newton, self.contact, self.cuts];
-        out.extend(solves.iter().chain(&counts).map(|&n| n as f64));
-        let c = &self.certificate;
-        out.extend([c.bipotential_gap, c.penetration, c.excess_force]);
-        out.push(self.relative_gap);
-        out.extend(self.closed.iter().map(|&c| f64::from(u8::from(c))));
-        out.push(f64::from(u8::from(self.criticality.is_some())));
-        if let Some((point, ratio, increment)) = self.criticality {
-            out.extend([point as f64, ratio, increment as f64]);
+impl Saved for Tally {
+    fn visit(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
+        let solves = [&mut self.factorisations, &mut self.linear, &mut self.solves];
+        let counts = [&mut self.newton, &mut self.contact, &mut self.cuts];
+        for count in solves.into_iter().chain(counts) {
+            numbers.count(count)?;
         }
-        self.warnings.write(out);
-        out.push(f64::from(u8::from(self.collapse.is_some())));
-        if let Some((stage, c)) = &self.collapse {
-            out.extend([*stage as f64, c.load_factor, c.growth]);
-            out.push(f64::from(u8::from(c.upper_bound.is_some())));
-            if let Some(b) = &c.upper_bound {
-                let coulomb = f64::from(u8::from(b.coulomb));
-                out.extend([b.load_factor, b.elastic_share, coulomb]);
-            }
+        let c = &mut self.certificate;
+        let parts = [
+            &mut c.bipotential_gap,
+            &mut c.penetration,
+            &mut c.excess_force,
+        ];
+        for value in parts.into_iter().chain([&mut self.relative_gap]) {
+            numbers.value(value)?;
         }
-    }
-
-    /// Takes over what [`Tally::write`] left.
-    pub(super) fn read(&mut self, from: &mut Reader<'_>) -> Result<(), ModelError> {
-        self.factorisations = from.count()?;
-        self.linear = from.count()?;
-        self.solves = from.count()?;
-        self.newton = from.count()?;
-        self.contact = from.count()?;
-        self.cuts = from.count()?;
-        self.certificate.bipotential_gap = from.number()?;
-        self.certificate.penetration = from.number()?;
-        self.certificate.excess_force = from.number()?;
-        self.relative_gap = from.number()?;
         for closed in &mut self.closed {
-            *closed = from.count()? == 1;
+            numbers.flag(closed)?;
         }
-        if from.count()? == 1 {
-            self.criticality = Some((from.count()?, from.number()?, from.count()?));
-        }
-        self.warnings.read(from)?;
-        if from.count()? == 1 {
-            let stage = from.count()?;
-            let (load_factor, growth) = (from.number()?, from.number()?);
-            let upper_bound = match from.count()? {
-                0 => None,
-                _ => Some(UpperBound {
-                    load_factor: from.number()?,
-                    elastic_share: from.number()?,
-                    coulomb: from.count()? == 1,
-                }),
-            };
-            let collapse = Collapse {
-                load_factor,
-                growth,
-                upper_bound,
-            };
-            self.collapse = Some((stage, collapse));
-        }
-        Ok(())
+        numbers.option(
+            &mut self.criticality,
+            || (0, 0.0, 0),
+            |(point, ratio, at), numbers| {
+                numbers.count(point)?;
+                numbers.value(ratio)?;
+                numbers.count(at)
+            },
+        )?;
+        self.warnings.visit(numbers)?;
+        let none = || (0, Collapse::default());
+        numbers.option(&mut self.collapse, none, |(stage, collapse), numbers| {
+            numbers.count(stage)?;
+            numbers.value(&mut collapse.load_factor)?;
+            numbers.value(&mut collapse.growth)?;
+            let bound = &mut collapse.upper_bound;
+            numbers.option(bound, UpperBound::default, |bound, numbers| {
+                numbers.value(&mut bound.load_factor)?;
+                numbers.value(&mut bound.elastic_share)?;
+                numbers.flag(&mut bound.coulomb)
+            })
+        })
     }
 }
 

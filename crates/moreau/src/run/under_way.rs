@@ -8,7 +8,7 @@ use super::outcome::{self, Outcome, RunStatus, Tally};
 use super::vtu::{Collection, LIST};
 use super::{Diagnosis, Event, RUN, Resumable, RunError, View, Watch, body, contact};
 use crate::deck::{Deck, Setup, Vtu};
-use crate::driver::{Driver, Ramp, Reader, StepError, StepReport};
+use crate::driver::{Driver, Numbers, Ramp, Saved, StepError, StepReport};
 use std::path::Path;
 use std::time::Instant;
 
@@ -170,20 +170,28 @@ where
 
     /// Takes over a checkpoint, and cuts the files back to it.
     pub(super) fn reopen(&mut self, numbers: &[f64]) -> Result<(), Box<dyn std::error::Error>> {
-        let from = &mut Reader::new(numbers);
-        self.before = from.number()?;
-        self.stage = from.count()?;
+        let numbers = &mut Numbers::Read(numbers);
+        numbers.value(&mut self.before)?;
+        numbers.count(&mut self.stage)?;
         let mut marks = [Mark::default(); 4];
         for mark in &mut marks {
-            mark.length = from.count()? as u64;
-            mark.crc = u32::try_from(from.count()?)?;
+            let (mut length, mut crc) = (0, 0);
+            numbers.count(&mut length)?;
+            numbers.count(&mut crc)?;
+            (mark.length, mark.crc) = (length as u64, u32::try_from(crc)?);
         }
-        self.tally.read(from)?;
-        let columns = from.count()?;
-        self.history.last = from.take(columns)?.to_vec();
-        self.setup.driver.read(from)?;
-        self.ramp = match (from.count()?, self.setup.stages.get(self.stage)) {
-            (1, Some(stage)) => Some(Ramp::read(&stage.step, stage.increments, from)?),
+        self.tally.read(numbers)?;
+        numbers.list(&mut self.history.last)?;
+        let driver = &mut self.setup.driver;
+        driver.read(numbers)?;
+        let mut steps = false;
+        numbers.flag(&mut steps)?;
+        self.ramp = match self.setup.stages.get(self.stage) {
+            Some(stage) if steps => {
+                let mut ramp = driver.begin(&stage.step, stage.increments)?;
+                ramp.read(numbers)?;
+                Some(ramp)
+            }
             _ => None,
         };
         let at = |k: usize| Stream::reopen(self.directory.join(STREAMS[k]), marks[k]);

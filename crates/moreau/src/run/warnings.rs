@@ -4,7 +4,7 @@
 use super::{place, shown};
 use crate::deck::{Deck, Units};
 use crate::driver::{Between, Buckling, ContactRecord, Deformation, Driver, Energies, Extent};
-use crate::driver::{ModelError, Reader, StepReport};
+use crate::driver::{ModelError, Numbers, Saved, StepReport};
 
 /// What may be doubtful about a converged state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -107,6 +107,7 @@ impl Balance {
 }
 
 /// Warnings of a run.
+#[derive(Debug, Clone)]
 pub(super) struct Warnings {
     worst: [Option<Worst>; KINDS.len()],
     balance: Balance,
@@ -226,53 +227,6 @@ impl Warnings {
         }
     }
 
-    /// Appends all that [`Warnings::read`] needs.
-    pub(super) fn write(&self, out: &mut Vec<f64>) {
-        for worst in &self.worst {
-            out.push(f64::from(u8::from(worst.is_some())));
-            if let Some(w) = worst {
-                out.extend([w.index as f64, w.when as f64]);
-                for list in [&w.position, &w.numbers] {
-                    out.push(list.len() as f64);
-                    out.extend(list);
-                }
-            }
-        }
-        let b = &self.balance;
-        out.extend([b.last, b.most, b.change, b.increment as f64]);
-        out.extend(b.worst);
-    }
-
-    /// Takes over what [`Warnings::write`] left.
-    pub(super) fn read(&mut self, from: &mut Reader<'_>) -> Result<(), ModelError> {
-        for worst in &mut self.worst {
-            *worst = match from.count()? {
-                1 => {
-                    let (index, when) = (from.count()?, from.count()?);
-                    let mut list = || {
-                        let count = from.count()?;
-                        from.take(count).map(<[f64]>::to_vec)
-                    };
-                    Some(Worst {
-                        index,
-                        when,
-                        position: list()?,
-                        numbers: list()?,
-                    })
-                }
-                _ => None,
-            };
-        }
-        self.balance = Balance {
-            last: from.number()?,
-            most: from.number()?,
-            change: from.number()?,
-            increment: from.count()?,
-            worst: [from.number()?, from.number()?, from.number()?],
-        };
-        Ok(())
-    }
-
     /// One sentence a kind.
     pub(super) fn sentences<const D: usize>(&self, driver: &Driver<D>, deck: &Deck) -> Vec<String> {
         let of = |kind: Kind| {
@@ -281,6 +235,25 @@ impl Warnings {
         };
         let kinds = KINDS.into_iter().filter_map(of);
         kinds.chain(self.balance.sentence(deck.units)).collect()
+    }
+}
+
+impl Saved for Warnings {
+    fn visit(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
+        for worst in &mut self.worst {
+            numbers.option(worst, Worst::default, |worst, numbers| {
+                numbers.count(&mut worst.index)?;
+                numbers.count(&mut worst.when)?;
+                numbers.list(&mut worst.position)?;
+                numbers.list(&mut worst.numbers)
+            })?;
+        }
+        let b = &mut self.balance;
+        for value in [&mut b.last, &mut b.most, &mut b.change] {
+            numbers.value(value)?;
+        }
+        numbers.count(&mut b.increment)?;
+        numbers.values(&mut b.worst)
     }
 }
 
