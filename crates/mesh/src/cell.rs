@@ -2,8 +2,7 @@
 
 use crate::nearest::edit_distance;
 use crate::{
-    Element, Hex8, Hex20, Hex27, Integration, MeshError, Quad4, Quad8, Quad9, Tet4, Tet10, Tri3,
-    Tri6,
+    Element, Hex8, Hex20, Hex27, Integration, Quad4, Quad8, Quad9, Tet4, Tet10, Tri3, Tri6,
 };
 use std::{fmt, slice, str};
 
@@ -214,16 +213,26 @@ impl fmt::Display for CellKind {
     }
 }
 
-impl str::FromStr for CellKind {
-    type Err = MeshError;
+/// No kind of cell of that name.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("no kind of cell \"{name}\": did you mean \"{nearest}\"?")]
+pub struct UnknownKind {
+    /// The name given.
+    pub name: String,
+    /// The nearest kind.
+    pub nearest: CellKind,
+}
 
-    fn from_str(name: &str) -> Result<Self, MeshError> {
+impl str::FromStr for CellKind {
+    type Err = UnknownKind;
+
+    fn from_str(name: &str) -> Result<Self, UnknownKind> {
         let mut kinds = Self::ALL;
         kinds.sort_by_key(|kind| edit_distance(name, kind.name()));
         if kinds[0].name() == name {
             Ok(kinds[0])
         } else {
-            Err(MeshError::UnknownKind {
+            Err(UnknownKind {
                 name: name.into(),
                 nearest: kinds[0],
             })

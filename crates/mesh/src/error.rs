@@ -188,15 +188,6 @@ pub enum MeshError {
         found: GroupKind,
     },
 
-    /// No kind of cell of that name.
-    #[error("no kind of cell \"{name}\": did you mean \"{nearest}\"?")]
-    UnknownKind {
-        /// The name given.
-        name: String,
-        /// The nearest kind.
-        nearest: CellKind,
-    },
-
     /// A thickness that is not a positive number.
     #[error("the thickness is {value} mm: it must be positive and finite")]
     Thickness {

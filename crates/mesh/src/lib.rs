@@ -59,7 +59,7 @@ pub mod read;
 mod sample;
 
 pub use abaqus::{read_abaqus, read_abaqus_noting};
-pub use cell::{CellKind, FacetKind};
+pub use cell::{CellKind, FacetKind, UnknownKind};
 pub use element::{
     Element, Hex8, Hex20, Hex27, Line2, Line3, Mapped, Quad4, Quad8, Quad9, Tet4, Tet10, Tri3, Tri6,
 };

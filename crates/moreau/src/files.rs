@@ -154,7 +154,7 @@ fn nearest_file(missing: &Path) -> Option<String> {
 pub fn write_mesh<const D: usize>(path: &Path, mesh: &Mesh<D>) -> Result<(), FileError> {
     let bytes = match ending(path).as_str() {
         "msh" => write_gmsh(mesh).into_bytes(),
-        "vtu" => crate::run::vtu_of_mesh(mesh),
+        "vtu" => crate::vtu::vtu_of_mesh(mesh),
         _ => {
             return Err(FileError::Format {
                 path: path.into(),

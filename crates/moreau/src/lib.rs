@@ -40,10 +40,14 @@ pub mod deck;
 pub mod files;
 #[cfg(feature = "decks")]
 pub mod memory;
+#[cfg(feature = "decks")]
+pub mod numbers;
 pub mod plot;
 pub mod recovery;
 #[cfg(feature = "decks")]
 pub mod run;
+#[cfg(feature = "decks")]
+mod vtu;
 
 pub use moreau_algebra as algebra;
 pub use moreau_contact as contact;

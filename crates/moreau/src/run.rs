@@ -2,37 +2,29 @@
 //! as they come; nothing is printed, and no deck is read. What is in memory does not grow with the
 //! number of increments.
 
-mod body;
 mod checkpoint;
 mod contact;
 mod diagnosis;
 mod directory;
 mod drawing;
 mod files;
-mod grid;
 mod history;
 mod log;
 mod outcome;
-mod pictures;
-mod points;
 mod report;
 mod resumable;
-mod surface;
 mod table;
 mod touch;
 mod under_way;
-mod view;
-mod viewer;
 mod vtu;
 mod warnings;
 
 pub use diagnosis::{Diagnosis, Flip};
 pub use directory::Directory;
 pub use drawing::{Drawing, draw};
-pub(crate) use grid::vtu_of_mesh;
 pub use outcome::{Outcome, RunStatus, Verdict};
 pub use resumable::Resumable;
-pub use view::View;
+pub use vtu::View;
 
 use crate::deck::{Deck, Setup};
 use crate::driver::{Driver, StepReport};
@@ -234,34 +226,6 @@ const RUN: &str = "run.json";
 const RUNNING: &[u8] = b"{\n  \"status\": \"running\"\n}\n";
 const RESOLVED: &str = "deck.resolved.toml";
 const CHECKPOINTS: &str = "checkpoint";
-
-/// A number for people, with so many significant digits at most: 322.114523, 40, 1.5e-17.
-pub fn shown(value: f64, digits: usize) -> String {
-    let rounded = format!("{value:.*e}", digits.saturating_sub(1)).parse();
-    let rounded: f64 = rounded.unwrap_or(value);
-    match rounded == 0.0 || (1e-4..1e9).contains(&rounded.abs()) {
-        true => format!("{}", rounded + 0.0),
-        false => format!("{rounded:e}"),
-    }
-}
-
-/// Coordinates for people, with so many significant digits at most: [0.5, 100]. What is rounding beside the
-/// others is zero.
-pub fn place(position: &[f64], digits: usize) -> String {
-    let largest = position.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-    let clean = |x: &f64| if x.abs() < 1e-9 * largest { 0.0 } else { *x };
-    let list: Vec<String> = position.iter().map(|x| shown(clean(x), digits)).collect();
-    format!("[{}]", list.join(", "))
-}
-
-/// A number as text that is read back exactly.
-fn number(value: f64) -> String {
-    // Adding zero turns −0 into 0.
-    match value.fract() == 0.0 && value.abs() < 1e15 {
-        true => format!("{:.0}", value + 0.0),
-        false => format!("{value:?}"),
-    }
-}
 
 fn status_name(status: Status) -> &'static str {
     match status {

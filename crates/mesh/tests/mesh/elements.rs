@@ -3,8 +3,8 @@
 use crate::ROUND_OFF;
 use approx::assert_abs_diff_eq;
 use moreau_mesh::{
-    CellKind, Element, FacetKind, Hex8, Hex20, Hex27, Integration, Line2, Line3, MeshError, Quad4,
-    Quad8, Quad9, Tet4, Tet10, Tri3, Tri6,
+    CellKind, Element, FacetKind, Hex8, Hex20, Hex27, Integration, Line2, Line3, Quad4, Quad8,
+    Quad9, Tet4, Tet10, Tri3, Tri6, UnknownKind,
 };
 
 /// Points scattered over [−1, 1]^D; polynomial identities hold outside a reference cell too.
@@ -262,7 +262,7 @@ fn kinds_are_displayed_and_parsed_by_name() {
     let error = "qad8".parse::<CellKind>().unwrap_err();
     assert_eq!(
         error,
-        MeshError::UnknownKind {
+        UnknownKind {
             name: "qad8".into(),
             nearest: CellKind::Quad8
         }

@@ -1,8 +1,8 @@
 //! An axis with its ends settled: where values lie on it and how its ticks are labelled; not the
 //! lines and the text.
 
+use super::PlotError;
 use super::number::{Number, nice_step, power};
-use super::{ChartAxis, PlotError, Scale};
 
 /// Least ratio of the length of a linear axis to the size of its values: below, ticks would not be
 /// distinct numbers.
@@ -10,6 +10,27 @@ const NARROW: f64 = 1e-12;
 
 /// Most decades of a logarithmic axis: values on it are finite numbers whatever its unit.
 const DECADES: f64 = 300.0;
+
+/// Scale of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Scale {
+    /// Equal distances are equal differences.
+    #[default]
+    Linear,
+    /// Equal distances are equal ratios.
+    Logarithmic,
+}
+
+/// An axis of a chart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChartAxis {
+    /// Label, with the unit.
+    pub label: String,
+    /// Scale.
+    pub scale: Scale,
+    /// Ends, lower first; what lies outside is cut off. `None`: around the data.
+    pub range: Option<[f64; 2]>,
+}
 
 /// An axis between two ends.
 #[derive(Debug, Clone)]

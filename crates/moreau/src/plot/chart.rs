@@ -2,22 +2,10 @@
 //! settled in `figure`.
 
 use super::PlotError;
-use super::axis::Axis;
+use super::axis::{Axis, ChartAxis, Scale};
 use super::clip::clip;
 use super::figure::{Curve, draw};
-
-/// How a series is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Style {
-    /// A line; the first of a chart is solid, the others have dots and dashes of their own.
-    Line,
-    /// A thinner line of plain dashes: for what a chart compares with.
-    Dashed,
-    /// Markers.
-    Points,
-    /// Markers on a thin line.
-    LinePoints,
-}
+use super::look::Style;
 
 /// A line, markers, or both, in a chart.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,27 +17,6 @@ pub struct Series {
     pub points: Vec<[f64; 2]>,
     /// How it is drawn.
     pub style: Style,
-}
-
-/// Scale of an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Scale {
-    /// Equal distances are equal differences.
-    #[default]
-    Linear,
-    /// Equal distances are equal ratios.
-    Logarithmic,
-}
-
-/// An axis of a chart.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ChartAxis {
-    /// Label, with the unit.
-    pub label: String,
-    /// Scale.
-    pub scale: Scale,
-    /// Ends, lower first; what lies outside is cut off. `None`: around the data.
-    pub range: Option<[f64; 2]>,
 }
 
 /// A chart of series over two axes.

@@ -1,5 +1,7 @@
 //! Colours that say a value; not the colours that tell series apart.
 
+pub(super) const INK: &str = "#222222";
+
 /// Perceptually uniform colours from dark blue to yellow, at equal distances: viridis.
 const ANCHORS: [[u8; 3]; 16] = [
     [0x44, 0x01, 0x54],

@@ -1,10 +1,9 @@
 //! Charts on paper: frame, ticks, curves, legend; not where values lie on an axis.
 
-use super::Style;
 use super::axis::Axis;
-use super::look::{Look, looks};
+use super::colour::INK;
+use super::look::{Look, Style, looks};
 use super::pen::{FINE, Pen, number, write_text};
-use super::sheet::INK;
 use super::text::{FONT, escape, width, wrap};
 
 /// A series ready to draw, in parts of the axes.

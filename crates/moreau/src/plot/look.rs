@@ -1,8 +1,20 @@
 //! How the curves of a chart look: colours, dashes and markers; not where they go.
 
-use super::Style;
 use super::pen::{FINE, Pen, number};
 use std::fmt::Write;
+
+/// How a series is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Style {
+    /// A line; the first of a chart is solid, the others have dots and dashes of their own.
+    Line,
+    /// A thinner line of plain dashes: for what a chart compares with.
+    Dashed,
+    /// Markers.
+    Points,
+    /// Markers on a thin line.
+    LinePoints,
+}
 
 /// Colours that remain distinct for the colour-blind (Okabe and Ito, and a brown).
 const COLOURS: [&str; 7] = [

@@ -1,12 +1,15 @@
 //! Pictures of plane meshes: cells, deformed or not, coloured by a field; not of their history.
 
+mod bands;
+mod sheet;
+
 use super::PlotError;
-use super::bands::{Corner, Table, combine, fill_bands};
 use super::clip::clip;
-use super::colour::{LEVELS, colour};
+use super::colour::{INK, LEVELS, colour};
 use super::pen::{COARSE, FINE, Pen};
-use super::sheet::{Bar, INK, Sheet, check_length};
 use crate::mesh::{CellKind, Mesh};
+use bands::{Corner, Table, combine, fill_bands};
+use sheet::{Bar, Sheet, check_length};
 use std::collections::BTreeMap;
 
 /// A field on the nodes of a mesh.

@@ -1,11 +1,12 @@
 //! `contact.csv`: a row for each contact point and converged increment; no sums.
 
+use super::status_name;
 use super::table::field;
 use super::touch::{Touch, touches};
-use super::{number, status_name};
 use crate::deck::Units;
 use crate::driver::{ContactRecord, Driver, StepReport};
 use crate::mesh::NodeKind;
+use crate::numbers::number;
 
 /// The header.
 pub(super) fn header(units: Units) -> String {

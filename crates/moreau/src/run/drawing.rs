@@ -1,12 +1,13 @@
 //! What is drawn of a run, from its files: at its end and again; not how.
 
 use super::files::write_file;
-use super::grid::Array;
+use super::report::{self, pictures};
 use super::table::Table;
-use super::{RunError, View, pictures, report, vtu};
+use super::{RunError, View, vtu};
 use crate::deck::{Deck, Setup};
 use crate::driver::Driver;
 use crate::mesh::nearest;
+use crate::vtu::Array;
 use std::path::{Path, PathBuf};
 
 /// What to draw of a run.

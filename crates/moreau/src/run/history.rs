@@ -1,10 +1,10 @@
 //! `history.csv`: a row for each converged increment; contact points have a file of their own.
 
-use super::number;
 use super::table::field;
 use crate::deck::{Setup, Units};
 use crate::deck::{Unit, columns};
 use crate::driver::{Driver, StepReport};
+use crate::numbers::number;
 
 /// Where an increment is.
 pub(super) struct Place<'a> {

@@ -3,7 +3,6 @@
 
 use super::diagnosis::Diagnosis;
 use super::history::History;
-use super::shown;
 use super::warnings::Warnings;
 use crate::contact::Certificate;
 use crate::deck::{Deck, Setup, Units};
@@ -12,6 +11,7 @@ use crate::driver::{
 };
 use crate::laws::Status;
 use crate::memory;
+use crate::numbers::shown;
 use std::collections::BTreeMap;
 use std::fmt;
 

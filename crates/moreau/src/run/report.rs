@@ -1,16 +1,20 @@
 //! `report.html`: a run on one page that needs nothing but a browser; its template is beside it.
 
+pub(super) mod pictures;
+mod viewer;
+
+use super::RunError;
 use super::files::read_text;
-use super::grid::Array;
-use super::pictures::{over_time, tractions};
 use super::table::Table;
-use super::viewer::viewer;
-use super::{RunError, pictures, shown};
 use crate::deck::Deck;
 use crate::driver::Driver;
+use crate::numbers::shown;
+use crate::vtu::Array;
 use minijinja::value::Value;
 use minijinja::{Environment, context};
+use pictures::{over_time, tractions};
 use std::path::Path;
+use viewer::viewer;
 
 /// The page of a run. `last` is the end of the run where no file has it.
 pub(super) fn report<const D: usize>(

@@ -5,8 +5,8 @@ use super::files::{Mark, Stream, replace_file};
 use super::history::{self, History};
 use super::log::Trace;
 use super::outcome::{self, Outcome, RunStatus, Tally};
-use super::vtu::{Collection, LIST};
-use super::{Diagnosis, Event, RUN, Resumable, RunError, View, Watch, body, contact};
+use super::vtu::{self, Collection, LIST};
+use super::{Diagnosis, Event, RUN, Resumable, RunError, View, Watch, contact};
 use crate::deck::{Deck, Setup, Vtu};
 use crate::driver::{Driver, Numbers, Ramp, Saved, StepError, StepReport};
 use std::path::Path;
@@ -252,7 +252,7 @@ where
         let outcome = self.outcome((status, diagnosis));
         replace_file(&self.directory.join(RUN), outcome.json().as_bytes())?;
         if driver.increments() > 0 {
-            let last = body::body(driver).0.point_data;
+            let last = vtu::body::body(driver).0.point_data;
             let drawing = Drawing::default();
             pictures_of(driver, self.deck, self.directory, Some(&last), &drawing)?;
         }

@@ -1,15 +1,21 @@
 //! The VTK files of a run: bodies, contact surfaces and quadrature points of its increments, and the
 //! list of all; not their format.
 
+pub(super) mod body;
+mod points;
+mod surface;
+mod view;
+
+pub use view::View;
+
 use super::RunError;
-use super::body::body;
 use super::files::{Mark, Stream, read_text, write_file};
-use super::grid::{Array, attribute, point_data, three};
-use super::points::points;
-use super::surface::surface;
-use super::view::View;
 use crate::driver::Driver;
+use crate::vtu::{Array, attribute, point_data, three};
+use body::body;
+use points::points;
 use std::path::{Path, PathBuf};
+use surface::surface;
 
 /// Name of the list.
 pub(super) const LIST: &str = "result.pvd";

@@ -1,10 +1,10 @@
 //! What a run gives reason to doubt although it converged, gathered as it goes: of each kind the worst, with
 //! numbers and place; not what is wrong with a deck.
 
-use super::{place, shown};
 use crate::deck::{Deck, Units};
 use crate::driver::{Between, Buckling, ContactRecord, Deformation, Driver, Energies, Extent};
 use crate::driver::{ModelError, Numbers, Saved, StepReport};
+use crate::numbers::{place, shown};
 
 /// What may be doubtful about a converged state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

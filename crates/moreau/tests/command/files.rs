@@ -171,7 +171,7 @@ fn numbers_for_people_have_powers_only_where_they_must() {
         (2.1e11, 7, "2.1e11"),
         (f64::NAN, 9, "NaN"),
     ] {
-        assert_eq!(moreau::run::shown(value, digits), text);
+        assert_eq!(moreau::numbers::shown(value, digits), text);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{INPUT_ERROR, folder, read, report, say};
 use moreau::deck::{Action, Deck, Method, Problem, Setup, Shape, open_in};
 use moreau::driver::{Axis, RigidMotion, Stopper};
-use moreau::run::{place, shown};
+use moreau::numbers::{place, shown};
 use std::path::Path;
 
 const AXES: [&str; 3] = ["x", "y", "z"];

@@ -5,7 +5,7 @@ use crate::deck::entries::{BlockEntry, Deck, GroupEntry, Part};
 use crate::deck::finding::{Class, Findings, did_you_mean};
 use crate::driver::{Analysis, Support};
 use crate::mesh::{CellKind, Facet, Mesh};
-use crate::run::shown;
+use crate::numbers::shown;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 

@@ -3,7 +3,7 @@
 use crate::deck::entries::Deck;
 use crate::deck::finding::Findings;
 use crate::driver::{Driver, LeastGap};
-use crate::run::{place, shown};
+use crate::numbers::{place, shown};
 
 /// What is within what, by how much and where.
 pub(super) fn sentence<const D: usize>(

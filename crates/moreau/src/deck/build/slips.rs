@@ -4,7 +4,7 @@ use super::groups::Groups;
 use super::parts::Surface;
 use crate::deck::entries::{Action, Deck, FrictionEntry};
 use crate::deck::finding::Findings;
-use crate::run::shown;
+use crate::numbers::shown;
 use nalgebra::SVector;
 
 /// Part of Young's modulus that the yield stress of a solid stays below: metals a hundredth, polymers

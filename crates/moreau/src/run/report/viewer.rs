@@ -1,18 +1,18 @@
 //! What the report draws by itself in a browser: the body and its contacts in every frame, as numbers;
 //! the drawing is in `report.html`.
 
-use super::grid::Array;
 use super::pictures::{
     self, ContactLine, TRACTIONS, contact_axis, contact_labels, contact_lines, field, fields,
     label, usual_field, usual_magnification,
 };
-use super::vtu::{bodies, read_point_data};
-use super::{RunError, status_name};
 use crate::deck::Deck;
 use crate::driver::Driver;
 use crate::laws::Status;
 use crate::mesh::{Facet, Mesh};
 use crate::recovery::split;
+use crate::run::vtu::{bodies, read_point_data};
+use crate::run::{RunError, status_name};
+use crate::vtu::Array;
 use serde_json::{Map, json};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

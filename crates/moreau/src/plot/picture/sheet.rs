@@ -1,12 +1,13 @@
 //! The sheet that a picture is drawn on: its size, what stands beside the drawing, and the places
 //! of nodes; not the cells.
 
-use super::clip::clip;
-use super::colour::{LEVELS, colour};
-use super::number::{Number, nice_step};
-use super::pen::{FINE, Pen, number, write_text};
-use super::text::{FONT, escape, width, wrap};
-use super::{Field, MeshPicture, PlotError};
+use super::{Field, MeshPicture};
+use crate::plot::clip::clip;
+use crate::plot::colour::{INK, LEVELS, colour};
+use crate::plot::error::PlotError;
+use crate::plot::number::{Number, nice_step};
+use crate::plot::pen::{FINE, Pen, number, write_text};
+use crate::plot::text::{FONT, escape, width, wrap};
 use std::fmt::Write;
 
 const WIDTH: f64 = 760.0;
@@ -25,7 +26,6 @@ const TALL: f64 = 540.0;
 /// Least width and height of the drawing: room for captions and a colour bar.
 const LEAST: [f64; 2] = [320.0, 130.0];
 const BAR: f64 = 16.0;
-pub(super) const INK: &str = "#222222";
 /// How far polylines go beyond the body, in parts of its size.
 const BEYOND: f64 = 0.12;
 

@@ -1,9 +1,9 @@
 //! Cells filled with the colours of a field: patches of a reference cell, bands in a patch; not
 //! their place in a mesh.
 
-use super::colour::{LEVELS, level};
-use super::pen::Pen;
 use crate::mesh::{CellKind, Element, Quad4, Quad8, Quad9, Tri3, Tri6};
+use crate::plot::colour::{LEVELS, level};
+use crate::plot::pen::Pen;
 
 /// Bands of colour in half a patch.
 const MOST_BANDS: usize = 5;

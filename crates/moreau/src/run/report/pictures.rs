@@ -1,18 +1,18 @@
 //! The pictures of a run, from the files that it has left: forces or displacements over time, tractions along the
 //! contact, the deformed body with a field.
 
-use super::RunError;
-use super::grid::Array;
-use super::table::Table;
 use crate::deck::{Deck, Units};
 use crate::mesh::Mesh;
 use crate::plot::{Chart, MeshPicture, Style};
+use crate::run::RunError;
+use crate::run::table::Table;
+use crate::vtu::Array;
 use std::collections::HashSet;
 use std::path::Path;
 
 /// What happens over time: the forces; where there are none, as under loads alone that nothing but
 /// symmetry holds, the mean displacements. Nothing if there is nothing to draw.
-pub(super) fn over_time(history: &Table, deck: &Deck) -> Option<String> {
+pub(in crate::run) fn over_time(history: &Table, deck: &Deck) -> Option<String> {
     let force = format!("force [{}]", deck.units.force());
     let displacement = format!("mean displacement [{}]", deck.units.length());
     // Sums of forces are known no better than each is balanced.
@@ -54,7 +54,10 @@ fn columns(
 }
 
 /// Rows of `contact.csv` of some increments.
-pub(super) fn contact_table(directory: &Path, increments: &[usize]) -> Result<Table, RunError> {
+pub(in crate::run) fn contact_table(
+    directory: &Path,
+    increments: &[usize],
+) -> Result<Table, RunError> {
     let wanted: HashSet<String> = increments.iter().map(usize::to_string).collect();
     Table::read(&directory.join("contact.csv"), |names, fields| {
         let column = names.iter().position(|n| n == "increment");
@@ -76,7 +79,7 @@ pub(super) struct ContactLine {
 pub(super) const TRACTIONS: [&str; 2] = ["pressure", "shear"];
 
 /// The coordinate along which contact surfaces extend, 0 or 1.
-pub(super) fn contact_axis(contacts: &Table) -> usize {
+pub(in crate::run) fn contact_axis(contacts: &Table) -> usize {
     let extent = |name: &str| {
         let values = contacts.numbers(name);
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -109,7 +112,7 @@ pub(super) fn contact_lines(contacts: &Table, increment: usize, axis: usize) -> 
 }
 
 /// Labels of the coordinate and of the tractions.
-pub(super) fn contact_labels(axis: usize, units: Units) -> [String; 2] {
+pub(in crate::run) fn contact_labels(axis: usize, units: Units) -> [String; 2] {
     [
         format!("{} [{}]", ["x", "y"][axis], units.length()),
         format!("traction [{}]", units.stress()),
@@ -117,7 +120,7 @@ pub(super) fn contact_labels(axis: usize, units: Units) -> [String; 2] {
 }
 
 /// Pressure and shear along the contact surfaces in one increment.
-pub(super) fn tractions(contacts: &Table, increment: usize, deck: &Deck) -> Option<String> {
+pub(in crate::run) fn tractions(contacts: &Table, increment: usize, deck: &Deck) -> Option<String> {
     let axis = contact_axis(contacts);
     let [label, traction] = contact_labels(axis, deck.units);
     let mut chart = Chart::new(&deck.title, label, traction);
@@ -132,7 +135,7 @@ pub(super) fn tractions(contacts: &Table, increment: usize, deck: &Deck) -> Opti
 }
 
 /// Name of the field that is drawn if none is asked for.
-pub(super) fn usual_field(deck: &Deck) -> &'static str {
+pub(in crate::run) fn usual_field(deck: &Deck) -> &'static str {
     match deck.materials.iter().any(|m| m.yields().is_some()) {
         true => "equivalent_plastic_strain",
         false => "von_mises",
@@ -140,7 +143,7 @@ pub(super) fn usual_field(deck: &Deck) -> &'static str {
 }
 
 /// A field in words, with its unit.
-pub(super) fn label(name: &str, units: Units) -> String {
+pub(in crate::run) fn label(name: &str, units: Units) -> String {
     let unit = match name {
         n if n.contains("strain") => "–",
         n if n.contains("stress") || n == "von_mises" || n.starts_with("pressure") => {
@@ -170,7 +173,7 @@ fn suffixes(array: &Array) -> &'static [&'static str] {
 }
 
 /// Names of all that [`field`] finds in some arrays.
-pub(super) fn fields(arrays: &[Array]) -> Vec<String> {
+pub(in crate::run) fn fields(arrays: &[Array]) -> Vec<String> {
     let mut names = Vec::new();
     for array in arrays {
         if array.components <= 3 {
@@ -187,7 +190,7 @@ pub(super) fn fields(arrays: &[Array]) -> Vec<String> {
 
 /// A field at every point, by name: a scalar; the length of a vector; or a component, as in
 /// `displacement.x` or `stress.xy`. The first points are the nodes of the mesh.
-pub(super) fn field(arrays: &[Array], name: &str) -> Option<Vec<f64>> {
+pub(in crate::run) fn field(arrays: &[Array], name: &str) -> Option<Vec<f64>> {
     let of = |name: &str| arrays.iter().find(|a| a.name == name);
     if let Some(array) = of(name).filter(|a| a.components <= 3) {
         let length = |v: &[f64]| match v {
@@ -211,7 +214,7 @@ fn displacement(arrays: &[Array]) -> Option<Vec<[f64; 2]>> {
 }
 
 /// How many times displacements are drawn so that they are seen but not out of shape.
-pub(super) fn usual_magnification(size: f64, largest: f64) -> f64 {
+pub(in crate::run) fn usual_magnification(size: f64, largest: f64) -> f64 {
     match largest > 0.0 && largest.is_finite() {
         true => round(0.05 * size / largest),
         false => 1.0,
@@ -219,7 +222,7 @@ pub(super) fn usual_magnification(size: f64, largest: f64) -> f64 {
 }
 
 /// The deformed body with a field on it; nothing if the arrays do not have what it takes.
-pub(super) fn deformed(
+pub(in crate::run) fn deformed(
     mesh: &Mesh<2>,
     deck: &Deck,
     arrays: &[Array],

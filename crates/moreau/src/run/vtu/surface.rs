@@ -1,14 +1,14 @@
 //! The contact surfaces with gaps, slips, tractions and statuses as a grid.
 
-use super::grid::{Array, Grid, facet_type, three};
-use super::touch::{Touch, touches};
 use crate::driver::{ContactRecord, Driver};
 use crate::laws::{Local, Status};
 use crate::mesh::Facet;
+use crate::run::touch::{Touch, touches};
+use crate::vtu::{Array, Grid, facet_type, three};
 use std::collections::BTreeMap;
 
 /// All contact surfaces; none without contacts.
-pub(super) fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
+pub(in crate::run) fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
     let records = driver.contacts();
     let last = records.iter().map(|c| c.contact).max()?;
     let index: BTreeMap<usize, i64> = (0..).zip(records).map(|(k, c)| (c.node, k)).collect();

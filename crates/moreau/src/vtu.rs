@@ -10,29 +10,29 @@ use std::io::{Read as _, Write as _};
 const BLOCK: usize = 32768;
 
 /// An unstructured grid.
-pub(super) struct Grid {
-    pub(super) points: Vec<[f64; 3]>,
+pub(crate) struct Grid {
+    pub(crate) points: Vec<[f64; 3]>,
     /// Nodes and VTK type of every cell.
-    pub(super) cells: Vec<(Vec<i64>, u8)>,
-    pub(super) point_data: Vec<Array>,
-    pub(super) cell_data: Vec<Array>,
+    pub(crate) cells: Vec<(Vec<i64>, u8)>,
+    pub(crate) point_data: Vec<Array>,
+    pub(crate) cell_data: Vec<Array>,
 }
 
 /// Values of points or cells.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Array {
-    pub(super) name: String,
-    pub(super) components: usize,
-    pub(super) values: Vec<f64>,
+pub(crate) struct Array {
+    pub(crate) name: String,
+    pub(crate) components: usize,
+    pub(crate) values: Vec<f64>,
 }
 
 /// Fills up with zeros to three components.
-pub(super) fn three(v: &[f64]) -> [f64; 3] {
+pub(crate) fn three(v: &[f64]) -> [f64; 3] {
     std::array::from_fn(|i| v.get(i).copied().unwrap_or(0.0))
 }
 
 /// Nodes of a cell in the order of VTK, and its type there.
-pub(super) fn vtk_cell(kind: CellKind, nodes: &[usize]) -> (Vec<i64>, u8) {
+pub(crate) fn vtk_cell(kind: CellKind, nodes: &[usize]) -> (Vec<i64>, u8) {
     let (code, order) = cell_type(kind);
     let node = |k: usize| nodes[order.map_or(k, |order| order[k])] as i64;
     ((0..nodes.len()).map(node).collect(), code)
@@ -61,7 +61,7 @@ fn cell_type(kind: CellKind) -> (u8, Option<&'static [usize]>) {
 }
 
 /// VTK type of a kind of facet; its nodes come in the same order there.
-pub(super) fn facet_type(kind: FacetKind) -> u8 {
+pub(crate) fn facet_type(kind: FacetKind) -> u8 {
     match kind {
         FacetKind::Line2 => 3,
         FacetKind::Line3 => 21,
@@ -112,7 +112,7 @@ fn cells<const D: usize>(mesh: &Mesh<D>) -> Vec<(Vec<i64>, u8)> {
 
 impl Grid {
     /// The file.
-    pub(super) fn bytes(&self) -> Vec<u8> {
+    pub(crate) fn bytes(&self) -> Vec<u8> {
         let mut head = format!(
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
              byte_order=\"LittleEndian\" header_type=\"UInt64\" \
@@ -257,13 +257,13 @@ fn deflated(block: &[u8]) -> Vec<u8> {
 }
 
 /// The value of an attribute in a tag.
-pub(super) fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
+pub(crate) fn attribute<'a>(tag: &'a str, name: &str) -> Option<&'a str> {
     let (_, after) = tag.split_once(&format!(" {name}=\""))?;
     after.split_once('"').map(|(value, _)| value)
 }
 
 /// The values at the nodes in a file that a run wrote; `None` if it is not one, or torn.
-pub(super) fn point_data(bytes: &[u8]) -> Option<Vec<Array>> {
+pub(crate) fn point_data(bytes: &[u8]) -> Option<Vec<Array>> {
     const START: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
     let at = bytes.windows(START.len()).position(|w| w == START)?;
     let head = std::str::from_utf8(&bytes[..at]).ok()?;

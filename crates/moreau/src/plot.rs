@@ -37,7 +37,6 @@
 //! ```
 
 mod axis;
-mod bands;
 mod chart;
 mod clip;
 mod colour;
@@ -50,12 +49,13 @@ mod pen;
 mod picture;
 #[cfg(feature = "png")]
 mod raster;
-mod sheet;
 mod text;
 
-pub use chart::{Chart, ChartAxis, Scale, Series, Style};
+pub use axis::{ChartAxis, Scale};
+pub use chart::{Chart, Series};
 pub use colour::colours;
 pub use error::PlotError;
+pub use look::Style;
 pub use nodal::nodal_average;
 pub use picture::{Field, MeshPicture};
 #[cfg(feature = "png")]

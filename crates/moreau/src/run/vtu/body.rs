@@ -1,9 +1,9 @@
 //! The body with its fields as a grid: recovered at points, as means of what was computed in cells.
 
-use super::grid::{Array, Grid, three, vtk_cell};
 use crate::driver::Driver;
 use crate::mandel::{Sym2, von_mises};
 use crate::recovery::recover;
+use crate::vtu::{Array, Grid, three, vtk_cell};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// Components of a stress in the order of VTK.
@@ -14,7 +14,7 @@ fn components(stress: &Sym2) -> [f64; 6] {
 }
 
 /// Stress, von Mises stress and equivalent plastic strain.
-pub(super) fn fields(values: &[(Sym2, f64, f64)]) -> Vec<Array> {
+pub(in crate::run) fn fields(values: &[(Sym2, f64, f64)]) -> Vec<Array> {
     let scalar = |name: &str, of: &dyn Fn(&(Sym2, f64, f64)) -> f64| Array {
         name: name.to_owned(),
         components: 1,
@@ -33,7 +33,7 @@ pub(super) fn fields(values: &[(Sym2, f64, f64)]) -> Vec<Array> {
 
 /// The grid of a body, and the node of each of its points: nodes where materials meet have a point
 /// for each material.
-pub(super) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usize>) {
+pub(in crate::run) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usize>) {
     let mesh = driver.mesh();
     let points = driver.points();
     let recovered = recover(mesh, driver.materials(), &points);

@@ -2,16 +2,16 @@
 //! grid of one vertex each.
 
 use super::body::fields;
-use super::grid::{Array, Grid, three};
 use crate::driver::{Driver, PointState};
 use crate::mandel::von_mises;
+use crate::vtu::{Array, Grid, three};
 use std::collections::BTreeMap;
 
 /// VTK type of a single point.
 const VERTEX: u8 = 1;
 
 /// All quadrature points, cell by cell.
-pub(super) fn points<const D: usize>(driver: &Driver<D>) -> Grid {
+pub(in crate::run) fn points<const D: usize>(driver: &Driver<D>) -> Grid {
     let mesh = driver.mesh();
     let mut states = driver.points();
     // Blocks are sets of cells in any order; the points of a cell stay in theirs.
@@ -69,7 +69,7 @@ mod tests {
     use crate::mesh::{
         Axisymmetric, CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3,
     };
-    use crate::run::body::body;
+    use crate::run::vtu::body::body;
     use nalgebra::Matrix3;
 
     /// Rounding of sums and of Newton's end.
