@@ -8,9 +8,8 @@
 //! | elements, meshes | `moreau-mesh` | [`mesh`] |
 //! | laws, bipotentials | `moreau-laws` | [`laws`] |
 //! | contact problem and solvers | `moreau-contact` | [`contact`] |
-//! | steps and reports | `moreau-driver` | [`driver`] |
+//! | steps, reports, stresses at nodes | `moreau-driver` | [`driver`] |
 //! | charts and pictures | | [`plot`] |
-//! | stresses at nodes | | [`recovery`] |
 //! | problems in text files | | [`deck`] |
 //! | mesh files | | [`files`] |
 //! | their results | | [`run`] |
@@ -43,7 +42,6 @@ pub mod memory;
 #[cfg(feature = "decks")]
 pub mod numbers;
 pub mod plot;
-pub mod recovery;
 #[cfg(feature = "decks")]
 pub mod run;
 #[cfg(feature = "decks")]

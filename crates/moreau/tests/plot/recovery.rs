@@ -2,13 +2,13 @@
 //! smooth, with the jumps between materials, and within the yield surface.
 
 use moreau::driver::{Analysis, Driver, Model, PointState, Settings};
+use moreau::driver::{Recovered, recover};
 use moreau::laws::{BulkLaw, Elastic, VonMises};
 use moreau::mandel::{Sym2, from_matrix, von_mises};
 use moreau::mesh::{
     CellKind, Element, Hex8, Integration, Mesh, PlaneStrain, Quad4, Quad8, Solid, Tri6, block2,
     block3, uniform,
 };
-use moreau::recovery::{Recovered, recover};
 use nalgebra::Matrix3;
 
 const YOUNG: f64 = 1000.0;

@@ -6,10 +6,9 @@ use super::pictures::{
     label, usual_field, usual_magnification,
 };
 use crate::deck::Deck;
-use crate::driver::Driver;
+use crate::driver::{Driver, points_by_material};
 use crate::laws::Status;
 use crate::mesh::{Facet, Mesh};
-use crate::recovery::split;
 use crate::run::vtu::{bodies, read_point_data};
 use crate::run::{RunError, status_name};
 use crate::vtu::Array;
@@ -30,7 +29,7 @@ pub(super) fn viewer<const D: usize>(
 ) -> Result<serde_json::Value, RunError> {
     let all = bodies(directory);
     let mesh = driver.mesh();
-    let (points, cells) = split(mesh, driver.materials());
+    let (points, cells) = points_by_material(mesh, driver.materials());
     let per_frame = points.len() * (D + 9);
     let stride = (all.len() * per_frame).div_ceil(MOST_VALUES).max(1);
     let mut frames = Vec::new();

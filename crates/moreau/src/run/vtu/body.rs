@@ -1,8 +1,7 @@
 //! The body with its fields as a grid: recovered at points, as means of what was computed in cells.
 
-use crate::driver::Driver;
+use crate::driver::{Driver, recover};
 use crate::mandel::{Sym2, von_mises};
-use crate::recovery::recover;
 use crate::vtu::{Array, Grid, three, vtk_cell};
 use std::f64::consts::FRAC_1_SQRT_2;
 

@@ -6,9 +6,9 @@
 //! the values of the cells around it. A patch never crosses from one material to another, nor from
 //! body to body; at a boundary the polynomials of the corners inside are continued.
 
-use crate::driver::PointState;
-use crate::mandel::{Sym2, deviator, von_mises};
-use crate::mesh::Mesh;
+use crate::assembly::block::PointState;
+use moreau_mandel::{Sym2, deviator, von_mises};
+use moreau_mesh::Mesh;
 use nalgebra::{DMatrix, DVector, SVector};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -46,7 +46,7 @@ pub fn recover<const D: usize>(
     points: &[PointState<D>],
 ) -> Recovered {
     let samples = samples(mesh, points);
-    let (nodes, cells) = split(mesh, materials);
+    let (nodes, cells) = points_by_material(mesh, materials);
     let mut around = vec![Vec::new(); nodes.len()];
     for (cell, own) in cells.iter().enumerate() {
         own.iter().for_each(|&p| around[p].push(cell));
@@ -151,7 +151,7 @@ fn mean(values: impl Iterator<Item = Values>) -> Values {
 
 /// The nodes of points, one for every node and every material of its cells; and the points of every
 /// cell.
-pub(crate) fn split<const D: usize>(
+pub fn points_by_material<const D: usize>(
     mesh: &Mesh<D>,
     materials: &[usize],
 ) -> (Vec<usize>, Vec<Vec<usize>>) {
