@@ -1,8 +1,7 @@
 //! Conjugate gradients for a system that has no factor of its own; not its coarse space.
 
 use crate::coarse::Coarse;
-use moreau_algebra::Cholesky;
-use moreau_algebra::Matrix;
+use moreau_algebra::{Engine, Matrix};
 use nalgebra::DVector;
 
 /// Part of the residual, in the norm of the preconditioner, at which the iteration ends: Newton's
@@ -30,8 +29,8 @@ pub(crate) enum Interface<'a> {
 pub(crate) struct Conjugate<'a> {
     pub(crate) matrix: &'a Matrix,
     pub(crate) coarse: &'a Coarse,
-    /// The factor of the coarse matrix.
-    pub(crate) cholesky: &'a mut Cholesky,
+    /// Holds the factor of the coarse matrix.
+    pub(crate) engine: &'a mut dyn Engine,
     pub(crate) interface: Interface<'a>,
     /// Its size.
     pub(crate) size: usize,
@@ -88,17 +87,24 @@ impl Conjugate<'_> {
         self.matrix.sweep_down(r, rows, z, room);
         let mut w = self.coarse.restrict(room);
         let interior = w.len() - self.size;
-        self.cholesky.forward(&mut w);
-        match self.interface {
-            Interface::Free => {}
-            Interface::Held => w[interior..].fill(0.0),
-            Interface::Yields(displacement) => {
-                let x = displacement(&self.cholesky.trailing_times(&w[interior..]));
-                let tail = self.cholesky.trailing_transposed_times(x.as_slice());
-                w[interior..].copy_from_slice(tail.as_slice());
+        let solved = match self.interface {
+            Interface::Free => self.engine.solve(&mut w),
+            Interface::Held | Interface::Yields(_) => {
+                let condensed = self.engine.condense(&mut w);
+                let tail = &mut w[interior..];
+                match self.interface {
+                    Interface::Yields(displacement) => {
+                        let x = displacement(&DVector::from_column_slice(tail));
+                        tail.copy_from_slice(x.as_slice());
+                    }
+                    _ => tail.fill(0.0),
+                }
+                condensed.and(self.engine.expand(&mut w))
             }
+        };
+        if solved.is_err() {
+            w.fill(f64::NAN);
         }
-        self.cholesky.backward(&mut w);
         self.coarse.prolong(&w, z);
         room.copy_from_slice(r);
         self.matrix.sweep_up(room, rows, z);
