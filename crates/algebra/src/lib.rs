@@ -33,6 +33,8 @@
 //! Nothing here depends on the number of threads: the same bits for any.
 
 mod cholesky;
+mod coarse;
+mod conjugate;
 mod dense;
 mod engine;
 mod ldlt;
@@ -45,6 +47,8 @@ mod sparse_lu;
 mod symbolic;
 
 pub use cholesky::Cholesky;
+pub use coarse::{CoarseError, CoarseSpace};
+pub use conjugate::{ConjugateGradients, Interface, Stop};
 pub use dense::{DenseCholesky, square};
 pub use engine::{Cost, Engine, EngineError, Inertia, TooLarge};
 pub use ldlt::Ldlt;
