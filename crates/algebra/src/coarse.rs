@@ -91,20 +91,24 @@ impl CoarseSpace {
     ///
     /// # Errors
     /// [`CoarseError`] where they do not fit.
-    pub fn new(fine: &Pattern, size: usize, rows: &[Vec<(u32, f64)>]) -> Result<Self, CoarseError> {
+    pub fn new<R: AsRef<[(u32, f64)]>>(
+        fine: &Pattern,
+        size: usize,
+        rows: impl IntoIterator<Item = R>,
+    ) -> Result<Self, CoarseError> {
         let unknowns = fine.size();
-        if rows.len() != unknowns {
-            let rows = rows.len();
-            return Err(CoarseError::Rows { rows, unknowns });
-        }
         let (mut start, mut parts) = (vec![0u32], Vec::new());
-        for (k, row) in rows.iter().enumerate() {
-            if let Some(&(unknown, _)) = row.iter().find(|&&(c, _)| c as usize >= size) {
-                let row = k;
+        for (row, own) in rows.into_iter().enumerate() {
+            let own = own.as_ref();
+            if let Some(&(unknown, _)) = own.iter().find(|&&(c, _)| c as usize >= size) {
                 return Err(CoarseError::Unknown { row, unknown, size });
             }
-            parts.extend_from_slice(row);
+            parts.extend_from_slice(own);
             start.push(parts.len() as u32);
+        }
+        if start.len() != unknowns + 1 {
+            let rows = start.len() - 1;
+            return Err(CoarseError::Rows { rows, unknowns });
         }
         let rows = Weights { start, parts };
         let columns = rows.transposed(size);

@@ -3,12 +3,12 @@
 
 use crate::block::Stiffness;
 use crate::condensation::Condensation;
-use crate::conjugate::Interface;
 use crate::driver::Driver;
 use crate::load::Loading;
 use crate::sparse::Sparse;
 use crate::system::System;
 use crate::tied::Tied;
+use moreau_algebra::Interface;
 use moreau_laws::Status;
 use nalgebra::{DMatrix, DVector, SVector};
 

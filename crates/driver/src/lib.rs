@@ -36,7 +36,6 @@ mod coarse;
 mod collapse;
 mod commit;
 mod condensation;
-mod conjugate;
 mod control;
 mod driver;
 mod error;

@@ -185,8 +185,8 @@ impl<const D: usize> Driver<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::conjugate::Interface;
     use crate::{Axis, Model, Settings, Step};
+    use moreau_algebra::Interface;
     use moreau_laws::VonMises;
     use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
 

@@ -2,7 +2,6 @@
 //! the iteration that it is a step of.
 
 use crate::condensation::Condensation;
-use crate::conjugate::Interface;
 use crate::driver::Driver;
 use crate::error::StepError;
 use crate::increment::Counts;
@@ -12,6 +11,7 @@ use crate::norm::largest;
 use crate::sparse::Sparse;
 use crate::system::System;
 use crate::tied::Tied;
+use moreau_algebra::Interface;
 use moreau_contact::{ContactError, ContactSolution, Springs, TiedProblem, solve_tied};
 use moreau_laws::Local;
 use nalgebra::DVector;

@@ -224,8 +224,8 @@ impl System {
             .collect();
         let coarse = || {
             let space = (interface_nodes, pivot, tools);
-            let coarse = Coarse::new(mesh, blocks, &fixed, space, &dofs)?;
-            let engine = engine(&coarse.matrix.pattern, memory);
+            let coarse = Coarse::new(mesh, &fixed, space, (&dofs, &pattern))?;
+            let engine = engine(&coarse.space.matrix().pattern, memory);
             Some(engine.map(|engine| (engine, Some(coarse))))
         };
         let cost = Cost::of(&pattern);
@@ -331,7 +331,6 @@ impl System {
         let with_stiffness = stiffness != Stiffness::None;
         if with_stiffness {
             self.matrix.reset();
-            self.coarse.iter_mut().for_each(|c| c.matrix.reset());
         }
         let mut coupling = Vec::new();
         let missing = (!missing.is_zero()).then_some(missing);
@@ -341,18 +340,15 @@ impl System {
                 coupling[unknown] += k * missing.at(prescribed);
             }
         }
-        let (position, coarse) = (&self.position, &mut self.coarse);
+        let position = &self.position;
         let (pattern, values) = self.matrix.values_mut();
-        for (k, (block, scatter)) in blocks.iter_mut().zip(&self.scatter).enumerate() {
+        for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
             flows |= block.evaluate(d_u, stiffness, &mut |cell| {
                 for (&a, force) in cell.nodes.iter().zip(cell.force.chunks_exact(D)) {
                     let at = internal[D * a..D * a + D].iter_mut();
                     at.zip(force).for_each(|(sum, f)| *sum += f);
                 }
                 scatter.add::<D>(&cell, position, pattern, values);
-                if let Some(coarse) = coarse {
-                    coarse.add(k, &cell);
-                }
                 if let Some(missing) = missing {
                     couplings::<D>(&cell, position, &mut |unknown, prescribed, k| {
                         coupling[unknown] += k * missing.at(prescribed);
@@ -383,8 +379,8 @@ impl System {
         let rest = vec![0.0; self.position.len()];
         let keeps = self.keeps_elastic;
         let (position, all) = (&self.position, &mut self.couplings);
-        let (coarse, (pattern, values)) = (&mut self.coarse, self.matrix.values_mut());
-        for (k, (block, scatter)) in blocks.iter_mut().zip(&self.scatter).enumerate() {
+        let (pattern, values) = self.matrix.values_mut();
+        for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
             block.evaluate(&rest, Stiffness::Total(0.0), &mut |cell| {
                 scatter.add::<D>(&cell, position, pattern, values);
                 if keeps {
@@ -392,14 +388,10 @@ impl System {
                         all.push((unknown, prescribed, k));
                     });
                 }
-                if let Some(coarse) = coarse {
-                    coarse.add(k, &cell);
-                }
             });
         }
         if keeps {
             self.matrix.keep();
-            self.coarse.iter_mut().for_each(|c| c.matrix.keep());
         }
         let first = self.size() - self.interface;
         let diagonal = |p: usize| self.matrix.diagonal(p);
@@ -444,22 +436,29 @@ impl System {
         if elastic && self.elastic_factor {
             return Ok(());
         }
-        let (matrix, dofs) = match &mut self.coarse {
-            Some(coarse) => (&mut coarse.matrix, &coarse.dofs),
-            None => (&mut self.matrix, &self.dofs),
-        };
-        matrix.shift(self.interface, self.shift);
         self.elastic_factor = false;
         self.factorisations += 1;
+        let (interface, shift) = (self.interface, self.shift);
         timed(&mut self.timings.factorisation, || {
+            let matrix = match &mut self.coarse {
+                Some(coarse) => {
+                    coarse.space.project(&self.matrix)?;
+                    coarse.space.matrix_mut()
+                }
+                None => &mut self.matrix,
+            };
+            matrix.shift(interface, shift);
             self.engine.factorise(matrix.values())
         })
-        .map_err(|error| match error {
-            EngineError::NotPositiveDefinite { row } | EngineError::Singular { row, .. } => {
-                dofs[row]
+        .map_err(|error| {
+            let dofs = self.coarse.as_ref().map_or(&self.dofs, |c| &c.dofs);
+            match error {
+                EngineError::NotPositiveDefinite { row } | EngineError::Singular { row, .. } => {
+                    dofs[row]
+                }
+                EngineError::NotFinite { column } => dofs[column],
+                _ => dofs.last().copied().unwrap_or(0),
             }
-            EngineError::NotFinite { column } => dofs[column],
-            _ => dofs.last().copied().unwrap_or(0),
         })?;
         self.elastic_factor = elastic;
         self.current = true;

@@ -1,9 +1,9 @@
 //! Assembly and solves of small systems against dense ones.
 
 use super::*;
-use crate::conjugate::Interface;
 use crate::norm::largest;
 use crate::{Axis, Driver, Model, Settings, Step};
+use moreau_algebra::{Inertia, Interface};
 use moreau_laws::{Elastic, VonMises};
 use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
 use nalgebra::{DMatrix, DVector};
@@ -74,7 +74,7 @@ impl Engine for Faulty {
     fn cost(&self) -> Cost {
         self.engine.cost()
     }
-    fn factorise(&mut self, values: &[f64]) -> Result<moreau_algebra::Inertia, EngineError> {
+    fn factorise(&mut self, values: &[f64]) -> Result<Inertia, EngineError> {
         self.factor = 1.0;
         self.engine.factorise(values)
     }
@@ -137,15 +137,15 @@ fn the_coarse_stiffness_is_that_of_its_displacements() {
     let column = |k: usize| {
         let (mut unit, mut v) = (vec![0.0; m], vec![0.0; fine]);
         unit[k] = 1.0;
-        coarse.prolong(&unit, &mut v);
+        coarse.space.prolong(&unit, &mut v);
         DVector::from_vec(v)
     };
     let p = DMatrix::from_columns(&(0..m).map(column).collect::<Vec<_>>());
     let k = dense(&system.matrix);
-    let difference = dense(&coarse.matrix) - p.transpose() * &k * &p;
+    let difference = dense(coarse.space.matrix()) - p.transpose() * &k * &p;
     assert!(difference.amax() < 1e-12 * k.amax());
     let f = DVector::from_fn(fine, |i, _| (i as f64).sin());
-    let restricted = DVector::from_vec(coarse.restrict(f.as_slice()));
+    let restricted = DVector::from_vec(coarse.space.restrict(f.as_slice()));
     assert!((restricted - p.transpose() * f).norm() < 1e-12);
     // Brought to the solution of K itself, though not at once.
     let mut u = vec![0.0; load.len()];
