@@ -33,17 +33,27 @@
 //! Nothing here depends on the number of threads: the same bits for any.
 
 mod cholesky;
+mod coarse;
+mod conjugate;
 mod dense;
+mod engine;
+mod ldlt;
 mod lu;
 mod matrix;
 mod ordering;
+mod panel;
 mod pattern;
 mod sparse_lu;
+mod symbolic;
 
-pub use cholesky::{Cholesky, Cost, NotPositiveDefinite, TooLarge};
+pub use cholesky::Cholesky;
+pub use coarse::{CoarseError, CoarseSpace};
+pub use conjugate::{ConjugateGradients, Interface, Stop};
 pub use dense::{DenseCholesky, square};
+pub use engine::{Cost, Engine, EngineError, Inertia, TooLarge};
+pub use ldlt::Ldlt;
 pub use lu::Lu;
 pub use matrix::Matrix;
 pub use ordering::nested_dissection;
-pub use pattern::Pattern;
+pub use pattern::{Pattern, PatternError};
 pub use sparse_lu::{Rows, SparseLu};

@@ -158,7 +158,7 @@ mod tests {
             }
             start.push(rows.len() as u32);
         }
-        let mut matrix = Matrix::new(Pattern::new(start, rows));
+        let mut matrix = Matrix::new(Pattern::new(start, rows).expect("ascending"));
         matrix.values_mut().1.copy_from_slice(&values);
         (matrix, dense)
     }

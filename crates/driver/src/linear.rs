@@ -1,6 +1,5 @@
 //! The linear system of a mesh, its factor or what replaces it; no contact.
 
 pub(crate) mod coarse;
-pub(crate) mod conjugate;
 pub(crate) mod suspension;
 pub(crate) mod system;

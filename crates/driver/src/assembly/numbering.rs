@@ -77,7 +77,10 @@ impl Numbering {
             position,
             dofs,
             interface,
-            pattern: Pattern::new(column_start, row),
+            // Every column begins with its own row, and goes on with others in order.
+            pattern: Pattern::new(column_start, row)
+                .and_then(|pattern| pattern.keeping(interface))
+                .expect("sorted, without repetition"),
         }
     }
 }

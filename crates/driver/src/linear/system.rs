@@ -10,8 +10,7 @@ use crate::settings::Seam;
 use crate::timings::{Timings, timed};
 use crate::vector::SparseVector;
 use crate::vector::residual;
-use moreau_algebra::Matrix;
-use moreau_algebra::{Cholesky, NotPositiveDefinite, Pattern, TooLarge};
+use moreau_algebra::{Cholesky, Cost, Engine, EngineError, Matrix, Pattern, TooLarge};
 use moreau_mesh::Mesh;
 use std::collections::BTreeSet;
 use std::time::Instant;
@@ -54,7 +53,7 @@ pub(crate) struct System {
     tied: Option<Vec<f64>>,
     shift: f64,
     stiffest: f64,
-    cholesky: Cholesky,
+    engine: Box<dyn Engine>,
     /// Whether the factor held is that of the elastic stiffness.
     elastic_factor: bool,
     /// Whether the values are those that the factor was made of.
@@ -106,8 +105,13 @@ const SOLVE: f64 = 60.0;
 /// Operations of a factorisation in about the time of the conjugate gradients of a Newton step: ten
 /// iterations, each of which reads the matrix five times and the factor of its coarse space twice; an
 /// entry is read in the time of eighty operations.
-fn conjugate_operations(pattern: &Pattern, coarse: usize) -> f64 {
-    10.0 * 80.0 * (5.0 * pattern.entries() as f64 + 2.0 * coarse as f64)
+fn conjugate_operations(pattern: &Pattern, coarse: f64) -> f64 {
+    10.0 * 80.0 * (5.0 * pattern.entries() as f64 + 2.0 * coarse)
+}
+
+/// What factorises a stiffness of a pattern, in so much memory \[bytes\].
+fn engine(pattern: &Pattern, memory: Option<u64>) -> Result<Box<dyn Engine>, TooLarge> {
+    Ok(Box::new(Cholesky::analyse(pattern, memory)?))
 }
 
 /// Pivots below this part of the diagonal are rounding, and a motion without stiffness.
@@ -134,13 +138,13 @@ fn ties_are_cheaper<const D: usize>(
         return None;
     }
     let tied = tied();
-    let own = Cholesky::cost(&tied.pattern);
+    let own = Cost::of(&tied.pattern);
     let through = factorisations * own.operations + solves * SOLVE * own.entries;
     let other = || {
         let condensed = condensed();
-        let own = Cholesky::cost(&condensed.pattern).operations;
+        let own = Cost::of(&condensed.pattern).operations;
         match D {
-            3 => own.min(conjugate_operations(&condensed.pattern, 0)),
+            3 => own.min(conjugate_operations(&condensed.pattern, 0.0)),
             _ => own,
         }
     };
@@ -200,7 +204,7 @@ impl System {
             });
             if seam == Seam::Tied {
                 let tied = tied();
-                return (Cholesky::cost(&tied.pattern).entries <= room).then_some(tied);
+                return (Cost::of(&tied.pattern).entries <= room).then_some(tied);
             }
             let free = |a: &usize| (D * a..D * a + D).filter(|&dof| !fixed(dof)).count();
             let nodes: BTreeSet<usize> = interface_nodes.iter().copied().collect();
@@ -220,29 +224,28 @@ impl System {
             .collect();
         let coarse = || {
             let space = (interface_nodes, pivot, tools);
-            let coarse = Coarse::new(mesh, blocks, &fixed, space, &dofs)?;
-            let factor = Cholesky::analyse(&coarse.matrix.pattern, memory, |_| true);
-            Some(factor.map(|factor| (factor, Some(coarse))))
+            let coarse = Coarse::new(mesh, &fixed, space, (&dofs, &pattern))?;
+            let engine = engine(&coarse.space.matrix().pattern, memory);
+            Some(engine.map(|engine| (engine, Some(coarse))))
         };
+        let cost = Cost::of(&pattern);
         let mut other = None;
-        let own = Cholesky::analyse(&pattern, memory, |cost| {
-            // In the plane a factor is small, and linear cells in plastic flow are a poor coarse space.
-            if D == 3 && !is_tied && conjugate_operations(&pattern, 0) < cost.operations {
-                other = coarse().filter(|other| {
-                    other.as_ref().is_ok_and(|(factor, _)| {
-                        let solution = conjugate_operations(&pattern, factor.entries());
-                        factor.operations() + solution < cost.operations
-                    })
-                });
-            }
-            other.is_none()
-        });
-        let chosen = match own {
-            Ok(factor) => Ok((factor, None)),
-            Err(too_large) => other.or_else(coarse).unwrap_or(Err(too_large)),
+        // In the plane a factor is small, and linear cells in plastic flow are a poor coarse space.
+        if D == 3 && !is_tied && conjugate_operations(&pattern, 0.0) < cost.operations {
+            other = coarse().filter(|other| {
+                other.as_ref().is_ok_and(|(engine, _)| {
+                    let own = engine.cost();
+                    own.operations + conjugate_operations(&pattern, own.entries) < cost.operations
+                })
+            });
+        }
+        let own = || match engine(&pattern, memory) {
+            Ok(engine) => Ok((engine, None)),
+            Err(too_large) => coarse().unwrap_or(Err(too_large)),
         };
+        let chosen = other.unwrap_or_else(own);
         let gigabytes = |entries: f64| entries * size_of::<f64>() as f64 / 1e9;
-        let (cholesky, coarse) =
+        let (engine, coarse) =
             chosen.map_err(|TooLarge { entries, room }| ModelError::TooLarge {
                 unknowns: dofs.len(),
                 needed: gigabytes(entries),
@@ -264,7 +267,7 @@ impl System {
             tied: is_tied.then(Vec::new),
             shift: 0.0,
             stiffest: 0.0,
-            cholesky,
+            engine,
             elastic_factor: false,
             current: false,
             factorisations: 0,
@@ -285,7 +288,7 @@ impl System {
 
     /// Entries stored of the factor.
     pub(crate) fn factor_entries(&self) -> usize {
-        self.cholesky.entries()
+        self.engine.cost().entries as usize
     }
 
     /// Whether a displacement is unknown.
@@ -329,7 +332,6 @@ impl System {
         let with_stiffness = stiffness != Stiffness::None;
         if with_stiffness {
             self.matrix.reset();
-            self.coarse.iter_mut().for_each(|c| c.matrix.reset());
         }
         let mut prescribed_load = Vec::new();
         let missing = (!missing.is_zero()).then_some(missing);
@@ -339,18 +341,15 @@ impl System {
                 prescribed_load[unknown] += k * missing.at(prescribed);
             }
         }
-        let (position, coarse) = (&self.position, &mut self.coarse);
+        let position = &self.position;
         let (pattern, values) = self.matrix.values_mut();
-        for (k, (block, scatter)) in blocks.iter_mut().zip(&self.scatter).enumerate() {
+        for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
             flows |= block.evaluate(d_u, stiffness, &mut |cell| {
                 for (&a, force) in cell.nodes.iter().zip(cell.force.chunks_exact(D)) {
                     let at = internal[D * a..D * a + D].iter_mut();
                     at.zip(force).for_each(|(sum, f)| *sum += f);
                 }
                 scatter.add::<D>(&cell, position, pattern, values);
-                if let Some(coarse) = coarse {
-                    coarse.add(k, &cell);
-                }
                 if let Some(missing) = missing {
                     prescribed_columns::<D>(&cell, position, &mut |unknown, prescribed, k| {
                         prescribed_load[unknown] += k * missing.at(prescribed);
@@ -381,8 +380,8 @@ impl System {
         let rest = vec![0.0; self.position.len()];
         let keeps = self.keeps_elastic;
         let (position, all) = (&self.position, &mut self.prescribed_columns);
-        let (coarse, (pattern, values)) = (&mut self.coarse, self.matrix.values_mut());
-        for (k, (block, scatter)) in blocks.iter_mut().zip(&self.scatter).enumerate() {
+        let (pattern, values) = self.matrix.values_mut();
+        for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
             block.evaluate(&rest, Stiffness::Total(0.0), &mut |cell| {
                 scatter.add::<D>(&cell, position, pattern, values);
                 if keeps {
@@ -390,14 +389,10 @@ impl System {
                         all.push((unknown, prescribed, k));
                     });
                 }
-                if let Some(coarse) = coarse {
-                    coarse.add(k, &cell);
-                }
             });
         }
         if keeps {
             self.matrix.keep();
-            self.coarse.iter_mut().for_each(|c| c.matrix.keep());
         }
         let first = self.size() - self.interface;
         let diagonal = |p: usize| self.matrix.diagonal(p);
@@ -418,12 +413,14 @@ impl System {
     /// How many steps without a factorisation take about as long as one: operations of the one over
     /// what the others read of the factor.
     pub(crate) fn steps_per_factorisation(&self) -> f64 {
-        self.cholesky.operations() / (OPERATIONS * self.cholesky.entries() as f64)
+        let cost = self.engine.cost();
+        cost.operations / (OPERATIONS * cost.entries)
     }
 
     /// How many solves take about as long as a factorisation.
     pub(crate) fn solves_per_factorisation(&self) -> f64 {
-        self.cholesky.operations() / (SOLVE * self.cholesky.entries() as f64)
+        let cost = self.engine.cost();
+        cost.operations / (SOLVE * cost.entries)
     }
 
     /// Largest diagonal of the elastic stiffness \[N/mm\].
@@ -440,17 +437,30 @@ impl System {
         if elastic && self.elastic_factor {
             return Ok(());
         }
-        let (matrix, dofs) = match &mut self.coarse {
-            Some(coarse) => (&mut coarse.matrix, &coarse.dofs),
-            None => (&mut self.matrix, &self.dofs),
-        };
-        matrix.shift(self.interface, self.shift);
         self.elastic_factor = false;
         self.factorisations += 1;
+        let (interface, shift) = (self.interface, self.shift);
         timed(&mut self.timings.factorisation, || {
-            self.cholesky.factorise(&matrix.pattern, matrix.values())
+            let matrix = match &mut self.coarse {
+                Some(coarse) => {
+                    coarse.space.project(&self.matrix)?;
+                    coarse.space.matrix_mut()
+                }
+                None => &mut self.matrix,
+            };
+            matrix.shift(interface, shift);
+            self.engine.factorise(matrix.values())
         })
-        .map_err(|NotPositiveDefinite { row }| dofs[row])?;
+        .map_err(|error| {
+            let dofs = self.coarse.as_ref().map_or(&self.dofs, |c| &c.dofs);
+            match error {
+                EngineError::NotPositiveDefinite { row } | EngineError::Singular { row, .. } => {
+                    dofs[row]
+                }
+                EngineError::NotFinite { column } => dofs[column],
+                _ => dofs.last().copied().unwrap_or(0),
+            }
+        })?;
         self.elastic_factor = elastic;
         self.current = true;
         Ok(())
@@ -471,11 +481,10 @@ impl System {
         }
         self.elastic_factor = false;
         self.factorisations += 1;
-        let pattern = &self.matrix.pattern;
         let outcome = timed(&mut self.timings.factorisation, || {
-            self.cholesky.factorise(pattern, &sum)
+            self.engine.factorise(&sum)
         });
-        let holds = outcome.is_ok() && self.cholesky.least_pivot(pattern, &sum) > RIGID;
+        let holds = outcome.is_ok() && self.engine.least_pivot() > RIGID;
         // What does not hold is not kept.
         self.tied = Some(if holds { sum } else { Vec::new() });
         holds

@@ -211,8 +211,9 @@ impl<const D: usize> Driver<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linear::conjugate::Interface;
+
     use crate::{Axis, Model, Settings, Step};
+    use moreau_algebra::Interface;
     use moreau_laws::VonMises;
     use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
 

@@ -5,10 +5,10 @@ use crate::assembly::block::Stiffness;
 use crate::driver::Driver;
 use crate::interface::condensation::Condensation;
 use crate::interface::tied::Tied;
-use crate::linear::conjugate::Interface;
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::vector::SparseVector;
+use moreau_algebra::Interface;
 use moreau_laws::Status;
 use nalgebra::{DMatrix, DVector, SVector};
 

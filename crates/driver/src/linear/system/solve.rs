@@ -3,11 +3,10 @@
 
 use super::System;
 use crate::error::Inaccurate;
-use crate::linear::conjugate::{Conjugate, Interface};
 use crate::timings::timed;
 use crate::vector::SparseVector;
 use crate::vector::largest;
-use moreau_algebra::square;
+use moreau_algebra::{ConjugateGradients, EngineError, Interface, Stop};
 use nalgebra::{DMatrix, DVector};
 use std::time::Instant;
 
@@ -15,14 +14,20 @@ use std::time::Instant;
 /// to which the factor is right: a thousand times what rounding leaves.
 const ACCURATE: f64 = 1e-12;
 
+/// Where conjugate gradients end: Newton's method, which they serve, loses little of its speed.
+const STOP: Stop = Stop {
+    part: 1e-2,
+    limit: 400,
+};
+
 /// A load q of unknown factor in a condensed system, and the equation that decides it:
 /// q·u + c λ = m.
 #[derive(Debug)]
 pub(crate) struct Border {
     /// q at the unknowns \[N\].
     applied: Vec<f64>,
-    /// L⁻¹ q.
-    forward: Vec<f64>,
+    /// q as it is condensed.
+    inner: Vec<f64>,
     /// q̃, q condensed on the interface \[N\].
     load: DVector<f64>,
     /// c + q·u of the interior under q alone, the interface held \[N·mm\].
@@ -31,7 +36,7 @@ pub(crate) struct Border {
     missing: f64,
 }
 
-/// The system condensed on its interface: S = L_cc L_ccᵀ − σ 1 and the condensed load.
+/// The system condensed on its interface: S, that of K + σE less σ 1, and the condensed load.
 #[derive(Debug)]
 pub(crate) struct Condensed {
     /// S \[N/mm\], in the order of the interface unknowns.
@@ -40,8 +45,15 @@ pub(crate) struct Condensed {
     pub(crate) load: DVector<f64>,
     /// The load of the system \[N\].
     applied: Vec<f64>,
-    /// L⁻¹ of the load of the system.
-    forward: Vec<f64>,
+    /// The same as it is condensed, which is to be expanded.
+    inner: Vec<f64>,
+}
+
+/// A solution that there is none of is no number, which the check of the residual tells.
+fn told(outcome: Result<(), EngineError>, x: &mut [f64]) {
+    if outcome.is_err() {
+        x.fill(f64::NAN);
+    }
 }
 
 impl System {
@@ -49,23 +61,25 @@ impl System {
     pub(crate) fn condense(&mut self, load: Vec<f64>) -> Condensed {
         let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
         drop(load);
-        let mut forward = self.restricted(&applied);
+        let mut inner = self.restricted(&applied);
         timed(&mut self.timings.solution, || {
-            self.cholesky.forward(&mut forward)
+            told(self.engine.condense(&mut inner), &mut inner)
         });
         let clock = Instant::now();
-        let first = forward.len() - self.interface;
-        let mut stiffness = square(&self.cholesky.trailing(self.interface));
+        let first = inner.len() - self.interface;
+        let size = self.interface;
+        let unknown = |_| DMatrix::from_element(size, size, f64::NAN);
+        let mut stiffness = self.engine.schur().unwrap_or_else(unknown);
         for i in 0..self.interface {
             stiffness[(i, i)] -= self.shift;
         }
-        let load = self.cholesky.trailing_times(&forward[first..]);
+        let load = DVector::from_column_slice(&inner[first..]);
         self.timings.contact += clock.elapsed();
         Condensed {
             stiffness,
             load,
             applied,
-            forward,
+            inner,
         }
     }
 
@@ -79,21 +93,27 @@ impl System {
         (compliance, missing): (f64, f64),
     ) -> Border {
         let applied: Vec<f64> = self.dofs.iter().map(|&dof| load.at(dof)).collect();
-        let mut forward = self.restricted(&applied);
+        let restricted = self.restricted(&applied);
+        let mut inner = restricted.clone();
+        let first = inner.len() - self.interface;
+        // K_ii⁻¹ q_i, the interface held.
+        let mut held = Vec::new();
         timed(&mut self.timings.solution, || {
-            self.cholesky.forward(&mut forward)
+            told(self.engine.condense(&mut inner), &mut inner);
+            held.clone_from(&inner);
+            held[first..].fill(0.0);
+            told(self.engine.expand(&mut held), &mut held);
         });
-        let first = forward.len() - self.interface;
-        let interior = |a: &[f64], b: &[f64]| -> f64 {
-            let pairs = a[..first].iter().zip(&b[..first]);
-            pairs.map(|(a, b)| a * b).sum()
+        let work = |load: &[f64]| -> f64 {
+            let pairs = load[..first].iter().zip(&held[..first]);
+            pairs.map(|(f, u)| f * u).sum()
         };
         let border = Border {
-            load: self.cholesky.trailing_times(&forward[first..]),
-            compliance: compliance + interior(&forward, &forward),
-            missing: missing - interior(&forward, &condensed.forward),
+            load: DVector::from_column_slice(&inner[first..]),
+            compliance: compliance + work(&restricted),
+            missing: missing - work(&self.restricted(&condensed.applied)),
             applied,
-            forward,
+            inner,
         };
         let scale = 1.0 / border.compliance;
         condensed
@@ -114,8 +134,8 @@ impl System {
         x: &DVector<f64>,
     ) -> f64 {
         let factor = (border.missing - border.load.dot(x)) / border.compliance;
-        let interior = condensed.forward.len() - self.interface;
-        let pairs = condensed.forward.iter_mut().zip(&border.forward);
+        let interior = condensed.inner.len() - self.interface;
+        let pairs = condensed.inner.iter_mut().zip(&border.inner);
         pairs.take(interior).for_each(|(f, w)| *f += factor * w);
         let pairs = condensed.applied.iter_mut().zip(&border.applied);
         pairs.for_each(|(f, q)| *f += factor * q);
@@ -131,8 +151,7 @@ impl System {
         let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
         let mut solution = self.restricted(&applied);
         let clock = Instant::now();
-        self.cholesky.forward(&mut solution);
-        self.cholesky.backward(&mut solution);
+        told(self.engine.solve(&mut solution), &mut solution);
         let mut solution = self.prolonged(solution);
         let outcome = self.improve(&applied, &mut solution, Interface::Free);
         self.timings.solution += clock.elapsed();
@@ -155,13 +174,11 @@ impl System {
         (contact, interface): (&SparseVector, Interface<'_>),
         d_u: &mut [f64],
     ) -> Result<(), Inaccurate> {
-        let mut solution = condensed.forward;
+        let mut solution = condensed.inner;
         let first = solution.len() - self.interface;
-        // (K + σE) u = f + t + σx has L⁻¹ of its right-hand side equal to L_ccᵀ x down here.
-        let tail = self.cholesky.trailing_transposed_times(x.as_slice());
-        solution[first..].copy_from_slice(tail.as_slice());
+        solution[first..].copy_from_slice(x.as_slice());
         let clock = Instant::now();
-        self.cholesky.backward(&mut solution);
+        told(self.engine.expand(&mut solution), &mut solution);
         let mut solution = self.prolonged(solution);
         let mut applied = condensed.applied;
         for (dof, f) in contact.iter().filter(|&(dof, _)| self.is_free(dof)) {
@@ -178,8 +195,7 @@ impl System {
     /// x ← (K + what is tied)⁻¹ x, at the unknowns.
     pub(crate) fn solve_tied(&mut self, x: &mut [f64]) {
         let clock = Instant::now();
-        self.cholesky.forward(x);
-        self.cholesky.backward(x);
+        told(self.engine.solve(x), x);
         self.timings.solution += clock.elapsed();
     }
 
@@ -204,7 +220,7 @@ impl System {
     /// A load on the unknowns that are factorised.
     fn restricted(&self, load: &[f64]) -> Vec<f64> {
         let coarse = self.coarse.as_ref();
-        coarse.map_or_else(|| load.to_vec(), |c| c.restrict(load))
+        coarse.map_or_else(|| load.to_vec(), |c| c.space.restrict(load))
     }
 
     /// Displacements of all unknowns by those that are factorised.
@@ -213,7 +229,7 @@ impl System {
             return solution;
         };
         let mut all = vec![0.0; self.size()];
-        coarse.prolong(&solution, &mut all);
+        coarse.space.prolong(&solution, &mut all);
         all
     }
 
@@ -233,14 +249,16 @@ impl System {
             };
             return self.refine(f, u, rows);
         };
-        let mut system = Conjugate {
+        let mut system = ConjugateGradients {
             matrix: &self.matrix,
-            coarse,
-            cholesky: &mut self.cholesky,
+            space: &coarse.space,
+            engine: self.engine.as_mut(),
             interface,
-            size: self.interface,
+            stop: STOP,
         };
-        self.conjugate += system.improve(f, u);
+        let iterations = system.improve(f, u);
+        self.conjugate += iterations.unwrap_or(0);
+        told(iterations.map(|_| ()), u);
         Ok(())
     }
 
@@ -266,9 +284,13 @@ impl System {
                 self.elastic_factor = false;
                 return Err(Inaccurate { found, expected });
             }
-            self.cholesky.forward(&mut residual);
-            residual[rows..].fill(0.0);
-            self.cholesky.backward(&mut residual);
+            if rows == residual.len() {
+                told(self.engine.solve(&mut residual), &mut residual);
+            } else {
+                told(self.engine.condense(&mut residual), &mut residual);
+                residual[rows..].fill(0.0);
+                told(self.engine.expand(&mut residual), &mut residual);
+            }
             for (u, correction) in u.iter_mut().zip(residual) {
                 *u += correction;
             }

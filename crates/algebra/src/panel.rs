@@ -1,0 +1,259 @@
+//! Triangular solves with the columns of a supernode, for any number of right-hand sides; not which
+//! supernodes there are.
+//!
+//! A solve reads the factor once and does little else: what counts is that an entry of it, once read,
+//! serves all right-hand sides. The sums of one are added in the same order however many go along with
+//! it, without fusing products into sums: the same bits on any processor.
+
+use pulp::{Simd, WithSimd};
+
+/// Right-hand sides that are solved for at once: what is gathered of them stays near the processor.
+pub(crate) const SIDES: usize = 8;
+
+/// Columns of a factor that are read at once: what they are added to, or multiplied by, is read once for
+/// all.
+const TOGETHER: usize = 4;
+
+/// Columns of a lower triangular factor with the same rows: a triangle, and what is below it.
+#[derive(Clone, Copy)]
+pub(crate) struct Panel<'a> {
+    /// Values, column by column.
+    pub(crate) values: &'a [f64],
+    /// Number of columns.
+    pub(crate) width: usize,
+    /// Number of rows.
+    pub(crate) height: usize,
+    /// Whether the diagonal is 1, whatever is stored there.
+    pub(crate) unit: bool,
+}
+
+/// `own` ← L₁⁻¹ `own` with the triangle L₁, then `below` ← L₂ `own` with the rows below it. Both are columns
+/// one after the other.
+pub(crate) struct Forward<'a> {
+    pub(crate) panel: Panel<'a>,
+    pub(crate) own: &'a mut [f64],
+    pub(crate) below: &'a mut [f64],
+}
+
+/// `own` ← L₁⁻ᵀ (`own` − L₂ᵀ `below`).
+pub(crate) struct Backward<'a> {
+    pub(crate) panel: Panel<'a>,
+    pub(crate) own: &'a mut [f64],
+    pub(crate) below: &'a [f64],
+}
+
+impl WithSimd for Forward<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { panel, own, below } = self;
+        let (width, height) = (panel.width, panel.height);
+        for (j, column) in panel.values.chunks_exact(height).enumerate() {
+            for own in own.chunks_exact_mut(width) {
+                let solved = if panel.unit {
+                    own[j]
+                } else {
+                    own[j] / column[j]
+                };
+                own[j] = solved;
+                for (x, l) in own[j + 1..].iter_mut().zip(&column[j + 1..width]) {
+                    *x -= l * solved;
+                }
+            }
+        }
+        let rows = height - width;
+        if rows == 0 {
+            return;
+        }
+        below.fill(0.0);
+        let mut rest = panel.values;
+        for first in (0..width).step_by(TOGETHER) {
+            let (columns, others) = rest.split_at(rest.len().min(TOGETHER * height));
+            rest = others;
+            let mut sides = own.chunks_exact(width).zip(below.chunks_exact_mut(rows));
+            if first + TOGETHER > width {
+                for (x, sum) in sides {
+                    for (column, x) in columns.chunks_exact(height).zip(&x[first..]) {
+                        for (sum, l) in sum.iter_mut().zip(&column[width..]) {
+                            *sum += l * x;
+                        }
+                    }
+                }
+                return;
+            }
+            let columns = lower_parts(columns, width, height);
+            while let Some((x, sum)) = sides.next() {
+                let x = four(&x[first..]);
+                match sides.next() {
+                    Some((y, other)) => add_two(columns, [x, four(&y[first..])], sum, other),
+                    None => add_one(columns, x, sum),
+                }
+            }
+        }
+    }
+}
+
+impl WithSimd for Backward<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { panel, own, below } = self;
+        let (width, height) = (panel.width, panel.height);
+        let rows = height - width;
+        let mut rest = panel.values;
+        for first in (0..width).step_by(TOGETHER) {
+            let (columns, others) = rest.split_at(rest.len().min(TOGETHER * height));
+            rest = others;
+            if rows == 0 {
+                break;
+            }
+            let mut sides = own.chunks_exact_mut(width).zip(below.chunks_exact(rows));
+            if first + TOGETHER > width {
+                for (x, known) in sides {
+                    for (column, x) in columns.chunks_exact(height).zip(&mut x[first..]) {
+                        *x -= dot(&column[width..], known);
+                    }
+                }
+                break;
+            }
+            let columns = lower_parts(columns, width, height);
+            let subtract = |x: &mut [f64], sums: [f64; TOGETHER]| {
+                for (x, sum) in x[first..first + TOGETHER].iter_mut().zip(sums) {
+                    *x -= sum;
+                }
+            };
+            while let Some((x, known)) = sides.next() {
+                match sides.next() {
+                    Some((y, other)) => {
+                        let [of_x, of_y] = dots_two(columns, known, other);
+                        subtract(x, of_x);
+                        subtract(y, of_y);
+                    }
+                    None => subtract(x, dots_one(columns, known)),
+                }
+            }
+        }
+        for (j, column) in panel.values.chunks_exact(height).enumerate().rev() {
+            for own in own.chunks_exact_mut(width) {
+                let left = own[j] - dot(&column[j + 1..width], &own[j + 1..]);
+                own[j] = if panel.unit { left } else { left / column[j] };
+            }
+        }
+    }
+}
+
+/// What is below the first `width` entries of four columns.
+#[inline(always)]
+fn lower_parts(columns: &[f64], width: usize, height: usize) -> [&[f64]; TOGETHER] {
+    std::array::from_fn(|k| &columns[k * height + width..(k + 1) * height])
+}
+
+/// The first four numbers.
+#[inline(always)]
+fn four(x: &[f64]) -> [f64; TOGETHER] {
+    std::array::from_fn(|k| x[k])
+}
+
+/// sum ← sum + Σ column x of four columns.
+#[inline(always)]
+pub(crate) fn add_one(columns: [&[f64]; TOGETHER], x: [f64; TOGETHER], sum: &mut [f64]) {
+    let n = sum.len();
+    let [p, q, r, s] = columns.map(|column| &column[..n]);
+    let [a, b, c, d] = x;
+    for i in 0..n {
+        sum[i] += (p[i] * a + q[i] * b) + (r[i] * c + s[i] * d);
+    }
+}
+
+/// The same for two right-hand sides.
+#[inline(always)]
+fn add_two(
+    columns: [&[f64]; TOGETHER],
+    x: [[f64; TOGETHER]; 2],
+    sum: &mut [f64],
+    other: &mut [f64],
+) {
+    let n = sum.len();
+    let other = &mut other[..n];
+    let [p, q, r, s] = columns.map(|column| &column[..n]);
+    let [[a, b, c, d], [e, f, g, h]] = x;
+    for i in 0..n {
+        let (p, q, r, s) = (p[i], q[i], r[i], s[i]);
+        sum[i] += (p * a + q * b) + (r * c + s * d);
+        other[i] += (p * e + q * f) + (r * g + s * h);
+    }
+}
+
+/// Partial sums of a product, which a processor adds at once.
+const LANES: usize = 4;
+
+/// The products of four columns with one.
+#[inline(always)]
+fn dots_one(columns: [&[f64]; TOGETHER], known: &[f64]) -> [f64; TOGETHER] {
+    let mut sums = [[0.0; LANES]; TOGETHER];
+    let whole = known.len() - known.len() % LANES;
+    for i in (0..whole).step_by(LANES) {
+        let x = &known[i..i + LANES];
+        for (sums, column) in sums.iter_mut().zip(&columns) {
+            let l = &column[i..i + LANES];
+            for k in 0..LANES {
+                sums[k] += l[k] * x[k];
+            }
+        }
+    }
+    closed(columns, known, whole, sums)
+}
+
+/// The same for two right-hand sides.
+#[inline(always)]
+fn dots_two(columns: [&[f64]; TOGETHER], known: &[f64], other: &[f64]) -> [[f64; TOGETHER]; 2] {
+    let mut sums = [[[0.0; LANES]; TOGETHER]; 2];
+    let whole = known.len() - known.len() % LANES;
+    for i in (0..whole).step_by(LANES) {
+        let (x, y) = (&known[i..i + LANES], &other[i..i + LANES]);
+        for (j, column) in columns.iter().enumerate() {
+            let l = &column[i..i + LANES];
+            for k in 0..LANES {
+                sums[0][j][k] += l[k] * x[k];
+                sums[1][j][k] += l[k] * y[k];
+            }
+        }
+    }
+    let [one, two] = sums;
+    [
+        closed(columns, known, whole, one),
+        closed(columns, other, whole, two),
+    ]
+}
+
+/// The partial sums and what is left of the products beyond whole lanes.
+#[inline(always)]
+fn closed(
+    columns: [&[f64]; TOGETHER],
+    known: &[f64],
+    whole: usize,
+    sums: [[f64; LANES]; TOGETHER],
+) -> [f64; TOGETHER] {
+    std::array::from_fn(|j| {
+        let rest = columns[j][whole..].iter().zip(&known[whole..]);
+        sums[j].iter().sum::<f64>() + rest.map(|(l, x)| l * x).sum::<f64>()
+    })
+}
+
+/// Σ a b in an order that lets a processor add several at once.
+#[inline(always)]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let mut sums = [0.0; LANES];
+    let (a, b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let rest = a.remainder().iter().zip(b.remainder());
+    let rest: f64 = rest.map(|(a, b)| a * b).sum();
+    for (a, b) in a.zip(b) {
+        for k in 0..LANES {
+            sums[k] += a[k] * b[k];
+        }
+    }
+    rest + sums.iter().sum::<f64>()
+}
