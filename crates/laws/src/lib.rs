@@ -57,6 +57,7 @@ mod anisotropic;
 mod armstrong_frederick;
 mod bulk;
 mod cam_clay;
+pub mod contract;
 mod coulomb;
 mod drucker_prager;
 mod duality;
