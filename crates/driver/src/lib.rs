@@ -72,7 +72,7 @@ mod timings;
 mod unsymmetric;
 
 pub use between::Between;
-pub use block::{Block, BlockEnergy, CellResult, PointState, SolidBlock, Stiffness};
+pub use block::{Block, BlockEnergy, CellResult, PointField, PointState, SolidBlock, Stiffness};
 pub use buckling::Buckling;
 pub use cells::Cells;
 pub use collapse::{Collapse, UpperBound};

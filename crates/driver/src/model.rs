@@ -189,10 +189,27 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     /// # Errors
     /// An unknown group; [`ModelError::TwoMaterials`].
     pub fn material<L: BulkLaw>(
+        self,
+        group: &str,
+        law: L,
+        integration: Integration,
+    ) -> Result<Self, ModelError> {
+        let initial = law.initial();
+        self.material_from(group, law, integration, |_| initial)
+    }
+
+    /// Gives the cells of a group a law, an integration rule, and the state that every quadrature point
+    /// starts from, by its position in the undeformed body \[mm\]: under a stress, or with axes that
+    /// vary. Stresses that the first loads do not balance strain the body as these are applied.
+    ///
+    /// # Errors
+    /// An unknown group; [`ModelError::TwoMaterials`].
+    pub fn material_from<L: BulkLaw>(
         mut self,
         group: &str,
         law: L,
         integration: Integration,
+        state: impl Fn(&[f64; D]) -> L::State,
     ) -> Result<Self, ModelError> {
         let mut by_kind: BTreeMap<CellKind, Vec<usize>> = BTreeMap::new();
         for &cell in self.mesh.cell_group(group)? {
@@ -209,7 +226,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             let own = self.hypothesis.cells(&self.mesh, kind, &cells, integration);
             // A mesh of dimension D has no cells of another dimension.
             if let Some(own) = own {
-                let block = SolidBlock::new(cells, own, law.clone());
+                let block = SolidBlock::new(cells, own, law.clone()).with_states(&state);
                 self.blocks.push(Box::new(block));
             }
         }

@@ -68,6 +68,12 @@ impl Elastic {
         0.5 * self.bulk * trace(strain).powi(2) + self.shear * deviator(strain).norm_squared()
     }
 
+    /// Strain S⁻¹ σ of a stress \[MPa\].
+    #[inline]
+    pub fn strain(&self, stress: &Sym2) -> Sym2 {
+        trace(stress) / (9.0 * self.bulk) * identity() + deviator(stress) / (2.0 * self.shear)
+    }
+
     /// Complementary energy ½ σ·S⁻¹·σ of a stress \[N·mm/mm³\]; the conjugate of `energy`.
     #[inline]
     pub fn complementary_energy(&self, stress: &Sym2) -> f64 {
@@ -79,6 +85,10 @@ impl Elastic {
 impl BulkLaw for Elastic {
     /// The elastic strain.
     type State = Sym2;
+
+    fn initial(&self) -> Sym2 {
+        Sym2::zeros()
+    }
 
     #[inline]
     fn respond(&self, old: &Sym2, d_eps: &Sym2) -> Response<Sym2> {

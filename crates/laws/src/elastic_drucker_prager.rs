@@ -136,6 +136,10 @@ impl ElasticDruckerPrager {
 impl BulkLaw for ElasticDruckerPrager {
     type State = DruckerPragerState;
 
+    fn initial(&self) -> DruckerPragerState {
+        DruckerPragerState::default()
+    }
+
     #[inline]
     fn respond(&self, old: &DruckerPragerState, d_eps: &Sym2) -> Response<DruckerPragerState> {
         let (k, k_t) = (self.elastic.bulk_modulus(), self.plastic.dilatancy());
@@ -220,6 +224,11 @@ impl BulkLaw for ElasticDruckerPrager {
 
     fn equivalent_plastic_strain(&self, state: &DruckerPragerState) -> f64 {
         state.p
+    }
+
+    /// The dilation e_v = tr εᵖ of the flow.
+    fn fields(&self, state: &DruckerPragerState, each: &mut dyn FnMut(&str, &[f64])) {
+        each("plastic_dilation", &[trace(&state.plastic_strain)]);
     }
 
     /// ψ₁ − ψ₀ + c₀ Δe_v − σ₀ : Δε of associated flow, k_t = k_f; else `None`.

@@ -77,7 +77,7 @@ mod von_mises;
 
 pub use anisotropic::AnisotropicCoulomb;
 pub use armstrong_frederick::{ArmstrongFrederick, Generalised};
-pub use bulk::{BulkLaw, FlowPower, Numbers, Response};
+pub use bulk::{BulkLaw, COMMON_FIELDS, FlowPower, Numbers, Response};
 pub use cam_clay::CamClay;
 pub use coulomb::Coulomb;
 pub use drucker_prager::DruckerPrager;

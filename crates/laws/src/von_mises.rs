@@ -371,6 +371,10 @@ impl<const TERMS: usize> VonMises<TERMS> {
 impl<const TERMS: usize> BulkLaw for VonMises<TERMS> {
     type State = VonMisesState<TERMS>;
 
+    fn initial(&self) -> VonMisesState<TERMS> {
+        VonMisesState::default()
+    }
+
     #[inline]
     fn respond(&self, old: &VonMisesState<TERMS>, d_eps: &Sym2) -> Response<VonMisesState<TERMS>> {
         let mut state = *old;
@@ -449,6 +453,13 @@ impl<const TERMS: usize> BulkLaw for VonMises<TERMS> {
 
     fn equivalent_plastic_strain(&self, state: &VonMisesState<TERMS>) -> f64 {
         state.p
+    }
+
+    /// The back stress X \[MPa\], of a law with kinematic hardening.
+    fn fields(&self, state: &VonMisesState<TERMS>, each: &mut dyn FnMut(&str, &[f64])) {
+        if TERMS > 0 || self.kinematic > 0.0 {
+            each("back_stress", self.back_stress(state).as_slice());
+        }
     }
 
     /// √(2/3) (σ_y + R(p)) ‖ė‖ + X : ė; a change of volume is elastic, σ_m tr ε̇.

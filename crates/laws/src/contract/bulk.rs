@@ -2,7 +2,7 @@
 
 use super::random::Random;
 use super::{Report, Violation};
-use crate::bulk::{BulkLaw, Numbers, Response};
+use crate::bulk::{BulkLaw, COMMON_FIELDS, Numbers, Response};
 use moreau_mandel::{Sym2, Sym4, equivalent_strain};
 
 /// Steps that are drawn.
@@ -28,12 +28,13 @@ const KINK: f64 = 1e-6;
 /// - p never falls and is ∫ √(2/3) ‖ε̇ᵖ‖, \[60\], with ε̇ᵖ = ε̇ − C⁻¹ σ̇;
 /// - D(ε̇) is convex, homogeneous, at least σ : ε̇ and equal to it at the flow of σ;
 /// - no step changes nothing; where nothing flows two halves of a step are the step;
-/// - a state is the numbers that it hands on; what is not a number comes out.
+/// - a state is the numbers that it hands on, and has the same fields as any other; what is not a
+///   number comes out.
 ///
 /// # Errors
 /// The first [`Violation`].
 pub fn bulk<L: BulkLaw>(law: &L) -> Result<Report, Violation> {
-    bulk_from(law, &L::State::default())
+    bulk_from(law, &law.initial())
 }
 
 /// [`bulk`] from another initial state.
@@ -68,7 +69,7 @@ pub fn bulk_from<L: BulkLaw>(law: &L, initial: &L::State) -> Result<Report, Viol
 pub fn isotropy<L: BulkLaw>(law: &L) -> Result<Report, Violation> {
     let mut random = Random::new();
     let mut report = Report::default();
-    let initial = L::State::default();
+    let initial = law.initial();
     let suite = Suite::new(law, &initial, &mut random, &mut report)?;
     for _ in 0..SAMPLES {
         let point = suite.draw(&mut random);
@@ -393,7 +394,25 @@ impl<'a, L: BulkLaw> Suite<'a, L> {
             None => missing += 1,
         });
         let complete = missing == 0 && next.next().is_none() && read == point.response.state;
-        report.holds("a state is its numbers", complete, at)
+        report.holds("a state is its numbers", complete, at)?;
+        let names = |state: &L::State| {
+            let mut names = Vec::new();
+            self.law.fields(state, &mut |name, values| {
+                names.push((name.to_owned(), values.len()));
+            });
+            names
+        };
+        let own = names(&point.response.state);
+        let same = own == names(self.initial);
+        report.holds("fields are the same in every state", same, at)?;
+        let fit = own.iter().all(|(name, count)| {
+            let words = name
+                .bytes()
+                .all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_');
+            let taken = COMMON_FIELDS.contains(&name.as_str());
+            words && !taken && !name.is_empty() && [1, 3, 6].contains(count)
+        });
+        report.holds("fields are words of 1, 3 or 6 components", fit, at)
     }
 
     fn not_a_number(&self, report: &mut Report) -> Result<(), Violation> {

@@ -52,7 +52,7 @@ fn potential<L: BulkLaw>(law: &L, old: &L::State, d_eps: &Sym2) -> f64 {
 
 /// The state after a path of steps from the virgin state.
 fn after<L: BulkLaw>(law: &L, path: &[Sym2]) -> L::State {
-    let virgin = L::State::default();
+    let virgin = law.initial();
     path.iter()
         .fold(virgin, |state, d_eps| law.respond(&state, d_eps).state)
 }

@@ -37,6 +37,8 @@ enum Fault {
     Lacking,
     /// p is not written.
     Memory,
+    /// A field that comes with flow.
+    Fields,
     /// A strain that is not a number counts as none.
     Number,
     /// Stress along the first axis only.
@@ -44,7 +46,7 @@ enum Fault {
 }
 
 /// A state that may forget a number.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct State<S>(S, bool);
 
 impl<S: Numbers> Numbers for State<S> {
@@ -70,6 +72,16 @@ where
     L::State: 'static,
 {
     type State = State<L::State>;
+
+    fn initial(&self) -> Self::State {
+        State(self.0.initial(), false)
+    }
+
+    fn fields(&self, state: &Self::State, each: &mut dyn FnMut(&str, &[f64])) {
+        if self.1 != Fault::Fields || self.0.equivalent_plastic_strain(&state.0) > 0.0 {
+            self.0.fields(&state.0, each);
+        }
+    }
 
     fn respond(&self, old: &Self::State, d_eps: &Sym2) -> Response<Self::State> {
         let mut d_eps = *d_eps;
@@ -188,8 +200,9 @@ fn a_law_with_one_fault_is_refused() -> Result<(), LawError> {
         (Fault::Gain, "dissipation is not negative"),
         (Fault::Linear, "the gradient of the potential is Δσ"),
         (Fault::Potential, "the gradient of the potential is Δσ"),
-        (Fault::Power, "D(ε̇) is at least σ : ε̇"),
+        (Fault::Power, "D(ε̇) is σ : ε̇ at the flow"),
         (Fault::Memory, "a state is its numbers"),
+        (Fault::Fields, "fields are the same in every state"),
         (Fault::Number, "what is not a number comes out"),
     ] {
         assert_eq!(

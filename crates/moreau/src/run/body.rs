@@ -1,7 +1,7 @@
 //! The body with its fields as a grid: recovered at points, as means of what was computed in cells.
 
 use super::grid::{Array, Grid, three, vtk_cell};
-use crate::driver::Driver;
+use crate::driver::{Driver, PointField, PointState};
 use crate::mandel::{Sym2, von_mises};
 use crate::recovery::recover;
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -31,12 +31,49 @@ pub(super) fn fields(values: &[(Sym2, f64, f64)]) -> Vec<Array> {
     ]
 }
 
+/// The fields that laws have of their own.
+pub(super) fn own_fields(fields: &[PointField]) -> impl Iterator<Item = Array> + '_ {
+    fields.iter().map(|field| Array {
+        name: field.name.clone(),
+        components: field.components,
+        values: match field.components {
+            6 => (field.values.chunks_exact(6))
+                .flat_map(|v| components(&Sym2::from_column_slice(v)))
+                .collect(),
+            _ => field.values.clone(),
+        },
+    })
+}
+
+/// Means by volume of fields in every cell.
+fn means<const D: usize>(
+    fields: Vec<PointField>,
+    points: &[PointState<D>],
+    volumes: &[f64],
+) -> Vec<PointField> {
+    let mean = |field: PointField| {
+        let count = field.components;
+        let mut means = vec![0.0; count * volumes.len()];
+        for (p, values) in points.iter().zip(field.values.chunks_exact(count)) {
+            let own = means[count * p.cell..][..count].iter_mut();
+            own.zip(values)
+                .for_each(|(mean, v)| *mean += v * p.weight / volumes[p.cell]);
+        }
+        PointField {
+            values: means,
+            ..field
+        }
+    };
+    fields.into_iter().map(mean).collect()
+}
+
 /// The grid of a body, and the node of each of its points: nodes where materials meet have a point
 /// for each material.
 pub(super) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usize>) {
     let mesh = driver.mesh();
     let points = driver.points();
-    let recovered = recover(mesh, driver.materials(), &points);
+    let of_laws = driver.fields();
+    let recovered = recover(mesh, driver.materials(), &points, &of_laws);
     let values: Vec<_> = recovered
         .stress
         .iter()
@@ -62,9 +99,10 @@ pub(super) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usize>) {
         mean.2 += p.plastic_strain * p.weight;
         volumes[p.cell] += p.weight;
     }
-    for (mean, volume) in means.iter_mut().zip(volumes) {
+    for (mean, &volume) in means.iter_mut().zip(&volumes) {
         *mean = (mean.0 / volume, mean.1 / volume, mean.2 / volume);
     }
+    let of_laws = self::means(of_laws, &points, &volumes);
     let cell = |(c, points): (usize, &Vec<usize>)| vtk_cell(mesh.kind(c), points);
     let numbers = Array {
         name: "cell".into(),
@@ -76,8 +114,12 @@ pub(super) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usize>) {
         cells: recovered.cells.iter().enumerate().map(cell).collect(),
         point_data: std::iter::once(displacement)
             .chain(fields(&values))
+            .chain(own_fields(&recovered.fields))
             .collect(),
-        cell_data: std::iter::once(numbers).chain(fields(&means)).collect(),
+        cell_data: std::iter::once(numbers)
+            .chain(fields(&means))
+            .chain(own_fields(&of_laws))
+            .collect(),
     };
     (grid, nodes)
 }
