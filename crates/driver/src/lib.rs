@@ -74,7 +74,7 @@ mod unsymmetric;
 pub use between::Between;
 pub use block::{Block, BlockEnergy, CellResult, PointField, PointState, SolidBlock, Stiffness};
 pub use buckling::Buckling;
-pub use cells::Cells;
+pub use cells::{Cells, ElementCells};
 pub use collapse::{Collapse, UpperBound};
 pub use driver::{Driver, Nesting, Seam, Settings};
 pub use error::{Imbalance, ModelError, StepError};

@@ -3,8 +3,9 @@
 use moreau_mandel::{Sym2, Sym4};
 
 /// Part of the trial stress below which an overstress is the rounding of a state on the yield surface:
-/// unloading from there is elastic, and rounding does not choose the tangent it begins with.
-pub(crate) const ON_SURFACE: f64 = 1e-12;
+/// unloading from there is elastic, and rounding does not choose the tangent it begins with. A law flows
+/// where f > `ON_SURFACE` times the size of the terms of f.
+pub const ON_SURFACE: f64 = 1e-12;
 
 /// Names of the fields that results have whatever the law.
 pub const COMMON_FIELDS: [&str; 8] = [

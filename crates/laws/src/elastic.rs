@@ -1,7 +1,7 @@
 //! Isotropic linear elasticity, \[58\]-\[59\]; not a law with memory: its state is its strain.
 
 use crate::bulk::{BulkLaw, FlowPower, Response};
-use crate::error::{LawError, positive};
+use crate::error::{LawError, Parameter, positive};
 use moreau_mandel::{Sym2, Sym4, deviator, deviatoric_projector, identity, trace};
 
 /// Isotropic linear elasticity, σ = K_c tr(ε) δ + 2G e with the deviator e of ε.
@@ -21,7 +21,7 @@ impl Elastic {
     /// # Errors
     /// `NotPositive` unless E > 0 is finite; `PoissonOutOfRange` unless −1 < ν < ½.
     pub fn new(young: f64, poisson: f64) -> Result<Self, LawError> {
-        let young = positive("Young's modulus", young)?;
+        let young = positive(Parameter::YoungsModulus, young)?;
         if !(poisson > -1.0 && poisson < 0.5) {
             return Err(LawError::PoissonOutOfRange { poisson });
         }

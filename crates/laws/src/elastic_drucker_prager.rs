@@ -4,7 +4,7 @@
 use crate::bulk::{BulkLaw, FlowPower, Numbers, ON_SURFACE, Response};
 use crate::drucker_prager::DruckerPrager;
 use crate::elastic::Elastic;
-use crate::error::{LawError, positive};
+use crate::error::{LawError, Parameter, positive};
 use moreau_mandel::{Sym2, Sym4, deviator, deviatoric_projector, identity, trace};
 
 /// What a Drucker–Prager material remembers.
@@ -73,7 +73,7 @@ impl ElasticDruckerPrager {
     /// # Errors
     /// Those of [`Elastic::new`]; `NotPositive` without friction, which would leave a line of pressures.
     pub fn new(young: f64, poisson: f64, plastic: DruckerPrager) -> Result<Self, LawError> {
-        positive("friction of the material", plastic.friction())?;
+        positive(Parameter::MaterialFriction, plastic.friction())?;
         Ok(Self {
             elastic: Elastic::new(young, poisson)?,
             plastic,

@@ -169,7 +169,7 @@ impl<'a, L: BulkLaw> Suite<'a, L> {
     fn draw(&self, random: &mut Random) -> Point<L> {
         let path = (0..random.below(4)).map(|_| random.vector(3.0 * self.strain));
         let path: Vec<Sym2> = path.collect();
-        let size = [0.01, 0.3, 5.0, 5.0][random.below(4)];
+        let size = [1e-3, 0.3, 5.0, 5.0][random.below(4)];
         self.point(path, random.vector(size * self.strain))
     }
 

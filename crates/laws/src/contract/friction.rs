@@ -12,7 +12,7 @@ const ROUND_OFF: f64 = 1e-12;
 
 /// Checks a law of friction in R^D, at pressures from 10⁻³ to 10⁴:
 ///
-/// - the bound g(t_n) of the shear is not negative, does not fall and is concave;
+/// - the bound g(t_n) of the shear is not negative, does not fall and is concave, with its slope;
 /// - b(−u, t) ≥ −u·t, with equality on the law (open, stick, slip) and nowhere else, and +∞ where a
 ///   displacement or a force is not admissible;
 /// - the correction is admissible, its fixed points are the law and its derivatives those of
@@ -100,7 +100,16 @@ impl<const D: usize> Point<D> {
         report.at_most("the bound is not negative", (-g(low), 0.0), at)?;
         report.at_most("the bound does not fall", (g(low) - g(high), round_off), at)?;
         let below = 0.5 * (g(low) + g(high)) - g(0.5 * (low + high));
-        report.at_most("the bound is concave", (below, round_off), at)
+        report.at_most("the bound is concave", (below, round_off), at)?;
+        let h = 1e-4 * high;
+        let difference = |h: f64| (g(high + h) - g(high - h)) / (2.0 * h);
+        let (near, far) = (difference(h), difference(2.0 * h));
+        let slope = self.isotropic.slope(high);
+        let allowed = 10.0 * (near - far).abs() + 1e3 * round_off / h;
+        let property = "the slope is the derivative of the bound";
+        report.at_most(property, ((slope - near).abs(), allowed), at)?;
+        let least = self.isotropic.slope(0.0);
+        report.holds("the slope is finite at no pressure", least.is_finite(), at)
     }
 
     /// Pairs of the law, of every status.

@@ -3,10 +3,9 @@
 use crate::contract::for_all;
 use crate::samples::{unit_deviator, vector};
 use approx::assert_relative_eq;
-use moreau_laws::{BulkLaw, Elastic, Isotropic, LawError, Superpotential, Uniaxial, contract};
-use moreau_laws::{
-    DruckerPrager, ElasticDruckerPrager, VonMises, VonMisesDissipation, VonMisesState,
-};
+use moreau_laws::textbook::{Uniaxial, VonMisesDissipation};
+use moreau_laws::{BulkLaw, Elastic, Isotropic, LawError, Superpotential, contract};
+use moreau_laws::{DruckerPrager, ElasticDruckerPrager, VonMises, VonMisesState};
 use moreau_mandel::{Sym2, deviator, equivalent_strain, identity, trace, von_mises};
 use proptest::prelude::*;
 

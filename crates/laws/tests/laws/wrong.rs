@@ -4,8 +4,8 @@
 use moreau_laws::contract::{Report, Violation, bulk, friction, isotropy};
 use moreau_laws::{
     AnisotropicCoulomb, BulkLaw, Coulomb, DruckerPrager, DruckerPragerState, Elastic,
-    ElasticDruckerPrager, FlowPower, Isotropic, LawError, LimitedCoulomb, Numbers, Response,
-    Tresca, VonMises,
+    ElasticDruckerPrager, FlowPower, Friction, Isotropic, LawError, LimitedCoulomb, Local, Numbers,
+    Response, ShearBound, Tresca, VonMises,
 };
 use moreau_mandel::{Sym2, Sym4};
 
@@ -281,6 +281,106 @@ fn the_laws_of_friction_obey_the_contract() -> Result<(), Box<dyn std::error::Er
         friction::<3>(LimitedCoulomb::new(0.4, limit)?)?;
     }
     friction::<3>(AnisotropicCoulomb::new(0.2, 0.6)?)?;
+    Ok(())
+}
+
+/// g = g₀ (1 − exp(−μ t_n/g₀)), with a fault.
+#[derive(Debug)]
+struct Saturating(Kind);
+
+/// What is wrong with a bound.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    Right,
+    /// 1 % in the slope.
+    Slope,
+    /// A bound that falls in the end.
+    Falls,
+    /// A bound that is not concave: its forces are not convex.
+    Convex,
+    /// A slope that is infinite at no pressure.
+    Steep,
+    /// A bound that is negative.
+    Negative,
+}
+
+impl ShearBound for Saturating {
+    fn bound(&self, t_n: f64) -> f64 {
+        let g = -30.0 * (-0.4 * t_n / 30.0).exp_m1();
+        match self.0 {
+            Kind::Falls => 0.4 * t_n * (1.0 - t_n / 2e4),
+            Kind::Convex => 0.4 * t_n + 1e-6 * t_n * t_n,
+            Kind::Steep => t_n.sqrt(),
+            Kind::Negative => -g,
+            _ => g,
+        }
+    }
+
+    fn slope(&self, t_n: f64) -> f64 {
+        let slope = 0.4 * (-0.4 * t_n / 30.0).exp();
+        match self.0 {
+            Kind::Slope => 1.01 * slope,
+            Kind::Falls => 0.4 * (1.0 - t_n / 1e4),
+            Kind::Convex => 0.4 + 2e-6 * t_n,
+            Kind::Steep => 0.5 / t_n.sqrt(),
+            Kind::Negative => -slope,
+            Kind::Right => slope,
+        }
+    }
+}
+
+/// Coulomb's law as a bound.
+#[derive(Debug)]
+struct Cone;
+
+impl ShearBound for Cone {
+    fn bound(&self, t_n: f64) -> f64 {
+        0.3 * t_n
+    }
+
+    fn slope(&self, _: f64) -> f64 {
+        0.3
+    }
+}
+
+#[test]
+fn a_bound_of_a_user_is_a_law_of_friction() -> Result<(), Box<dyn std::error::Error>> {
+    static RIGHT: Saturating = Saturating(Kind::Right);
+    for report in [friction::<2>(&RIGHT)?, friction::<3>(&RIGHT)?] {
+        assert!(report.count("the derivatives of the correction") > 1000);
+    }
+    static WRONG: [(Saturating, &str); 5] = [
+        (Saturating(Kind::Slope), "the derivatives of the correction"),
+        (Saturating(Kind::Falls), "the bound does not fall"),
+        (Saturating(Kind::Convex), "the bound is concave"),
+        (
+            Saturating(Kind::Steep),
+            "the slope is finite at no pressure",
+        ),
+        (Saturating(Kind::Negative), "the bound is not negative"),
+    ];
+    for (law, property) in &WRONG {
+        match friction::<3>(law) {
+            Ok(report) => panic!("{law:?} is not noticed:\n{report}"),
+            Err(violation) => assert_eq!(violation.property, *property, "{violation}"),
+        }
+    }
+    // A cone as a bound projects as the cone does.
+    static CONE: Cone = Cone;
+    let (bounded, coulomb) = (Friction::from(&CONE), Friction::from(Coulomb::new(0.3)?));
+    for q in [
+        [1.0, 0.2, 0.1],
+        [1.0, 3.0, -4.0],
+        [-1.0, 5.0, 1.0],
+        [-5.0, 1.0, 0.0],
+    ] {
+        let q = Local::<3>::from(q);
+        let error = (bounded.scaled(3.0).project(&q) - coulomb.project(&q)).norm();
+        assert!(error < 1e-12, "{error:e} at {q}");
+    }
+    assert_eq!(bounded.friction(), 0.3);
+    assert!(bounded.resists_slip() && bounded == Friction::from(&CONE));
+    assert!(bounded != bounded.scaled(2.0));
     Ok(())
 }
 
