@@ -4,10 +4,8 @@ use moreau_contact::{
     BlockMatrix, ContactError, ContactProblem, ContactSolution, ContactSolver, GaussSeidel,
     LocalProblem, Penalty, SemismoothNewton, Uzawa,
 };
-use moreau_laws::{
-    AnisotropicCoulomb, Coulomb, Friction, LimitedCoulomb, Local, RegularisedCoulomb, Status,
-    Tresca,
-};
+use moreau_laws::textbook::RegularisedCoulomb;
+use moreau_laws::{AnisotropicCoulomb, Coulomb, Friction, LimitedCoulomb, Local, Status, Tresca};
 use nalgebra::{DMatrix, DVector, Matrix3};
 use proptest::prelude::*;
 

@@ -1,6 +1,6 @@
 //! The driver: the state of a model, and steps applied to it; not the iteration of an increment.
 
-use crate::assembly::block::{Block, PointState};
+use crate::assembly::block::{Block, PointField, PointState, Stiffness};
 use crate::error::{ModelError, StepError};
 use crate::linear::system::{Contacts, System};
 use crate::model::load::Loading;
@@ -110,8 +110,23 @@ impl<const D: usize> Driver<D> {
             state,
             system: None,
         };
+        driver.start();
         driver.pair(&Loading::default())?;
         Ok(driver)
+    }
+
+    /// Forces and energy of the stresses at the start.
+    fn start(&mut self) {
+        let rest = vec![0.0; self.state.displacement.len()];
+        for block in &mut self.blocks {
+            block.evaluate(&rest, Stiffness::None, &mut |cell| {
+                for (&a, own) in cell.nodes.iter().zip(cell.force.chunks_exact(D)) {
+                    let at = self.state.internal[D * a..D * a + D].iter_mut();
+                    at.zip(own).for_each(|(sum, f)| *sum += f);
+                }
+            });
+            self.state.energies.stored += block.energy().stored;
+        }
     }
 
     /// Finds what the contact points stand on, at the committed positions, under the displacement
@@ -242,6 +257,32 @@ impl<const D: usize> Driver<D> {
     /// Committed state at all quadrature points, cells in the order of their blocks.
     pub fn points(&self) -> Vec<PointState<D>> {
         self.blocks.iter().flat_map(|b| b.points()).collect()
+    }
+
+    /// The fields that laws have of their own at every quadrature point, in the order of
+    /// [`Driver::points`].
+    pub fn fields(&self) -> Vec<PointField> {
+        let mut all: Vec<PointField> = Vec::new();
+        let mut before = 0;
+        for block in &self.blocks {
+            let points = block.points().len();
+            for own in block.fields() {
+                let same = |f: &PointField| (&f.name, f.components) == (&own.name, own.components);
+                match all.iter_mut().find(|f| same(f)) {
+                    Some(field) => field.values.extend(own.values),
+                    None => {
+                        let mut values = vec![f64::NAN; own.components * before];
+                        values.extend(own.values);
+                        all.push(PointField { values, ..own });
+                    }
+                }
+            }
+            before += points;
+            for field in &mut all {
+                field.values.resize(field.components * before, f64::NAN);
+            }
+        }
+        all
     }
 
     /// Sum of the reactions of the prescribed displacements of a group \[N\]: the force that the

@@ -34,6 +34,14 @@ pub enum ModelError {
         /// Group of the second material.
         group: String,
     },
+    /// A cell that an element or a block does not fit.
+    #[error("cell {cell} {problem}")]
+    WrongElement {
+        /// The cell.
+        cell: usize,
+        /// What is wrong.
+        problem: String,
+    },
     /// A tool that does not exist.
     #[error("no tool is named {name:?}{}", nearest_hint(.nearest))]
     UnknownTool {

@@ -43,8 +43,10 @@ mod settings;
 mod timings;
 mod vector;
 
-pub use assembly::block::{Block, BlockEnergy, CellResult, PointState, SolidBlock, Stiffness};
-pub use assembly::cells::Cells;
+pub use assembly::block::{
+    Block, BlockEnergy, CellResult, PointField, PointState, SolidBlock, Stiffness,
+};
+pub use assembly::cells::{Cells, ElementCells};
 pub use checks::between::Between;
 pub use checks::gaps::LeastGap;
 pub use checks::rigid::Stopper;

@@ -17,6 +17,9 @@ use moreau_mesh::{
 use nalgebra::SVector;
 use std::collections::BTreeMap;
 
+/// Most nodes of a cell.
+const MOST_NODES: usize = 27;
+
 /// A hypothesis together with the elements that it can be used with.
 pub trait Analysis<const D: usize>: Hypothesis<D> {
     /// Cells of one kind; `None` if the hypothesis has no such cells.
@@ -34,17 +37,13 @@ fn cells<E, H, const D: usize, const N: usize>(
     mesh: &Mesh<D>,
     cells: &[usize],
     integration: Integration,
-) -> Box<dyn Cells<D>>
+) -> Option<Box<dyn Cells<D>>>
 where
     E: Element<D, N>,
     H: Hypothesis<D>,
 {
-    Box::new(ElementCells::new::<E, H>(
-        mesh,
-        cells,
-        hypothesis,
-        integration,
-    ))
+    let cells = ElementCells::<D, N>::new::<E, H>(mesh, cells, hypothesis, integration).ok()?;
+    Some(Box::new(cells))
 }
 
 /// The elements of the plane.
@@ -55,14 +54,14 @@ fn plane<H: Hypothesis<2>>(
     of: &[usize],
     rule: Integration,
 ) -> Option<Box<dyn Cells<2>>> {
-    Some(match kind {
+    match kind {
         CellKind::Tri3 => cells::<Tri3, H, 2, 3>(h, mesh, of, rule),
         CellKind::Tri6 => cells::<Tri6, H, 2, 6>(h, mesh, of, rule),
         CellKind::Quad4 => cells::<Quad4, H, 2, 4>(h, mesh, of, rule),
         CellKind::Quad8 => cells::<Quad8, H, 2, 8>(h, mesh, of, rule),
         CellKind::Quad9 => cells::<Quad9, H, 2, 9>(h, mesh, of, rule),
-        _ => return None,
-    })
+        _ => None,
+    }
 }
 
 /// The elements of space.
@@ -73,14 +72,14 @@ fn space<H: Hypothesis<3>>(
     of: &[usize],
     rule: Integration,
 ) -> Option<Box<dyn Cells<3>>> {
-    Some(match kind {
+    match kind {
         CellKind::Tet4 => cells::<Tet4, H, 3, 4>(h, mesh, of, rule),
         CellKind::Tet10 => cells::<Tet10, H, 3, 10>(h, mesh, of, rule),
         CellKind::Hex8 => cells::<Hex8, H, 3, 8>(h, mesh, of, rule),
         CellKind::Hex20 => cells::<Hex20, H, 3, 20>(h, mesh, of, rule),
         CellKind::Hex27 => cells::<Hex27, H, 3, 27>(h, mesh, of, rule),
-        _ => return None,
-    })
+        _ => None,
+    }
 }
 
 macro_rules! analysis {
@@ -192,10 +191,27 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     /// # Errors
     /// An unknown group; [`ModelError::TwoMaterials`].
     pub fn material<L: BulkLaw>(
+        self,
+        group: &str,
+        law: L,
+        integration: Integration,
+    ) -> Result<Self, ModelError> {
+        let initial = law.initial();
+        self.material_from(group, law, integration, |_| initial)
+    }
+
+    /// Gives the cells of a group a law, an integration rule, and the state that every quadrature point
+    /// starts from, by its position in the undeformed body \[mm\]: under a stress, or with axes that
+    /// vary. Stresses that the first loads do not balance strain the body as these are applied.
+    ///
+    /// # Errors
+    /// An unknown group; [`ModelError::TwoMaterials`].
+    pub fn material_from<L: BulkLaw>(
         mut self,
         group: &str,
         law: L,
         integration: Integration,
+        state: impl Fn(&[f64; D]) -> L::State,
     ) -> Result<Self, ModelError> {
         let mut by_kind: BTreeMap<CellKind, Vec<usize>> = BTreeMap::new();
         for &cell in self.mesh.cell_group(group)? {
@@ -212,10 +228,46 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             let own = self.hypothesis.cells(&self.mesh, kind, &cells, integration);
             // A mesh of dimension D has no cells of another dimension.
             if let Some(own) = own {
-                let block = SolidBlock::new(cells, own, law.clone());
+                let block = SolidBlock::new(cells, own, law.clone()).with_states(&state);
                 self.blocks.push(Box::new(block));
             }
         }
+        Ok(self)
+    }
+
+    /// Adds a block of cells of any element and law, [`SolidBlock`] or another: one material, with the
+    /// nodes of each of its cells among those of the cell of the mesh.
+    ///
+    /// # Errors
+    /// [`ModelError::TwoMaterials`], with the name of the block; [`ModelError::WrongElement`] for a cell
+    /// that the mesh has not, or that has other nodes there, or more than 27.
+    pub fn block(mut self, name: &str, block: impl Block<D> + 'static) -> Result<Self, ModelError> {
+        for (k, &cell) in block.cells().iter().enumerate() {
+            let problem = |problem: &str| ModelError::WrongElement {
+                cell,
+                problem: format!("of block {name:?} {problem}"),
+            };
+            let Some(material) = self.material.get_mut(cell) else {
+                return Err(problem("is none of the mesh"));
+            };
+            if material.replace(self.materials).is_some() {
+                return Err(ModelError::TwoMaterials {
+                    cell,
+                    group: name.into(),
+                });
+            }
+            let (nodes, all) = (block.nodes(k), self.mesh.cell_nodes(cell));
+            if !nodes.iter().all(|a| all.contains(a)) {
+                return Err(problem(
+                    "has nodes that are not those of its cell in the mesh",
+                ));
+            }
+            if nodes.len() > MOST_NODES || nodes.len() != block.nodes(0).len() {
+                return Err(problem("has too many nodes, or not as many as the first"));
+            }
+        }
+        self.materials += 1;
+        self.blocks.push(Box::new(block));
         Ok(self)
     }
 

@@ -6,7 +6,7 @@
 //! the values of the cells around it. A patch never crosses from one material to another, nor from
 //! body to body; at a boundary the polynomials of the corners inside are continued.
 
-use crate::assembly::block::PointState;
+use crate::assembly::block::{PointField, PointState};
 use moreau_mandel::{Sym2, deviator, von_mises};
 use moreau_mesh::Mesh;
 use nalgebra::{DMatrix, DVector, SVector};
@@ -16,8 +16,12 @@ use std::collections::{BTreeMap, BTreeSet};
 /// between the samples says nothing about some term.
 const POSED: f64 = 1e-3;
 
-/// Six components of stress and the equivalent plastic strain.
-type Values = SVector<f64, 7>;
+/// Six components of stress, the equivalent plastic strain, and the components of the fields that laws
+/// have of their own.
+type Values = DVector<f64>;
+
+/// Values that every law has.
+const COMMON: usize = 7;
 
 /// Recovered fields at the nodes of each material: a node where materials meet has a point for each
 /// of them, as stresses jump there.
@@ -32,20 +36,26 @@ pub struct Recovered {
     pub stress: Vec<Sym2>,
     /// Equivalent plastic strain of every point.
     pub plastic_strain: Vec<f64>,
+    /// The fields that laws have of their own; NaN at the points of a law that has no such field.
+    pub fields: Vec<PointField>,
 }
 
-/// Recovers stresses and plastic strains from quadrature points, with the material of every cell.
+/// Recovers stresses, plastic strains and the fields of [`Driver::fields`](crate::driver::Driver::fields)
+/// from quadrature points, with the material of every cell.
 ///
 /// A stress that is linear in each material is met exactly; a smooth one at a higher order than by
 /// the points. Where a patch flows plastically no recovered von Mises stress exceeds the largest of
-/// its points: the deviator is scaled back to it. Plastic strains stay between the least and the
-/// largest of their patch. A point none of whose cells has samples is NaN.
+/// its points: the deviator is scaled back to it. Plastic strains and other scalars stay between the
+/// least and the largest of their patch. A point none of whose cells has samples is NaN.
 pub fn recover<const D: usize>(
     mesh: &Mesh<D>,
     materials: &[usize],
     points: &[PointState<D>],
+    fields: &[PointField],
 ) -> Recovered {
-    let samples = samples(mesh, points);
+    let samples = samples(mesh, points, fields);
+    let scalars = scalars(fields);
+    let rows = COMMON + fields.iter().map(|f| f.components).sum::<usize>();
     let (nodes, cells) = points_by_material(mesh, materials);
     let mut around = vec![Vec::new(); nodes.len()];
     for (cell, own) in cells.iter().enumerate() {
@@ -79,12 +89,12 @@ pub fn recover<const D: usize>(
         }
         let near = &borrowed[&corner];
         if !near.is_empty() {
-            return mean(near.iter().map(|q| fits[q].at(&x)));
+            return mean(rows, near.iter().map(|q| fits[q].at(&x)));
         }
         let own = patch(corner);
         match Fit::new(at(corner), &own, 1) {
             Some(fit) => fit.at(&x),
-            None => mean(own.iter().map(|s| s.value)),
+            None => mean(rows, own.iter().map(|s| s.value.clone())),
         }
     };
     let value = |p: usize| {
@@ -92,20 +102,52 @@ pub fn recover<const D: usize>(
         let value = match corners.contains(&p) {
             true => value_of(p, x),
             false => mean(
+                rows,
                 ends(mesh, &cells, &around[p], p)
                     .into_iter()
                     .map(|q| value_of(q, x)),
             ),
         };
-        limited(value, &patch(p))
+        limited(value, &patch(p), &scalars)
     };
     let values: Vec<Values> = (0..nodes.len()).map(value).collect();
     Recovered {
         stress: values.iter().map(|v| v.fixed_rows::<6>(0).into()).collect(),
         plastic_strain: values.iter().map(|v| v[6]).collect(),
+        fields: own_fields(fields, &values),
         nodes,
         cells,
     }
+}
+
+/// Rows of the values that are scalars.
+fn scalars(fields: &[PointField]) -> Vec<usize> {
+    let mut rows = vec![COMMON - 1];
+    let mut row = COMMON;
+    for field in fields {
+        if field.components == 1 {
+            rows.push(row);
+        }
+        row += field.components;
+    }
+    rows
+}
+
+/// The rows of the values that are fields of laws.
+fn own_fields(fields: &[PointField], values: &[Values]) -> Vec<PointField> {
+    let mut row = COMMON;
+    let field = |field: &PointField| {
+        let rows = row..row + field.components;
+        row = rows.end;
+        PointField {
+            values: values
+                .iter()
+                .flat_map(|v| v.as_slice()[rows.clone()].to_vec())
+                .collect(),
+            ..field.clone()
+        }
+    };
+    fields.iter().map(field).collect()
 }
 
 /// Where values are known well.
@@ -119,12 +161,17 @@ struct Sample<const D: usize> {
 
 /// Samples of every cell: the points of quadratic cells, and the middle of linear ones, within
 /// which only the mean is of a higher order.
-fn samples<const D: usize>(mesh: &Mesh<D>, points: &[PointState<D>]) -> Vec<Vec<Sample<D>>> {
+fn samples<const D: usize>(
+    mesh: &Mesh<D>,
+    points: &[PointState<D>],
+    fields: &[PointField],
+) -> Vec<Vec<Sample<D>>> {
     let mut samples: Vec<Vec<Sample<D>>> = vec![Vec::new(); mesh.cell_count()];
-    for point in points {
-        let mut value = Values::zeros();
-        value.fixed_rows_mut::<6>(0).copy_from(&point.stress);
-        value[6] = point.plastic_strain;
+    for (k, point) in points.iter().enumerate() {
+        let common = point.stress.iter().chain([&point.plastic_strain]);
+        let of_law = |f: &PointField| f.values[k * f.components..(k + 1) * f.components].to_vec();
+        let own = fields.iter().flat_map(of_law);
+        let value = Values::from_vec(common.copied().chain(own).collect());
         samples[point.cell].push(Sample {
             position: SVector::from(point.position),
             value,
@@ -136,7 +183,7 @@ fn samples<const D: usize>(mesh: &Mesh<D>, points: &[PointState<D>]) -> Vec<Vec<
             let count = own.len() as f64;
             *own = vec![Sample {
                 position: own.iter().map(|s| s.position).sum::<SVector<f64, D>>() / count,
-                value: mean(own.iter().map(|s| s.value)),
+                value: mean(own[0].value.len(), own.iter().map(|s| s.value.clone())),
                 bound: own.iter().filter_map(|s| s.bound).reduce(f64::max),
             }];
         }
@@ -144,8 +191,9 @@ fn samples<const D: usize>(mesh: &Mesh<D>, points: &[PointState<D>]) -> Vec<Vec<
     samples
 }
 
-fn mean(values: impl Iterator<Item = Values>) -> Values {
-    let (sum, count) = values.fold((Values::zeros(), 0.0), |(s, n), v| (s + v, n + 1.0));
+fn mean(rows: usize, values: impl Iterator<Item = Values>) -> Values {
+    let start = (Values::zeros(rows), 0.0);
+    let (sum, count) = values.fold(start, |(s, n), v| (s + v, n + 1.0));
     sum / count
 }
 
@@ -198,12 +246,16 @@ fn ends<const D: usize>(
 }
 
 /// A value within what the samples of a patch allow.
-fn limited<const D: usize>(mut value: Values, patch: &[&Sample<D>]) -> Values {
-    let strains = || patch.iter().map(|s| s.value[6]);
-    let (low, high) = strains().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| {
-        (l.min(p), h.max(p))
-    });
-    value[6] = value[6].max(low).min(high);
+fn limited<const D: usize>(mut value: Values, patch: &[&Sample<D>], scalars: &[usize]) -> Values {
+    for &row in scalars {
+        let own = patch.iter().map(|s| s.value[row]);
+        let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| {
+            (l.min(p), h.max(p))
+        });
+        if !value[row].is_nan() {
+            value[row] = value[row].max(low).min(high);
+        }
+    }
     if let Some(bound) = patch.iter().filter_map(|s| s.bound).reduce(f64::max) {
         let stress: Sym2 = value.fixed_rows::<6>(0).into();
         let found = von_mises(&stress);
@@ -221,7 +273,7 @@ struct Fit<const D: usize> {
     origin: SVector<f64, D>,
     size: f64,
     degree: usize,
-    /// Of every term, seven values.
+    /// Of every term, all values.
     coefficients: DMatrix<f64>,
 }
 
@@ -234,7 +286,9 @@ impl<const D: usize> Fit<D> {
         if patch.len() < terms || size <= 0.0 {
             return None;
         }
-        let (mut moments, mut right) = (DMatrix::zeros(terms, terms), DMatrix::zeros(terms, 7));
+        let values = patch[0].value.len();
+        let mut moments = DMatrix::zeros(terms, terms);
+        let mut right = DMatrix::zeros(terms, values);
         let share = 1.0 / patch.len() as f64;
         for sample in patch {
             let row = self::terms(&((sample.position - origin) / size), degree);
@@ -253,8 +307,7 @@ impl<const D: usize> Fit<D> {
 
     fn at(&self, x: &SVector<f64, D>) -> Values {
         let row = terms(&((x - self.origin) / self.size), self.degree);
-        let value = self.coefficients.tr_mul(&row);
-        Values::from_fn(|k, _| value[k])
+        self.coefficients.tr_mul(&row)
     }
 }
 

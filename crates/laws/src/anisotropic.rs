@@ -3,7 +3,7 @@
 
 use crate::coulomb::Coulomb;
 use crate::duality::{Bipotential, at_most, restricted};
-use crate::error::{LawError, positive};
+use crate::error::{LawError, Parameter, positive};
 use crate::local::{Local, tangential_norm};
 
 /// Unilateral contact with friction of coefficients μ_x, μ_y along the two tangents of the frame;
@@ -25,8 +25,8 @@ impl AnisotropicCoulomb {
     pub fn new(friction_x: f64, friction_y: f64) -> Result<Self, LawError> {
         Ok(Self {
             friction: [
-                positive("friction along the first tangent", friction_x)?,
-                positive("friction along the second tangent", friction_y)?,
+                positive(Parameter::FrictionAlong, friction_x)?,
+                positive(Parameter::FrictionAcross, friction_y)?,
             ],
         })
     }

@@ -3,8 +3,21 @@
 use moreau_mandel::{Sym2, Sym4};
 
 /// Part of the trial stress below which an overstress is the rounding of a state on the yield surface:
-/// unloading from there is elastic, and rounding does not choose the tangent it begins with.
-pub(crate) const ON_SURFACE: f64 = 1e-12;
+/// unloading from there is elastic, and rounding does not choose the tangent it begins with. A law flows
+/// where f > `ON_SURFACE` times the size of the terms of f.
+pub const ON_SURFACE: f64 = 1e-12;
+
+/// Names of the fields that results have whatever the law.
+pub const COMMON_FIELDS: [&str; 8] = [
+    "stress",
+    "von_mises",
+    "equivalent_plastic_strain",
+    "displacement",
+    "out_of_balance",
+    "cell",
+    "point",
+    "volume",
+];
 
 /// The numbers that a state consists of, always the same count in the same order: enough to write
 /// the state to a file and to read it back to the bit.
@@ -62,8 +75,12 @@ impl FlowPower {
 /// *whole* step to the end of the step, and remembers nothing. Plane strain and axisymmetry are
 /// kinematics, not laws. A strain that is not a number gives a stress that is not a number.
 pub trait BulkLaw: 'static + Clone + Send + Sync {
-    /// What the material remembers; the default is the virgin state.
-    type State: Copy + Default + Send + Sync + PartialEq + std::fmt::Debug + Numbers;
+    /// What the material remembers, what varies from point to point (the axes of a material, say)
+    /// included.
+    type State: Copy + Send + Sync + PartialEq + std::fmt::Debug + Numbers;
+
+    /// The state that a body starts from where no other is given, the virgin one.
+    fn initial(&self) -> Self::State;
 
     /// Response to the strain increment Δε of the whole step, from the state at its start.
     fn respond(&self, old: &Self::State, d_eps: &Sym2) -> Response<Self::State>;
@@ -91,8 +108,14 @@ pub trait BulkLaw: 'static + Clone + Send + Sync {
     /// Energy dissipated by a step between two states \[N·mm/mm³\]; non-negative.
     fn dissipation(&self, old: &Self::State, new: &Self::State) -> f64;
 
-    /// Equivalent plastic strain p of a state, \[60\]; never decreases along a path.
+    /// Equivalent plastic strain p = ∫ √(2/3) ‖ε̇ᵖ‖ of a state, \[60\]; never decreases along a path.
     fn equivalent_plastic_strain(&self, state: &Self::State) -> f64;
+
+    /// Hands on the fields of a state that are worth seeing beside stress and p, each a name and its
+    /// components: one of a scalar, three of a vector, six of a symmetric tensor as in [`Sym2`]. The
+    /// same names and counts in every state. Names are words joined by underscores, `"back_stress"`, and
+    /// none of [`COMMON_FIELDS`].
+    fn fields(&self, _state: &Self::State, _each: &mut dyn FnMut(&str, &[f64])) {}
 
     /// ΔV(Δε) \[N·mm/mm³\], with ∂ΔV/∂Δε = Δσ = σ₁ − σ₀, \[65\]; convex, continuously
     /// differentiable, zero with its gradient at Δε = 0 when the state at the start is admissible.

@@ -1,6 +1,6 @@
 //! Unilateral contact with Coulomb friction, \[35\]-\[43\] and \[66\]-\[69\], with the projection
 //! of \[90′\]; not the clipping of a tangential force at a given pressure, see
-//! [`RegularisedCoulomb`](crate::RegularisedCoulomb).
+//! [`RegularisedCoulomb`](crate::textbook::RegularisedCoulomb).
 
 use crate::duality::{Bipotential, at_most, restricted};
 use crate::error::LawError;

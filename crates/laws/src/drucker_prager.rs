@@ -3,7 +3,7 @@
 
 use crate::coulomb::Coulomb;
 use crate::duality::{Bipotential, at_most, restricted};
-use crate::error::{LawError, positive};
+use crate::error::{LawError, Parameter, positive};
 use crate::local::Local;
 use moreau_mandel::{Sym2, deviator, trace};
 
@@ -42,7 +42,7 @@ impl DruckerPrager {
         Ok(Self {
             cone,
             dilatancy,
-            apex: positive("apex stress", apex)?,
+            apex: positive(Parameter::Apex, apex)?,
         })
     }
 
@@ -62,23 +62,23 @@ impl DruckerPrager {
         friction_angle: f64,
         dilatancy_angle: f64,
     ) -> Result<Self, LawError> {
-        let range = |name, degrees, range| LawError::AngleOutOfRange {
-            name,
+        let range = |parameter, degrees, range| LawError::AngleOutOfRange {
+            parameter,
             degrees,
             range,
         };
         if !(friction_angle > 0.0 && friction_angle < 90.0) {
-            return Err(range("the friction angle", friction_angle, "]0, 90["));
+            return Err(range(Parameter::FrictionAngle, friction_angle, "]0, 90["));
         }
         if !(0.0..=friction_angle).contains(&dilatancy_angle) {
             let most = "[0, friction angle]";
-            return Err(range("the dilatancy angle", dilatancy_angle, most));
+            return Err(range(Parameter::DilatancyAngle, dilatancy_angle, most));
         }
         let slope = |degrees: f64| {
             let sine = degrees.to_radians().sin();
             2.0 * 6f64.sqrt() * sine / (3.0 - sine)
         };
-        let apex = positive("the cohesion", cohesion)? / friction_angle.to_radians().tan();
+        let apex = positive(Parameter::Cohesion, cohesion)? / friction_angle.to_radians().tan();
         Self::new(slope(friction_angle), slope(dilatancy_angle), apex)
     }
 

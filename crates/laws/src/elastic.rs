@@ -1,7 +1,7 @@
 //! Isotropic linear elasticity, \[58\]-\[59\]; not a law with memory: its state is its strain.
 
 use crate::bulk::{BulkLaw, FlowPower, Response};
-use crate::error::{LawError, positive};
+use crate::error::{LawError, Parameter, positive};
 use moreau_mandel::{Sym2, Sym4, deviator, deviatoric_projector, identity, trace};
 
 /// Isotropic linear elasticity, σ = K_c tr(ε) δ + 2G e with the deviator e of ε.
@@ -21,7 +21,7 @@ impl Elastic {
     /// # Errors
     /// `NotPositive` unless E > 0 is finite; `PoissonOutOfRange` unless −1 < ν < ½.
     pub fn new(young: f64, poisson: f64) -> Result<Self, LawError> {
-        let young = positive("Young's modulus", young)?;
+        let young = positive(Parameter::YoungsModulus, young)?;
         if !(poisson > -1.0 && poisson < 0.5) {
             return Err(LawError::PoissonOutOfRange { poisson });
         }
@@ -68,6 +68,12 @@ impl Elastic {
         0.5 * self.bulk * trace(strain).powi(2) + self.shear * deviator(strain).norm_squared()
     }
 
+    /// Strain S⁻¹ σ of a stress \[MPa\].
+    #[inline]
+    pub fn strain(&self, stress: &Sym2) -> Sym2 {
+        trace(stress) / (9.0 * self.bulk) * identity() + deviator(stress) / (2.0 * self.shear)
+    }
+
     /// Complementary energy ½ σ·S⁻¹·σ of a stress \[N·mm/mm³\]; the conjugate of `energy`.
     #[inline]
     pub fn complementary_energy(&self, stress: &Sym2) -> f64 {
@@ -79,6 +85,10 @@ impl Elastic {
 impl BulkLaw for Elastic {
     /// The elastic strain.
     type State = Sym2;
+
+    fn initial(&self) -> Sym2 {
+        Sym2::zeros()
+    }
 
     #[inline]
     fn respond(&self, old: &Sym2, d_eps: &Sym2) -> Response<Sym2> {

@@ -4,7 +4,7 @@
 use crate::bulk::{BulkLaw, FlowPower, Numbers, ON_SURFACE, Response};
 use crate::drucker_prager::DruckerPrager;
 use crate::elastic::Elastic;
-use crate::error::{LawError, positive};
+use crate::error::{LawError, Parameter, positive};
 use moreau_mandel::{Sym2, Sym4, deviator, deviatoric_projector, identity, trace};
 
 /// What a Drucker–Prager material remembers.
@@ -73,7 +73,7 @@ impl ElasticDruckerPrager {
     /// # Errors
     /// Those of [`Elastic::new`]; `NotPositive` without friction, which would leave a line of pressures.
     pub fn new(young: f64, poisson: f64, plastic: DruckerPrager) -> Result<Self, LawError> {
-        positive("friction of the material", plastic.friction())?;
+        positive(Parameter::MaterialFriction, plastic.friction())?;
         Ok(Self {
             elastic: Elastic::new(young, poisson)?,
             plastic,
@@ -135,6 +135,10 @@ impl ElasticDruckerPrager {
 
 impl BulkLaw for ElasticDruckerPrager {
     type State = DruckerPragerState;
+
+    fn initial(&self) -> DruckerPragerState {
+        DruckerPragerState::default()
+    }
 
     #[inline]
     fn respond(&self, old: &DruckerPragerState, d_eps: &Sym2) -> Response<DruckerPragerState> {
@@ -220,6 +224,11 @@ impl BulkLaw for ElasticDruckerPrager {
 
     fn equivalent_plastic_strain(&self, state: &DruckerPragerState) -> f64 {
         state.p
+    }
+
+    /// The dilation e_v = tr εᵖ of the flow.
+    fn fields(&self, state: &DruckerPragerState, each: &mut dyn FnMut(&str, &[f64])) {
+        each("plastic_dilation", &[trace(&state.plastic_strain)]);
     }
 
     /// ψ₁ − ψ₀ + c₀ Δe_v − σ₀ : Δε of associated flow, k_t = k_f; else `None`.

@@ -1,22 +1,100 @@
 //! What can be wrong with the data of a law; not numerical failures, of which these laws have none.
 
+use std::fmt;
+
+/// A parameter of a law; displayed as its name in a sentence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Parameter {
+    /// Young's modulus E.
+    YoungsModulus,
+    /// Yield stress σ_y.
+    YieldStress,
+    /// Modulus H of isotropic hardening.
+    IsotropicModulus,
+    /// Modulus C of a term of kinematic hardening.
+    KinematicModulus,
+    /// Recall γ of a term of kinematic hardening.
+    Recall,
+    /// Saturation q_∞ of Voce's hardening.
+    Saturation,
+    /// Rate b of Voce's hardening.
+    SaturationRate,
+    /// Strength k of Swift's hardening.
+    Strength,
+    /// Offset e₀ of Swift's hardening.
+    Offset,
+    /// Exponent n of Swift's hardening.
+    Exponent,
+    /// Limit g₀ of the shear in a contact.
+    FrictionLimit,
+    /// Coefficient of friction along the first tangent.
+    FrictionAlong,
+    /// Coefficient of friction along the second tangent.
+    FrictionAcross,
+    /// Friction k_f of a soil.
+    MaterialFriction,
+    /// Mean stress c₀ of the apex of a cone.
+    Apex,
+    /// Cohesion c of a soil.
+    Cohesion,
+    /// Friction angle φ of a soil.
+    FrictionAngle,
+    /// Dilatancy angle ψ of a soil.
+    DilatancyAngle,
+    /// Another one, by its name.
+    Other(&'static str),
+}
+
+impl From<&'static str> for Parameter {
+    fn from(name: &'static str) -> Self {
+        Self::Other(name)
+    }
+}
+
+impl fmt::Display for Parameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::YoungsModulus => "Young's modulus",
+            Self::YieldStress => "yield stress",
+            Self::IsotropicModulus => "isotropic hardening modulus",
+            Self::KinematicModulus => "kinematic hardening modulus",
+            Self::Recall => "recall of kinematic hardening",
+            Self::Saturation => "saturation of hardening",
+            Self::SaturationRate => "rate of hardening",
+            Self::Strength => "strength of hardening",
+            Self::Offset => "offset of hardening",
+            Self::Exponent => "exponent of hardening",
+            Self::FrictionLimit => "friction limit",
+            Self::FrictionAlong => "friction along the first tangent",
+            Self::FrictionAcross => "friction along the second tangent",
+            Self::MaterialFriction => "friction of the material",
+            Self::Apex => "apex stress",
+            Self::Cohesion => "the cohesion",
+            Self::FrictionAngle => "the friction angle",
+            Self::DilatancyAngle => "the dilatancy angle",
+            Self::Other(name) => name,
+        })
+    }
+}
+
 /// Data that define no law. Every constructor checks its data, so a constructed law is valid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum LawError {
     /// A modulus or limit that must be positive and finite is not.
-    #[error("{name} must be positive and finite, got {value}")]
+    #[error("{parameter} must be positive and finite, got {value}")]
     NotPositive {
         /// The quantity.
-        name: &'static str,
+        parameter: Parameter,
         /// Its value.
         value: f64,
     },
     /// A modulus that must be non-negative and finite is not.
-    #[error("{name} must be non-negative and finite, got {value}")]
+    #[error("{parameter} must be non-negative and finite, got {value}")]
     Negative {
         /// The quantity.
-        name: &'static str,
+        parameter: Parameter,
         /// Its value.
         value: f64,
     },
@@ -41,10 +119,10 @@ pub enum LawError {
         friction: f64,
     },
     /// An angle of a soil outside its range.
-    #[error("{name} must lie in {range}, in degrees, got {degrees}")]
+    #[error("{parameter} must lie in {range}, in degrees, got {degrees}")]
     AngleOutOfRange {
         /// The angle.
-        name: &'static str,
+        parameter: Parameter,
         /// Its value in degrees.
         degrees: f64,
         /// The range in words.
@@ -66,20 +144,26 @@ pub enum LawError {
     },
 }
 
-/// The value, if it is positive and finite.
-pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, LawError> {
+/// The value, if it is positive and finite: the check of a constructor.
+///
+/// # Errors
+/// [`LawError::NotPositive`].
+pub fn positive(parameter: impl Into<Parameter>, value: f64) -> Result<f64, LawError> {
     if value > 0.0 && value.is_finite() {
-        Ok(value)
-    } else {
-        Err(LawError::NotPositive { name, value })
+        return Ok(value);
     }
+    let parameter = parameter.into();
+    Err(LawError::NotPositive { parameter, value })
 }
 
-/// The value, if it is non-negative and finite.
-pub(crate) fn non_negative(name: &'static str, value: f64) -> Result<f64, LawError> {
+/// The value, if it is non-negative and finite: the check of a constructor.
+///
+/// # Errors
+/// [`LawError::Negative`].
+pub fn non_negative(parameter: impl Into<Parameter>, value: f64) -> Result<f64, LawError> {
     if value >= 0.0 && value.is_finite() {
-        Ok(value)
-    } else {
-        Err(LawError::Negative { name, value })
+        return Ok(value);
     }
+    let parameter = parameter.into();
+    Err(LawError::Negative { parameter, value })
 }

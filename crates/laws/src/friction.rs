@@ -1,7 +1,8 @@
-//! The laws of an interface as one closed type, and each as an equation; what they say is in the
+//! The laws of an interface as one type, and each as an equation; what they say is in the
 //! laws themselves.
 
 use crate::anisotropic::AnisotropicCoulomb;
+use crate::bounded::{Bounded, ShearBound};
 use crate::coulomb::Coulomb;
 use crate::duality::Bipotential;
 use crate::limited::LimitedCoulomb;
@@ -32,6 +33,8 @@ pub enum Friction {
     Limited(LimitedCoulomb),
     /// √((t_x/μ_x)² + (t_y/μ_y)²) ≤ t_n.
     Anisotropic(AnisotropicCoulomb),
+    /// ‖t_t‖ ≤ g(t_n), of users too.
+    Bounded(Bounded),
 }
 
 /// Part of the force below which α‖u_t‖ is no slip but the rounding of one: its direction is noise,
@@ -65,6 +68,14 @@ impl From<AnisotropicCoulomb> for Friction {
     }
 }
 
+/// A law lives as long as the program: a `static`, or what `Box::leak` leaves of one whose parameters
+/// are read.
+impl<L: ShearBound> From<&'static L> for Friction {
+    fn from(law: &'static L) -> Self {
+        Self::Bounded(Bounded::new(law))
+    }
+}
+
 impl Friction {
     /// The law between forces \[N\] of a law between tractions \[MPa\], on an area ≥ 0 \[mm²\]: a
     /// limit of the shear is multiplied by it, a coefficient is not.
@@ -73,6 +84,7 @@ impl Friction {
             Self::Coulomb(_) | Self::Anisotropic(_) => self,
             Self::Tresca(law) => Self::Tresca(law.scaled(area)),
             Self::Limited(law) => Self::Limited(law.scaled(area)),
+            Self::Bounded(law) => Self::Bounded(law.scaled(area)),
         }
     }
 
@@ -90,12 +102,13 @@ impl Friction {
     }
 
     /// b(−u, t) \[N·mm\], x = −u: the bipotential of the law, or for [`LimitedCoulomb`], which has
-    /// none, the function that takes its place. b(x, t) ≥ x·t, with equality exactly at the law.
+    /// none, and for other bounds, the function that takes its place. b(x, t) ≥ x·t, with equality exactly at the law.
     pub fn b<const D: usize>(&self, x: &Local<D>, t: &Local<D>) -> f64 {
         match self {
             Self::Coulomb(law) => law.b(x, t),
             Self::Tresca(law) => law.b(x, t),
             Self::Limited(law) => law.b(x, t),
+            Self::Bounded(law) => law.b(x, t),
             Self::Anisotropic(law) => law.b(x, t),
         }
     }
@@ -108,6 +121,7 @@ impl Friction {
             Self::Coulomb(law) => law.project(q),
             Self::Tresca(law) => law.project(q),
             Self::Limited(law) => law.project(q),
+            Self::Bounded(law) => law.project(q),
             Self::Anisotropic(law) => {
                 let m = law.stretch();
                 let stretched = q.component_div(&m);
@@ -122,7 +136,7 @@ impl Friction {
     pub fn correct<const D: usize>(&self, u: &Local<D>, t: &Local<D>, alpha: f64) -> Local<D> {
         match self {
             Self::Coulomb(law) => law.project(&(t - alpha * law.shifted(u))),
-            Self::Tresca(_) | Self::Limited(_) => {
+            Self::Tresca(_) | Self::Limited(_) | Self::Bounded(_) => {
                 let q = t - alpha * u;
                 clipped(&q, self.bound(pressure(&q)))
             }
@@ -154,7 +168,7 @@ impl Friction {
                 };
                 (projector, projector * shifted * alpha)
             }
-            Self::Tresca(_) | Self::Limited(_) => {
+            Self::Tresca(_) | Self::Limited(_) | Self::Bounded(_) => {
                 let derivative = self.clipped_jacobian(&(t - alpha * u));
                 (derivative, derivative * alpha)
             }
@@ -183,7 +197,7 @@ impl Friction {
     pub fn shifted<const D: usize>(&self, u: &Local<D>) -> Local<D> {
         match self {
             Self::Coulomb(law) => law.shifted(u),
-            Self::Tresca(_) | Self::Limited(_) => *u,
+            Self::Tresca(_) | Self::Limited(_) | Self::Bounded(_) => *u,
             Self::Anisotropic(law) => {
                 let m = law.stretch();
                 let stretched = law.isotropic().shifted(&u.component_mul(&m));
@@ -198,7 +212,7 @@ impl Friction {
     pub fn status<const D: usize>(&self, u: &Local<D>, t: &Local<D>, alpha: f64) -> Status {
         match self {
             Self::Coulomb(law) => law.status(u, t, alpha),
-            Self::Tresca(_) | Self::Limited(_) => {
+            Self::Tresca(_) | Self::Limited(_) | Self::Bounded(_) => {
                 let q = t - alpha * u;
                 let bound = self.bound(pressure(&q));
                 if q[0] <= 0.0 {
@@ -223,6 +237,7 @@ impl Friction {
         match self.isotropic() {
             Self::Tresca(law) => law.limit(),
             Self::Limited(law) => law.bound(t_n),
+            Self::Bounded(law) => law.bound(t_n),
             law => law.friction() * t_n,
         }
     }
@@ -235,6 +250,17 @@ impl Friction {
             Self::Tresca(_) => 0.0,
             Self::Limited(law) => law.friction(),
             Self::Anisotropic(law) => law.isotropic().friction(),
+            Self::Bounded(law) => law.slope(0.0),
+        }
+    }
+
+    /// g'(t_n), of [`Self::isotropic`]; at a kink that of either side.
+    #[inline]
+    pub fn slope(&self, t_n: f64) -> f64 {
+        match self {
+            Self::Limited(law) if law.bound(t_n) >= law.limit() => 0.0,
+            Self::Bounded(law) => law.slope(t_n),
+            law => law.friction(),
         }
     }
 
@@ -270,11 +296,7 @@ impl Friction {
             (0.0, bound / norm)
         };
         let tau = direction(q);
-        // The slope of the bound, 0 where it is a constant.
-        let slope = match self {
-            Self::Limited(law) if bound < law.limit() => law.friction(),
-            _ => 0.0,
-        };
+        let slope = self.slope(pressure(q));
         for i in 1..D {
             for j in 1..D {
                 jacobian[(i, j)] = (along - across) * tau[i] * tau[j];

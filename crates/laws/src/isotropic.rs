@@ -1,6 +1,6 @@
 //! Isotropic hardening as a stored energy of the equivalent plastic strain; not a yield criterion.
 
-use crate::error::{LawError, non_negative, positive};
+use crate::error::{LawError, Parameter, non_negative, positive};
 use std::sync::Arc;
 
 /// Isotropic hardening: the stress R(p) by which the yield stress has risen, R(0) = 0, the slope
@@ -42,7 +42,7 @@ impl Isotropic {
     /// # Errors
     /// `Negative` unless H ≥ 0 is finite: softening has no convex potential.
     pub fn linear(modulus: f64) -> Result<Self, LawError> {
-        let modulus = non_negative("isotropic hardening modulus", modulus)?;
+        let modulus = non_negative(Parameter::IsotropicModulus, modulus)?;
         Ok(Self(Kind::Linear { modulus }))
     }
 
@@ -54,8 +54,8 @@ impl Isotropic {
     /// `Negative` unless q_∞ ≥ 0 and b ≥ 0 are finite.
     pub fn voce(saturation: f64, rate: f64) -> Result<Self, LawError> {
         Ok(Self(Kind::Voce {
-            saturation: non_negative("saturation of hardening", saturation)?,
-            rate: non_negative("rate of hardening", rate)?,
+            saturation: non_negative(Parameter::Saturation, saturation)?,
+            rate: non_negative(Parameter::SaturationRate, rate)?,
         }))
     }
 
@@ -68,9 +68,9 @@ impl Isotropic {
     /// `Negative` unless k ≥ 0 and n ≥ 0 are finite, `NotPositive` unless e₀ > 0 is finite.
     pub fn swift(strength: f64, offset: f64, exponent: f64) -> Result<Self, LawError> {
         Ok(Self(Kind::Swift {
-            strength: non_negative("strength of hardening", strength)?,
-            offset: positive("offset of hardening", offset)?,
-            exponent: non_negative("exponent of hardening", exponent)?,
+            strength: non_negative(Parameter::Strength, strength)?,
+            offset: positive(Parameter::Offset, offset)?,
+            exponent: non_negative(Parameter::Exponent, exponent)?,
         }))
     }
 

@@ -35,28 +35,27 @@
 //! | law | type | kind |
 //! |---|---|---|
 //! | isotropic elasticity | [`Elastic`] | bulk |
-//! | von Mises, isotropic and kinematic hardening | [`VonMises`], [`VonMisesDissipation`] | bulk; superpotential |
+//! | von Mises, isotropic and kinematic hardening | [`VonMises`] | bulk |
 //! | its isotropic hardening | [`Isotropic`] | stored energy |
-//! | elastic, perfectly plastic bar | [`Uniaxial`] | superpotential |
-//! | unilateral contact | [`Signorini`] | superpotential |
+//! | soils | [`ElasticDruckerPrager`] | bulk |
+//! | their plastic part | [`DruckerPrager`] | bipotential |
 //! | contact with Tresca friction | [`Tresca`] | superpotential |
 //! | contact with Coulomb friction | [`Coulomb`], [`AnisotropicCoulomb`] | bipotential |
 //! | contact with friction limited by a shear | [`LimitedCoulomb`] | neither |
+//! | contact with friction of any bound | [`ShearBound`] | neither |
 //! | any of these, as a structure sees it | [`Friction`] | as an equation |
-//! | its penalty regularisation | [`RegularisedCoulomb`] | response |
-//! | soils | [`ElasticDruckerPrager`] | bulk |
-//! | their plastic part | [`DruckerPrager`], [`CamClay`] | bipotential |
-//! | non-linear kinematic hardening | [`ArmstrongFrederick`] | bipotential |
-//! | damage | [`Lemaitre`] | bipotential |
+//! | of tests and documents only | [`textbook`] | all |
+//!
+//! A law of your own is a [`BulkLaw`] or a [`ShearBound`]; [`contract`] tests it in one line.
 //!
 //! Tensors are in Mandel notation, see `moreau_mandel`; units are N, mm and MPa. Constructors
 //! return [`LawError`] for data that define no law; past them nothing fails, and data that are not
 //! numbers come out as NaN.
 
 mod anisotropic;
-mod armstrong_frederick;
+mod bounded;
 mod bulk;
-mod cam_clay;
+pub mod contract;
 mod coulomb;
 mod drucker_prager;
 mod duality;
@@ -65,32 +64,24 @@ mod elastic_drucker_prager;
 mod error;
 mod friction;
 mod isotropic;
-mod lemaitre;
 mod limited;
 mod local;
-mod regularised;
-mod signorini;
+pub mod textbook;
 mod tresca;
-mod uniaxial;
 mod von_mises;
 
 pub use anisotropic::AnisotropicCoulomb;
-pub use armstrong_frederick::{ArmstrongFrederick, Generalised};
-pub use bulk::{BulkLaw, FlowPower, Numbers, Response};
-pub use cam_clay::CamClay;
+pub use bounded::{Bounded, ShearBound};
+pub use bulk::{BulkLaw, COMMON_FIELDS, FlowPower, Numbers, ON_SURFACE, Response};
 pub use coulomb::Coulomb;
 pub use drucker_prager::DruckerPrager;
 pub use duality::{Bipotential, Superpotential};
 pub use elastic::Elastic;
 pub use elastic_drucker_prager::{DruckerPragerState, ElasticDruckerPrager};
-pub use error::LawError;
+pub use error::{LawError, Parameter, non_negative, positive};
 pub use friction::Friction;
 pub use isotropic::Isotropic;
-pub use lemaitre::{Damaging, Lemaitre};
 pub use limited::LimitedCoulomb;
 pub use local::{Local, Status};
-pub use regularised::{RegularisedCoulomb, RegularisedResponse};
-pub use signorini::Signorini;
 pub use tresca::Tresca;
-pub use uniaxial::{Uniaxial, UniaxialResponse};
-pub use von_mises::{VonMises, VonMisesDissipation, VonMisesState};
+pub use von_mises::{VonMises, VonMisesState};

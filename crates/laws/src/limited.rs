@@ -2,7 +2,7 @@
 
 use crate::coulomb::Coulomb;
 use crate::duality::{at_most, restricted};
-use crate::error::{LawError, non_negative};
+use crate::error::{LawError, Parameter, non_negative};
 use crate::local::{Local, tangential_norm};
 
 /// Unilateral contact with friction ‖t_t‖ ≤ g(t_n) = min(μ t_n, g₀), slip opposed to t_t, \[17\]
@@ -27,7 +27,7 @@ impl LimitedCoulomb {
     pub fn new(friction: f64, limit: f64) -> Result<Self, LawError> {
         Ok(Self {
             coulomb: Coulomb::new(friction)?,
-            limit: non_negative("friction limit", limit)?,
+            limit: non_negative(Parameter::FrictionLimit, limit)?,
         })
     }
 

@@ -2,7 +2,7 @@
 //! whose bound follows the pressure.
 
 use crate::duality::{Superpotential, at_most, indicator, restricted};
-use crate::error::{LawError, non_negative};
+use crate::error::{LawError, Parameter, non_negative};
 use crate::local::{Local, tangential_norm};
 
 /// Unilateral contact, \[11\], and friction of given limit g: ‖t_t‖ ≤ g, slip opposed to t_t,
@@ -24,7 +24,7 @@ impl Tresca {
     /// `Negative` unless g ≥ 0 is finite.
     pub fn new(limit: f64) -> Result<Self, LawError> {
         Ok(Self {
-            limit: non_negative("friction limit", limit)?,
+            limit: non_negative(Parameter::FrictionLimit, limit)?,
         })
     }
 

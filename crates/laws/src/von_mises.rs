@@ -2,47 +2,13 @@
 //! a law of finite strain, though logarithmic strains may be fed to it.
 
 use crate::bulk::{BulkLaw, FlowPower, Numbers, ON_SURFACE, Response};
-use crate::duality::{Superpotential, at_most, indicator, restricted};
+use crate::duality::{at_most, indicator};
 use crate::elastic::Elastic;
-use crate::error::{LawError, non_negative, positive};
+use crate::error::{LawError, Parameter, non_negative, positive};
 use crate::isotropic::Isotropic;
 use moreau_mandel::{
     Sym2, Sym4, deviator, deviatoric_projector, equivalent_strain, identity, trace, von_mises,
 };
-
-/// The rigid, perfectly plastic law of von Mises as a Fenchel pair, \[6\]-\[9\].
-///
-/// V_p(ε̇ᵖ) = √(2/3) σ_y ‖ėᵖ‖, convex and homogeneous of degree 1, +∞ when ε̇ᵖ has a trace; its
-/// conjugate is the indicator of σ_eq ≤ σ_y.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct VonMisesDissipation {
-    yield_stress: f64,
-}
-
-impl VonMisesDissipation {
-    /// From the yield stress σ_y \[MPa\].
-    ///
-    /// # Errors
-    /// `NotPositive` unless σ_y > 0 is finite.
-    pub fn new(yield_stress: f64) -> Result<Self, LawError> {
-        Ok(Self {
-            yield_stress: positive("yield stress", yield_stress)?,
-        })
-    }
-}
-
-impl Superpotential<Sym2> for VonMisesDissipation {
-    /// σ_y ṗ, \[60\], on rates without trace.
-    fn v(&self, x: &Sym2) -> f64 {
-        let v = self.yield_stress * equivalent_strain(&deviator(x));
-        restricted(at_most(trace(x).abs(), 0.0, x.norm()), v)
-    }
-
-    /// The indicator of σ_eq ≤ σ_y.
-    fn w(&self, y: &Sym2) -> f64 {
-        indicator(at_most(von_mises(y), self.yield_stress, y.norm()))
-    }
-}
 
 /// What a von Mises material remembers, with so many terms of kinematic hardening with recall; the
 /// stress is recovered from the elastic strain.
@@ -130,7 +96,7 @@ impl VonMises {
     pub fn new(young: f64, poisson: f64, yield_stress: f64) -> Result<Self, LawError> {
         Ok(Self {
             elastic: Elastic::new(young, poisson)?,
-            yield_stress: positive("yield stress", yield_stress)?,
+            yield_stress: positive(Parameter::YieldStress, yield_stress)?,
             isotropic: Isotropic::linear(0.0)?,
             kinematic: 0.0,
             recalled: [],
@@ -147,8 +113,8 @@ impl VonMises {
         terms: [(f64, f64); TERMS],
     ) -> Result<VonMises<TERMS>, LawError> {
         for (modulus, recall) in terms {
-            non_negative("kinematic hardening modulus", modulus)?;
-            non_negative("recall of kinematic hardening", recall)?;
+            non_negative(Parameter::KinematicModulus, modulus)?;
+            non_negative(Parameter::Recall, recall)?;
         }
         Ok(VonMises {
             elastic: self.elastic,
@@ -179,7 +145,7 @@ impl<const TERMS: usize> VonMises<TERMS> {
     /// # Errors
     /// `Negative` unless H_k ≥ 0 is finite.
     pub fn with_kinematic(mut self, modulus: f64) -> Result<Self, LawError> {
-        self.kinematic += non_negative("kinematic hardening modulus", modulus)?;
+        self.kinematic += non_negative(Parameter::KinematicModulus, modulus)?;
         Ok(self)
     }
 
@@ -371,6 +337,10 @@ impl<const TERMS: usize> VonMises<TERMS> {
 impl<const TERMS: usize> BulkLaw for VonMises<TERMS> {
     type State = VonMisesState<TERMS>;
 
+    fn initial(&self) -> VonMisesState<TERMS> {
+        VonMisesState::default()
+    }
+
     #[inline]
     fn respond(&self, old: &VonMisesState<TERMS>, d_eps: &Sym2) -> Response<VonMisesState<TERMS>> {
         let mut state = *old;
@@ -449,6 +419,13 @@ impl<const TERMS: usize> BulkLaw for VonMises<TERMS> {
 
     fn equivalent_plastic_strain(&self, state: &VonMisesState<TERMS>) -> f64 {
         state.p
+    }
+
+    /// The back stress X \[MPa\], of a law with kinematic hardening.
+    fn fields(&self, state: &VonMisesState<TERMS>, each: &mut dyn FnMut(&str, &[f64])) {
+        if TERMS > 0 || self.kinematic > 0.0 {
+            each("back_stress", self.back_stress(state).as_slice());
+        }
     }
 
     /// √(2/3) (σ_y + R(p)) ‖ė‖ + X : ė; a change of volume is elastic, σ_m tr ε̇.

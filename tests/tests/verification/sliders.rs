@@ -3,7 +3,8 @@
 
 use crate::close;
 use moreau::contact::{ContactProblem, ContactSolver, SemismoothNewton};
-use moreau::laws::{Coulomb, Local, RegularisedCoulomb, Status};
+use moreau::laws::textbook::RegularisedCoulomb;
+use moreau::laws::{Coulomb, Local, Status};
 use nalgebra::{DMatrix, DVector, Rotation2, Vector2};
 use verification::problems::Fallible;
 

@@ -191,6 +191,48 @@ fn bounded<const D: usize>(
     law.project(&t)
 }
 
+/// The force on the edge t_t = σ g(t_n) of a plane law of any bound. There u_n is convex or concave in
+/// t_n: Newton's method from where it is positive converges from one side. Where it never is, the contact
+/// wedges, and there is no such force.
+fn curved_edge<const D: usize>(
+    side: f64,
+    w: &SMatrix<f64, D, D>,
+    q: &Local<D>,
+    law: &Friction,
+    pressed: impl Fn(&mut Local<D>),
+) -> Local<D> {
+    let mut slip = Local::zeros();
+    slip[1] = side * law.bound(0.0);
+    pressed(&mut slip);
+    if slip[0] <= 0.0 {
+        slip[0] = 0.0;
+        return slip;
+    }
+    let normal = |t_n: f64| q[0] + w[(0, 0)] * t_n + side * w[(0, 1)] * law.bound(t_n);
+    let mut t_n = slip[0];
+    for _ in 0..100 {
+        if normal(t_n) > 0.0 {
+            break;
+        }
+        t_n *= 2.0;
+    }
+    for _ in 0..100 {
+        let stiffness = w[(0, 0)] + side * w[(0, 1)] * law.slope(t_n);
+        let next = (t_n - normal(t_n) / stiffness).max(0.0);
+        if stiffness <= 0.0 || !next.is_finite() {
+            return Local::zeros();
+        }
+        let moved = (next - t_n).abs();
+        t_n = next;
+        if moved <= f64::EPSILON * next {
+            break;
+        }
+    }
+    slip[0] = t_n;
+    slip[1] = side * law.bound(t_n);
+    slip
+}
+
 /// The force on the edge t_t = σ g(t_n) of a plane law, where u_n = 0 is linear.
 fn edge<const D: usize>(
     side: f64,
@@ -199,6 +241,9 @@ fn edge<const D: usize>(
     law: &Friction,
     pressed: impl Fn(&mut Local<D>),
 ) -> Local<D> {
+    if let Friction::Bounded(_) = law {
+        return curved_edge(side, w, q, law, pressed);
+    }
     let (mu, limit) = (law.friction(), law.bound(f64::INFINITY));
     let mut slip = Local::zeros();
     let stiffness = w[(0, 0)] + side * mu * w[(0, 1)];

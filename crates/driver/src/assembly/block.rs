@@ -72,6 +72,17 @@ pub struct PointState<const D: usize> {
     pub plastic_strain: f64,
 }
 
+/// A field that laws have of their own, at every quadrature point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointField {
+    /// Its name.
+    pub name: String,
+    /// Components: 1 of a scalar, 3 of a vector, 6 of a symmetric tensor as in [`Sym2`].
+    pub components: usize,
+    /// The components at every point; NaN at those of a law that has no such field.
+    pub values: Vec<f64>,
+}
+
 /// A set of cells that are integrated alike. The state at the start of the step changes only in
 /// [`Block::commit`]; everything else works on a candidate.
 pub trait Block<const D: usize>: Send + Sync {
@@ -115,6 +126,12 @@ pub trait Block<const D: usize>: Send + Sync {
 
     /// The committed state at every quadrature point, cell by cell.
     fn points(&self) -> Vec<PointState<D>>;
+
+    /// The fields that the law has of its own, in the committed state at every quadrature point, in the
+    /// order of [`Block::points`].
+    fn fields(&self) -> Vec<PointField> {
+        Vec::new()
+    }
 
     /// Hands the committed state at every quadrature point with the displacement gradient there, cell by
     /// cell, to `sink`; `u` has an entry a degree of freedom of the mesh.
@@ -167,9 +184,19 @@ impl<L: BulkLaw, const D: usize> SolidBlock<L, D> {
         }
     }
 
-    /// The block of `cells`, which are the cells `members` of the mesh, in the virgin state.
+    /// The same block from other states at the start, from the position of a quadrature point in the
+    /// undeformed body \[mm\]: under a stress, or with axes that vary.
+    pub fn with_states(mut self, state: impl Fn(&[f64; D]) -> L::State) -> Self {
+        for (point, old) in self.old.iter_mut().enumerate() {
+            *old = state(&self.cells.position(point));
+        }
+        self.new.copy_from_slice(&self.old);
+        self
+    }
+
+    /// The block of `cells`, which are the cells `members` of the mesh, in the initial state of the law.
     pub fn new(members: Vec<usize>, cells: Box<dyn Cells<D>>, law: L) -> Self {
-        let states = vec![L::State::default(); cells.count() * cells.points_per_cell()];
+        let states = vec![law.initial(); cells.count() * cells.points_per_cell()];
         Self {
             members,
             cells,
@@ -395,6 +422,25 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
 
     fn points(&self) -> Vec<PointState<D>> {
         (0..self.old.len()).map(|point| self.point(point)).collect()
+    }
+
+    fn fields(&self) -> Vec<PointField> {
+        let mut fields: Vec<PointField> = Vec::new();
+        for state in &self.old {
+            let mut index = 0;
+            self.law.fields(state, &mut |name, values| {
+                if index == fields.len() {
+                    fields.push(PointField {
+                        name: name.to_owned(),
+                        components: values.len(),
+                        values: Vec::with_capacity(values.len() * self.old.len()),
+                    });
+                }
+                fields[index].values.extend(values);
+                index += 1;
+            });
+        }
+        fields
     }
 
     fn gradients(&self, u: &[f64], sink: &mut dyn FnMut(&PointState<D>, &Matrix3<f64>)) {

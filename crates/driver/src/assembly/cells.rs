@@ -1,6 +1,7 @@
 //! Cells of one element under one hypothesis with their quadrature points: strains, nodal forces
 //! and stiffness; no law.
 
+use crate::ModelError;
 use moreau_mandel::{Sym2, Sym4};
 use moreau_mesh::{Element, Entry, Hypothesis, Integration, Mesh};
 use nalgebra::Matrix3;
@@ -45,9 +46,9 @@ pub trait Cells<const D: usize>: Send + Sync {
     fn stiffness(&self, k: usize, tangent: &[Sym4], stiffness: &mut [f64]);
 }
 
-/// Cells of an element of N nodes. What strains them is kept field by field with the nodes next to
+/// Cells of an element of N nodes: of this crate's or of any other. What strains them is kept field by field with the nodes next to
 /// each other, which all do the same.
-pub(crate) struct ElementCells<const D: usize, const N: usize> {
+pub struct ElementCells<const D: usize, const N: usize> {
     nodes: Vec<[usize; N]>,
     points_per_cell: usize,
     positions: Vec<[f64; D]>,
@@ -65,14 +66,29 @@ pub(crate) struct ElementCells<const D: usize, const N: usize> {
 }
 
 impl<const D: usize, const N: usize> ElementCells<D, N> {
-    /// The given cells, all of element E, of a mesh.
-    pub(crate) fn new<E: Element<D, N>, H: Hypothesis<D>>(
+    /// The given cells of a mesh, interpolated by element E on their nodes, whose order is that of the
+    /// kind of the cells.
+    ///
+    /// # Errors
+    /// [`ModelError::WrongElement`] for a cell that has not N nodes, or a rule of none or more than 27
+    /// points.
+    pub fn new<E: Element<D, N>, H: Hypothesis<D>>(
         mesh: &Mesh<D>,
         cells: &[usize],
         hypothesis: &H,
         integration: Integration,
-    ) -> Self {
+    ) -> Result<Self, ModelError> {
         let rule = E::rule(integration);
+        let fits = |&c: &usize| c < mesh.cell_count() && mesh.cell_nodes(c).len() == N;
+        let points = rule.points.len();
+        if let Some(&cell) = cells.iter().find(|c| !fits(c)) {
+            let problem = format!("has not the {N} nodes of the element");
+            return Err(ModelError::WrongElement { cell, problem });
+        }
+        if let (Some(&cell), false) = (cells.first(), (1..=MAX_POINTS).contains(&points)) {
+            let problem = format!("has {points} points of integration, expected 1 to {MAX_POINTS}");
+            return Err(ModelError::WrongElement { cell, problem });
+        }
         let mut new = Self {
             nodes: Vec::with_capacity(cells.len()),
             points_per_cell: rule.points.len(),
@@ -90,9 +106,8 @@ impl<const D: usize, const N: usize> ElementCells<D, N> {
             let positions = nodes.map(|a| mesh.nodes()[a]);
             for p in &rule.points {
                 let at = E::map(&positions, p.xi);
-                let shape = E::shape(p.xi);
                 let of_node: [[f64; 3]; N] =
-                    std::array::from_fn(|a| H::fields(shape[a], &at.gradient[a], &at.x));
+                    std::array::from_fn(|a| H::fields(at.shape[a], &at.gradient[a], &at.x));
                 let field = |f: usize| of_node.map(|fields| fields[f]);
                 new.fields.extend((0..H::FIELDS).map(field));
                 new.weights
@@ -106,7 +121,7 @@ impl<const D: usize, const N: usize> ElementCells<D, N> {
                 .map(|k| new.mean_dilatation(k))
                 .collect();
         }
-        new
+        Ok(new)
     }
 
     /// ∫ b_a dΩ / ∫ dΩ over a cell, with b_a the trace of B_a.

@@ -15,5 +15,6 @@ mod refusals;
 mod released;
 mod seams;
 mod slender;
+mod states;
 mod steps;
 mod tools;

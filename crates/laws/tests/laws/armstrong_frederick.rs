@@ -3,7 +3,8 @@
 use crate::contract::{Samples, check};
 use crate::samples::{any_deviator, spherical, unit_deviator};
 use approx::assert_relative_eq;
-use moreau_laws::{ArmstrongFrederick, Bipotential, Generalised, LawError};
+use moreau_laws::textbook::{ArmstrongFrederick, Generalised};
+use moreau_laws::{Bipotential, LawError};
 use moreau_mandel::{Sym2, equivalent_strain, von_mises};
 use proptest::prelude::*;
 

@@ -1,7 +1,8 @@
 //! Modified Cam-Clay; not its integration over finite steps.
 
 use crate::contract::{Samples, check, for_all};
-use moreau_laws::{Bipotential, CamClay, LawError};
+use moreau_laws::textbook::CamClay;
+use moreau_laws::{Bipotential, LawError};
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::f64::consts::PI;

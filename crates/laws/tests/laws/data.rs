@@ -1,5 +1,6 @@
 //! Data that define no law; not numerical failures.
 
+use moreau_laws::textbook::*;
 use moreau_laws::*;
 
 const NOT_POSITIVE: [f64; 5] = [0.0, -1.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN];

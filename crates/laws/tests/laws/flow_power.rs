@@ -34,7 +34,7 @@ fn soil(friction: f64, dilatancy: f64) -> Result<ElasticDruckerPrager, LawError>
 }
 
 fn after<L: BulkLaw>(law: &L, path: &[Sym2]) -> L::State {
-    path.iter().fold(L::State::default(), |state, d_eps| {
+    path.iter().fold(law.initial(), |state, d_eps| {
         law.respond(&state, d_eps).state
     })
 }

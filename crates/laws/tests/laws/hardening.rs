@@ -5,9 +5,8 @@ use crate::contract::for_all;
 use crate::material_point::Point;
 use crate::samples::vector;
 use approx::assert_relative_eq;
-use moreau_laws::{
-    ArmstrongFrederick, Bipotential, BulkLaw, Isotropic, LawError, VonMises, VonMisesState,
-};
+use moreau_laws::textbook::ArmstrongFrederick;
+use moreau_laws::{Bipotential, BulkLaw, Isotropic, LawError, VonMises, VonMisesState};
 use moreau_mandel::{Sym2, Sym4, deviator, von_mises};
 use proptest::prelude::*;
 

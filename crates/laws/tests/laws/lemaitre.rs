@@ -2,7 +2,8 @@
 
 use crate::contract::{Samples, check};
 use crate::samples::{spherical, unit_deviator};
-use moreau_laws::{Damaging, LawError, Lemaitre};
+use moreau_laws::LawError;
+use moreau_laws::textbook::{Damaging, Lemaitre};
 use moreau_mandel::Sym2;
 use proptest::prelude::*;
 

@@ -20,3 +20,4 @@ mod regularised;
 mod samples;
 mod slider;
 mod standard;
+mod wrong;

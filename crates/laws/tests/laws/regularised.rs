@@ -3,7 +3,8 @@
 use crate::contract::for_all;
 use crate::samples::{normal, unit_tangent, vector};
 use approx::assert_relative_eq;
-use moreau_laws::{Bipotential, Coulomb, LawError, Local, RegularisedCoulomb, Status};
+use moreau_laws::textbook::RegularisedCoulomb;
+use moreau_laws::{Bipotential, Coulomb, LawError, Local, Status};
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 

@@ -2,7 +2,7 @@
 
 use moreau_laws::Local;
 use moreau_mandel::{Sym2, deviator, identity};
-use nalgebra::{Matrix3, Rotation3, SVector, Vector3};
+use nalgebra::SVector;
 use proptest::prelude::*;
 
 /// A vector of components in [−size, size].
@@ -53,11 +53,4 @@ pub(crate) fn normal<const D: usize>() -> Local<D> {
 /// A pressure, a multiple of δ.
 pub(crate) fn spherical(mean: f64) -> Sym2 {
     mean * identity()
-}
-
-/// A rotation matrix.
-pub(crate) fn rotation_matrix() -> BoxedStrategy<Matrix3<f64>> {
-    vector::<3>(3.0)
-        .prop_map(|a: Vector3<f64>| Rotation3::new(a).into_inner())
-        .boxed()
 }

@@ -1,7 +1,8 @@
 //! A spring and slider on given paths, driven through the regularised law; not a structure.
 
 use approx::assert_relative_eq;
-use moreau_laws::{LawError, Local, RegularisedCoulomb, Status};
+use moreau_laws::textbook::RegularisedCoulomb;
+use moreau_laws::{LawError, Local, Status};
 use nalgebra::{Rotation2, SVector, Vector2, Vector3};
 
 const STIFFNESS: f64 = 100.0;

@@ -3,8 +3,9 @@
 
 use crate::contract::{Departure, Samples, check, for_all};
 use crate::samples::{any_deviator, normal, spherical, unit_deviator, unit_tangent, vector};
-use moreau_laws::{Bipotential, Local, Signorini, Superpotential, Tresca, Uniaxial};
-use moreau_laws::{LawError, VonMisesDissipation};
+use moreau_laws::LawError;
+use moreau_laws::textbook::{Signorini, Uniaxial, VonMisesDissipation};
+use moreau_laws::{Bipotential, Local, Superpotential, Tresca};
 use moreau_mandel::Sym2;
 use proptest::prelude::*;
 

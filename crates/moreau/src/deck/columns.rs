@@ -35,6 +35,7 @@ pub(crate) enum Unit {
     None,
     Length,
     Force,
+    Stress,
     Energy,
 }
 
@@ -45,13 +46,15 @@ impl Unit {
             Self::None => name.to_owned(),
             Self::Length => format!("{name} [{}]", units.length()),
             Self::Force => format!("{name} [{}]", units.force()),
+            Self::Stress => format!("{name} [{}]", units.stress()),
             Self::Energy => format!("{name} [{}]", units.energy()),
         }
     }
 }
 
 /// Names and units: those of every history, then force and displacement of the groups that are
-/// held or moved, of the tools, and of the surfaces of bodies that touch each other.
+/// held or moved, of the tools, and of the surfaces of bodies that touch each other; then the largest
+/// size of every field that a law has of its own.
 pub(crate) fn columns<const D: usize>(setup: &Setup<D>) -> Vec<(String, Unit)> {
     let mut list: Vec<(String, Unit)> = FIXED.iter().map(|(n, u)| ((*n).into(), *u)).collect();
     let held = setup.held.iter().map(|[name, _]| name);
@@ -61,6 +64,13 @@ pub(crate) fn columns<const D: usize>(setup: &Setup<D>) -> Vec<(String, Unit)> {
                 list.push((format!("{what}.{name}.{axis}"), unit));
             }
         }
+    }
+    for field in setup.driver.fields() {
+        let unit = match field.name.contains("stress") {
+            true => Unit::Stress,
+            false => Unit::None,
+        };
+        list.push((format!("largest.{}", field.name), unit));
     }
     list
 }

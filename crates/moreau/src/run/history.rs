@@ -3,7 +3,8 @@
 use super::table::field;
 use crate::deck::{Setup, Units};
 use crate::deck::{Unit, columns};
-use crate::driver::{Driver, StepReport};
+use crate::driver::{Driver, PointField, StepReport};
+use crate::mandel::{Sym2, von_mises};
 use crate::numbers::number;
 
 /// Where an increment is.
@@ -95,6 +96,7 @@ impl History {
             row.extend((0..D).map(|i| force.map_or(f64::NAN, |f| f[i])));
             row.extend(mean_displacement(driver, surface));
         }
+        row.extend(driver.fields().iter().map(largest));
         let line: Vec<String> = row.iter().map(|&v| number(v)).collect();
         self.last = row;
         line.join(",")
@@ -115,6 +117,18 @@ impl History {
         let index = self.names().position(|n| n == name)?;
         self.last.get(index).copied()
     }
+}
+
+/// Largest size of a field over the points of its law: the absolute value of a scalar, the length of a
+/// vector, the equivalent value √(3/2 s : s) of a tensor.
+fn largest(field: &PointField) -> f64 {
+    let size = |v: &[f64]| match v.len() {
+        6 => von_mises(&Sym2::from_column_slice(v)),
+        _ => v.iter().map(|x| x * x).sum::<f64>().sqrt(),
+    };
+    // Not a number where the law has no such field.
+    let sizes = field.values.chunks_exact(field.components).map(size);
+    sizes.fold(0.0, f64::max)
 }
 
 /// Mean displacement of the nodes of a group.

@@ -1,7 +1,7 @@
 //! Stresses recovered at nodes: exact where they are linear, closer than the raw ones where they are
 //! smooth, with the jumps between materials, and within the yield surface.
 
-use moreau::driver::{Analysis, Driver, Model, PointState, Settings};
+use moreau::driver::{Analysis, Driver, Model, PointField, PointState, Settings};
 use moreau::driver::{Recovered, recover};
 use moreau::laws::{BulkLaw, Elastic, VonMises};
 use moreau::mandel::{Sym2, from_matrix, von_mises};
@@ -73,7 +73,12 @@ fn displaced<const D: usize, H: Analysis<D>, L: BulkLaw>(
 }
 
 fn recovered<const D: usize>(driver: &Driver<D>) -> Recovered {
-    recover(driver.mesh(), driver.materials(), &driver.points())
+    recover(
+        driver.mesh(),
+        driver.materials(),
+        &driver.points(),
+        &driver.fields(),
+    )
 }
 
 /// Errors of the stress of the elements and of the recovered one, and how far these are from each
@@ -195,13 +200,41 @@ fn a_linear_stress_is_exact() {
                     }),
                 );
             }
-            let found = recover(&mesh, &vec![0; mesh.cell_count()], &points);
+            let field =
+                |name: &str, components, of: &dyn Fn(&PointState<2>) -> Vec<f64>| PointField {
+                    name: name.into(),
+                    components,
+                    values: points.iter().flat_map(of).collect(),
+                };
+            let fields = [
+                field("height", 1, &|p| vec![p.position[1]]),
+                field("twice", 6, &|p| (2.0 * p.stress).as_slice().to_vec()),
+            ];
+            let found = recover(&mesh, &vec![0; mesh.cell_count()], &points, &fields);
             if kind == CellKind::Quad4 && cells < 2 {
                 continue; // One mean has no slope.
             }
             for (x, stress) in mesh.nodes().iter().zip(&found.stress) {
                 let error = (stress - linear(x)).norm();
                 assert!(error < 1e-10, "{kind} {cells}: {error} at {x:?}");
+            }
+            // A tensor like the stress; a scalar never beyond what the points around have.
+            let [heights, twice] = &found.fields[..] else {
+                panic!("two fields")
+            };
+            for (own, stress) in twice.values.chunks_exact(6).zip(&found.stress) {
+                assert!((Sym2::from_column_slice(own) - 2.0 * stress).norm() < 1e-10);
+            }
+            let known = points.iter().map(|p| p.position[1]);
+            let (low, high) = known.fold((1.0f64, 0.0f64), |(l, h), y| (l.min(y), h.max(y)));
+            for (y, x) in heights.values.iter().zip(mesh.nodes()) {
+                let expected = x[1].clamp(low, high);
+                let inside = x[1] == expected;
+                assert!((low..=high).contains(y), "{kind} {cells}: {y} at {x:?}");
+                assert!(
+                    !inside || (y - expected).abs() < 1e-10,
+                    "{kind} {cells}: {y} at {x:?}"
+                );
             }
         }
     }

@@ -10,7 +10,7 @@ use crate::deck::finding::{At, Findings};
 use crate::driver::{Analysis, Model, ModelError};
 use crate::laws::{
     AnisotropicCoulomb, Coulomb, DruckerPrager, Elastic, ElasticDruckerPrager, Friction, Isotropic,
-    LawError, LimitedCoulomb, Tresca, VonMises,
+    LawError, LimitedCoulomb, Parameter, Tresca, VonMises,
 };
 use crate::mesh::{CellKind, Integration, Mesh, MeshError};
 use std::ops::Range;
@@ -106,7 +106,13 @@ fn law(material: &MaterialEntry) -> Result<Law, (Range<usize>, String)> {
     let moduli = |error: LawError| {
         let at = match (&error, &material.yield_stress) {
             (LawError::PoissonOutOfRange { .. }, _) => &material.poisson,
-            (LawError::NotPositive { name, .. }, Some(at)) if name.contains("yield") => at,
+            (
+                LawError::NotPositive {
+                    parameter: Parameter::YieldStress,
+                    ..
+                },
+                Some(at),
+            ) => at,
             _ => &material.young,
         };
         (at.span.clone(), error.to_string())
@@ -129,7 +135,10 @@ fn law(material: &MaterialEntry) -> Result<Law, (Range<usize>, String)> {
         let term = (modulus.value, recall.value);
         if let Err(error) = law.clone().with_recall([term]) {
             let at = match &error {
-                LawError::Negative { name, .. } if name.contains("recall") => recall,
+                LawError::Negative {
+                    parameter: Parameter::Recall,
+                    ..
+                } => recall,
                 _ => modulus,
             };
             return Err((at.span.clone(), error.to_string()));
@@ -161,7 +170,10 @@ fn soil(soil: &SoilEntry) -> Result<DruckerPrager, (Range<usize>, String)> {
     let (c, friction, dilatancy) = (&soil.cohesion, &soil.friction_angle, &soil.dilatancy_angle);
     DruckerPrager::mohr_coulomb(c.value, friction.value, dilatancy.value).map_err(|error| {
         let at = match &error {
-            LawError::AngleOutOfRange { name, .. } if name.contains("dilatancy") => dilatancy,
+            LawError::AngleOutOfRange {
+                parameter: Parameter::DilatancyAngle,
+                ..
+            } => dilatancy,
             LawError::AngleOutOfRange { .. } => friction,
             _ => c,
         };

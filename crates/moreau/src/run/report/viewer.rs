@@ -30,7 +30,8 @@ pub(super) fn viewer<const D: usize>(
     let all = bodies(directory);
     let mesh = driver.mesh();
     let (points, cells) = points_by_material(mesh, driver.materials());
-    let per_frame = points.len() * (D + 9);
+    let of_laws: usize = driver.fields().iter().map(|f| f.components).sum();
+    let per_frame = points.len() * (D + 9 + of_laws);
     let stride = (all.len() * per_frame).div_ceil(MOST_VALUES).max(1);
     let mut frames = Vec::new();
     let mut largest = 0.0f64;
@@ -44,7 +45,7 @@ pub(super) fn viewer<const D: usize>(
         for name in fields(arrays) {
             // What is always zero in the plane.
             let out_of_plane = ["displacement.z", "stress.yz", "stress.xz"];
-            if D == 2 && out_of_plane.contains(&name.as_str()) {
+            if D == 2 && out_of_plane.iter().any(|&none| name.ends_with(none)) {
                 continue;
             }
             let v = field(arrays, &name).unwrap_or_default();

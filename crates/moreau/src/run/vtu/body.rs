@@ -1,6 +1,6 @@
 //! The body with its fields as a grid: recovered at points, as means of what was computed in cells.
 
-use crate::driver::{Driver, recover};
+use crate::driver::{Driver, PointField, PointState, recover};
 use crate::mandel::{Sym2, von_mises};
 use crate::vtu::{Array, Grid, three, vtk_cell};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -30,12 +30,49 @@ pub(in crate::run) fn fields(values: &[(Sym2, f64, f64)]) -> Vec<Array> {
     ]
 }
 
+/// The fields that laws have of their own.
+pub(super) fn own_fields(fields: &[PointField]) -> impl Iterator<Item = Array> + '_ {
+    fields.iter().map(|field| Array {
+        name: field.name.clone(),
+        components: field.components,
+        values: match field.components {
+            6 => (field.values.chunks_exact(6))
+                .flat_map(|v| components(&Sym2::from_column_slice(v)))
+                .collect(),
+            _ => field.values.clone(),
+        },
+    })
+}
+
+/// Means by volume of fields in every cell.
+fn means<const D: usize>(
+    fields: Vec<PointField>,
+    points: &[PointState<D>],
+    volumes: &[f64],
+) -> Vec<PointField> {
+    let mean = |field: PointField| {
+        let count = field.components;
+        let mut means = vec![0.0; count * volumes.len()];
+        for (p, values) in points.iter().zip(field.values.chunks_exact(count)) {
+            let own = means[count * p.cell..][..count].iter_mut();
+            own.zip(values)
+                .for_each(|(mean, v)| *mean += v * p.weight / volumes[p.cell]);
+        }
+        PointField {
+            values: means,
+            ..field
+        }
+    };
+    fields.into_iter().map(mean).collect()
+}
+
 /// The grid of a body, and the node of each of its points: nodes where materials meet have a point
 /// for each material.
 pub(in crate::run) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usize>) {
     let mesh = driver.mesh();
     let points = driver.points();
-    let recovered = recover(mesh, driver.materials(), &points);
+    let of_laws = driver.fields();
+    let recovered = recover(mesh, driver.materials(), &points, &of_laws);
     let values: Vec<_> = recovered
         .stress
         .iter()
@@ -61,9 +98,10 @@ pub(in crate::run) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usi
         mean.2 += p.plastic_strain * p.weight;
         volumes[p.cell] += p.weight;
     }
-    for (mean, volume) in means.iter_mut().zip(volumes) {
+    for (mean, &volume) in means.iter_mut().zip(&volumes) {
         *mean = (mean.0 / volume, mean.1 / volume, mean.2 / volume);
     }
+    let of_laws = self::means(of_laws, &points, &volumes);
     let cell = |(c, points): (usize, &Vec<usize>)| vtk_cell(mesh.kind(c), points);
     let numbers = Array {
         name: "cell".into(),
@@ -75,8 +113,12 @@ pub(in crate::run) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usi
         cells: recovered.cells.iter().enumerate().map(cell).collect(),
         point_data: std::iter::once(displacement)
             .chain(fields(&values))
+            .chain(own_fields(&recovered.fields))
             .collect(),
-        cell_data: std::iter::once(numbers).chain(fields(&means)).collect(),
+        cell_data: std::iter::once(numbers)
+            .chain(fields(&means))
+            .chain(own_fields(&of_laws))
+            .collect(),
     };
     (grid, nodes)
 }

@@ -1,7 +1,7 @@
 //! The quadrature points with what was computed there, nothing recovered and nothing averaged, as a
 //! grid of one vertex each.
 
-use super::body::fields;
+use super::body::{fields, own_fields};
 use crate::driver::{Driver, PointState};
 use crate::mandel::von_mises;
 use crate::vtu::{Array, Grid, three};
@@ -13,9 +13,19 @@ const VERTEX: u8 = 1;
 /// All quadrature points, cell by cell.
 pub(in crate::run) fn points<const D: usize>(driver: &Driver<D>) -> Grid {
     let mesh = driver.mesh();
-    let mut states = driver.points();
+    let all = driver.points();
     // Blocks are sets of cells in any order; the points of a cell stay in theirs.
-    states.sort_by_key(|p| p.cell);
+    let mut order: Vec<usize> = (0..all.len()).collect();
+    order.sort_by_key(|&k| all[k].cell);
+    let states: Vec<_> = order.iter().map(|&k| all[k]).collect();
+    let mut of_laws = driver.fields();
+    for field in &mut of_laws {
+        let n = field.components;
+        field.values = order
+            .iter()
+            .flat_map(|&k| field.values[n * k..n * (k + 1)].to_vec())
+            .collect();
+    }
     let mut shapes = BTreeMap::new();
     let (mut displacement, mut numbers) = (Vec::new(), Vec::new());
     for own in states.chunk_by(|a, b| a.cell == b.cell) {
@@ -47,6 +57,7 @@ pub(in crate::run) fn points<const D: usize>(driver: &Driver<D>) -> Grid {
         .collect();
     let mut data = vec![array("displacement", 3, displacement)];
     data.extend(fields(&values));
+    data.extend(own_fields(&of_laws));
     data.push(array("cell", 1, of(&|p| p.cell as f64)));
     data.push(array("point", 1, numbers));
     data.push(array("volume", 1, of(&|p| p.weight)));
@@ -176,7 +187,9 @@ mod tests {
         meshes: impl Iterator<Item = Mesh<D>>,
         hypothesis: &H,
     ) {
-        let law = VonMises::new(1000.0, 0.3, 5.0).expect("a law");
+        let law = VonMises::new(1000.0, 0.3, 5.0)
+            .and_then(|law| law.with_kinematic(100.0))
+            .expect("a law");
         let bent = |x: &[f64; D]| three(&x.map(|x| 0.02 * x * x));
         for mesh in meshes {
             let rule = mesh.kind(0).integration();
@@ -200,6 +213,14 @@ mod tests {
             }
             let flowed = values(&grid.point_data, "equivalent_plastic_strain");
             assert!(flowed.iter().any(|&p| p > 0.0));
+            let pushed = values(&grid.point_data, "back_stress").chunks_exact(6);
+            for (p, x) in flowed.iter().zip(pushed) {
+                assert_eq!(
+                    *p > 0.0,
+                    x.iter().any(|c| *c != 0.0),
+                    "the point of its state"
+                );
+            }
         }
     }
 

@@ -2,7 +2,7 @@
 //! bulk: it is the scalar on which the inf-convolution is learnt.
 
 use crate::duality::{Superpotential, at_most, indicator};
-use crate::error::{LawError, positive};
+use crate::error::{LawError, Parameter, positive};
 
 /// A bar of Young's modulus E and yield stress σ_y, without hardening.
 ///
@@ -32,8 +32,8 @@ impl Uniaxial {
     /// `NotPositive` unless both are positive and finite.
     pub fn new(young: f64, yield_stress: f64) -> Result<Self, LawError> {
         Ok(Self {
-            young: positive("Young's modulus", young)?,
-            yield_stress: positive("yield stress", yield_stress)?,
+            young: positive(Parameter::YoungsModulus, young)?,
+            yield_stress: positive(Parameter::YieldStress, yield_stress)?,
         })
     }
 

@@ -1,7 +1,7 @@
 //! Armstrong–Frederick non-linear kinematic hardening as a bipotential; not an integrated bulk law.
 
 use crate::duality::{Bipotential, at_most, restricted};
-use crate::error::{LawError, positive};
+use crate::error::{LawError, Parameter, positive};
 use moreau_mandel::{Sym2, deviator, equivalent_strain, trace, von_mises};
 use nalgebra::SVector;
 
@@ -31,9 +31,9 @@ impl ArmstrongFrederick {
     /// `NotPositive` unless all are positive and finite.
     pub fn new(yield_stress: f64, modulus: f64, recall: f64) -> Result<Self, LawError> {
         Ok(Self {
-            yield_stress: positive("yield stress", yield_stress)?,
-            modulus: positive("kinematic modulus", modulus)?,
-            recall: positive("recall", recall)?,
+            yield_stress: positive(Parameter::YieldStress, yield_stress)?,
+            modulus: positive(Parameter::KinematicModulus, modulus)?,
+            recall: positive(Parameter::Recall, recall)?,
         })
     }
 

@@ -2,7 +2,7 @@
 //! integrated bulk law.
 
 use crate::duality::{Bipotential, at_most, restricted};
-use crate::error::{LawError, positive};
+use crate::error::{LawError, Parameter, positive};
 use moreau_mandel::{Sym2, deviator, equivalent_strain, trace, von_mises};
 use nalgebra::SVector;
 
@@ -41,7 +41,7 @@ impl Lemaitre {
             return Err(LawError::DamageOutOfRange { damage });
         }
         Ok(Self {
-            yield_stress: positive("yield stress", yield_stress)?,
+            yield_stress: positive(Parameter::YieldStress, yield_stress)?,
             strength: positive("damage strength", strength)?,
             exponent: positive("damage exponent", exponent)?,
             damage,
