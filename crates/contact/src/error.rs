@@ -34,11 +34,19 @@ pub enum ContactError {
     /// by contact alone.
     #[error(
         "the interface stiffness is not positive definite (pivot of component {component}): \
-         {solver} needs bodies held without contact; semismooth Newton does not"
+         this contact method needs bodies held without contact; semismooth Newton does not"
     )]
     Floating {
-        /// The method.
-        solver: &'static str,
+        /// Component at which the factorisation broke down.
+        component: usize,
+    },
+    /// A matrix that a problem is built from has no inverse.
+    #[error(
+        "{what} has no positive pivot at component {component}, expected a positive definite matrix"
+    )]
+    Indefinite {
+        /// The matrix.
+        what: &'static str,
         /// Component at which the factorisation broke down.
         component: usize,
     },

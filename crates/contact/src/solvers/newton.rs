@@ -1,105 +1,12 @@
 //! Semismooth Newton method on the local form, regularised by a proximal point; not the method on the
 //! condensed stiffness, see `SemismoothNewton`.
 
-use super::blocks::{BlockMatrix, Factor};
+use super::NewtonMap;
 use super::elimination::Elimination;
-use super::problem::LocalProblem;
-use moreau_laws::{Coulomb, Local};
+use super::newton_map::Linearised;
+use crate::problem::{BlockMatrix, Factor, LocalProblem};
+use moreau_laws::Local;
 use nalgebra::SMatrix;
-
-/// The equation F(r, u) = 0 that Newton's method solves in place of the contact law.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum NewtonMap {
-    /// P. Alart and A. Curnier's augmented Lagrangian: r_n = (r_n − ρ_n u_n)⁺, and r_t the
-    /// projection of r_t − ρ_t u_t on the disc of radius μ (r_n − ρ_n u_n)⁺ (*Comput. Methods Appl.
-    /// Mech. Engrg.* 92 (1991) 353-375).
-    #[default]
-    AlartCurnier,
-    /// The same with the disc of radius μ r_n⁺, after M. Jean and J. J. Moreau.
-    JeanMoreau,
-    /// The natural map r − proj(r − ρ ũ, K_μ) of \[90′\].
-    Natural,
-}
-
-/// F of a contact with its derivatives: dF = A dr + B du.
-struct Linearised<const D: usize> {
-    map: Local<D>,
-    force: SMatrix<f64, D, D>,
-    displacement: SMatrix<f64, D, D>,
-}
-
-impl NewtonMap {
-    fn linearise<const D: usize>(
-        self,
-        law: &Coulomb,
-        rho: &Local<D>,
-        r: &Local<D>,
-        u: &Local<D>,
-    ) -> Linearised<D> {
-        let mut at = Linearised {
-            map: Local::zeros(),
-            force: SMatrix::zeros(),
-            displacement: SMatrix::zeros(),
-        };
-        if self == Self::Natural {
-            let rho = rho.mean();
-            let prediction = r - rho * law.shifted(u);
-            let projector = law.project_jacobian(&prediction);
-            at.map = r - law.project(&prediction);
-            at.force = SMatrix::identity() - projector;
-            at.displacement = rho * projector * law.shifted_jacobian(u);
-            return at;
-        }
-        let mu = law.friction();
-        let prediction = r - rho.component_mul(u);
-        let closed = prediction[0] > 0.0;
-        if closed {
-            at.map[0] = rho[0] * u[0];
-            at.displacement[(0, 0)] = rho[0];
-        } else {
-            at.map[0] = r[0];
-            at.force[(0, 0)] = 1.0;
-        }
-        let pressure = if self == Self::AlartCurnier {
-            prediction[0]
-        } else {
-            r[0]
-        };
-        let radius = mu * pressure.max(0.0);
-        let size = (1..D)
-            .map(|k| prediction[k] * prediction[k])
-            .sum::<f64>()
-            .sqrt();
-        if size <= radius && radius > 0.0 {
-            for k in 1..D {
-                at.map[k] = rho[k] * u[k];
-                at.displacement[(k, k)] = rho[k];
-            }
-            return at;
-        }
-        for k in 1..D {
-            at.map[k] = r[k];
-            at.force[(k, k)] = 1.0;
-        }
-        if radius > 0.0 {
-            let shrunk = radius / size;
-            for k in 1..D {
-                let d_k = prediction[k] / size;
-                at.map[k] -= radius * d_k;
-                for l in 1..D {
-                    let turned = if k == l { 1.0 } else { 0.0 } - d_k * prediction[l] / size;
-                    at.force[(k, l)] -= shrunk * turned;
-                    at.displacement[(k, l)] += shrunk * rho[l] * turned;
-                }
-                at.force[(k, 0)] -= mu * d_k;
-                if self == Self::AlartCurnier {
-                    at.displacement[(k, 0)] += mu * rho[0] * d_k;
-                }
-            }
-        }
-        at
-    }
-}
 
 /// u = W r + q + α |W_ii| (r − c): the problem with a compliance about the forces c at every
 /// contact. It has the same solution as the problem itself where c is one, and a regular operator
@@ -110,7 +17,16 @@ pub(super) struct Proximal<'a, const D: usize> {
     pub(super) centre: &'a [Local<D>],
 }
 
-impl<const D: usize> Proximal<'_, D> {
+impl<'a, const D: usize> Proximal<'a, D> {
+    /// The problem itself.
+    pub(super) fn exact(problem: &'a LocalProblem<D>) -> Self {
+        Self {
+            problem,
+            alpha: 0.0,
+            centre: &[],
+        }
+    }
+
     /// Compliance added at contact i.
     #[inline]
     pub(super) fn spring(&self, i: usize) -> f64 {
@@ -119,9 +35,11 @@ impl<const D: usize> Proximal<'_, D> {
 
     #[inline]
     pub(super) fn displacement_at(&self, i: usize, r: &[Local<D>]) -> Local<D> {
-        self.problem.operator().row_times(i, r)
-            + self.problem.free()[i]
-            + (r[i] - self.centre[i]) * self.spring(i)
+        let own = self.problem.operator().row_times(i, r) + self.problem.free()[i];
+        match self.centre.get(i) {
+            Some(centre) => own + (r[i] - centre) * self.spring(i),
+            None => own,
+        }
     }
 
     pub(super) fn displacement(&self, r: &[Local<D>]) -> Vec<Local<D>> {
@@ -262,10 +180,7 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
 
     fn iterate(&self, r: Vec<Local<D>>, u: Vec<Local<D>>) -> Iterate<D> {
         let p = self.problem.problem;
-        let linearise = |i| {
-            let law: &Coulomb = &p.friction()[i];
-            self.map.linearise(law, &self.rho[i], &r[i], &u[i])
-        };
+        let linearise = |i| self.map.linearise(&p.laws()[i], &self.rho[i], &r[i], &u[i]);
         let at: Vec<Linearised<D>> = (0..r.len()).map(linearise).collect();
         // Multiplied by a compliance a square is an energy: unlike contacts weigh alike.
         let energy = |(i, at): (usize, &Linearised<D>)| at.map.norm_squared() * p.compliance(i);
@@ -408,50 +323,5 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
             force[i] = solved;
         }
         Some(self.check(now, opens, force).0)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A and B are the derivatives of F, in every branch of every map.
-    #[test]
-    fn derivatives_are_those_of_the_map() {
-        let law = Coulomb::new(0.6).expect("valid");
-        let rho = Local::<3>::new(1.3, 0.7, 0.7);
-        let points = [
-            ([1.0, 0.2, 0.1], [0.1, 0.05, -0.1]),
-            ([1.0, 0.9, -0.5], [0.1, -0.8, 0.3]),
-            ([0.1, 0.2, 0.1], [0.9, -0.8, 0.3]),
-            ([-0.4, 0.2, 0.1], [-0.9, -0.8, 0.3]),
-        ];
-        for map in [
-            NewtonMap::AlartCurnier,
-            NewtonMap::JeanMoreau,
-            NewtonMap::Natural,
-        ] {
-            let rho = if map == NewtonMap::Natural {
-                Local::repeat(rho.mean())
-            } else {
-                rho
-            };
-            for (r, u) in points {
-                let (r, u) = (Local::<3>::from(r), Local::<3>::from(u));
-                let at = map.linearise(&law, &rho, &r, &u);
-                for k in 0..3 {
-                    let mut d = Local::<3>::zeros();
-                    d[k] = 1e-6;
-                    let f = |r: &Local<3>, u: &Local<3>| map.linearise(&law, &rho, r, u).map;
-                    let by_force = (f(&(r + d), &u) - f(&(r - d), &u)) / 2e-6;
-                    let by_displacement = (f(&r, &(u + d)) - f(&r, &(u - d))) / 2e-6;
-                    assert!(
-                        (by_force - at.force.column(k)).norm() < 1e-8,
-                        "{map:?} {r} {u}"
-                    );
-                    assert!((by_displacement - at.displacement.column(k)).norm() < 1e-8);
-                }
-            }
-        }
     }
 }
