@@ -90,3 +90,35 @@ pub enum ContactError {
         tolerance: f64,
     },
 }
+
+/// Whether the parts of a problem (name, entries found, expected) fit together.
+///
+/// # Errors
+/// [`ContactError::Dimension`] of the first that does not.
+pub(crate) fn expect_sizes(
+    parts: impl IntoIterator<Item = (&'static str, usize, usize)>,
+) -> Result<(), ContactError> {
+    let unlike = |&(_, found, expected): &(_, usize, usize)| found != expected;
+    match parts.into_iter().find(unlike) {
+        Some((what, found, expected)) => Err(ContactError::Dimension {
+            what,
+            found,
+            expected,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Whether all numbers of a part are finite.
+///
+/// # Errors
+/// [`ContactError::NotFinite`].
+pub(crate) fn expect_finite<'a>(
+    what: &'static str,
+    numbers: impl IntoIterator<Item = &'a f64>,
+) -> Result<(), ContactError> {
+    match numbers.into_iter().all(|v| v.is_finite()) {
+        true => Ok(()),
+        false => Err(ContactError::NotFinite { what }),
+    }
+}

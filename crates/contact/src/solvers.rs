@@ -49,6 +49,16 @@ pub struct Tolerance {
     pub iterations: usize,
 }
 
+impl Tolerance {
+    /// From a residual and a number of iterations.
+    pub fn new(relative: f64, iterations: usize) -> Self {
+        Self {
+            relative,
+            iterations,
+        }
+    }
+}
+
 /// Solution of a contact problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSolution<const D: usize> {

@@ -134,9 +134,9 @@ impl<const D: usize> BlockMatrix<D> {
         sum
     }
 
-    /// Whether all entries are finite.
-    pub(crate) fn is_finite(&self) -> bool {
-        self.blocks.iter().flatten().all(|v| v.is_finite())
+    /// All entries of the stored blocks.
+    pub(crate) fn entries(&self) -> impl Iterator<Item = &f64> {
+        self.blocks.iter().flatten()
     }
 }
 

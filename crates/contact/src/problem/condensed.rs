@@ -2,6 +2,7 @@
 
 use super::{BlockMatrix, LocalProblem, criticality, split, stack, statuses};
 use crate::ContactError;
+use crate::error::{expect_finite, expect_sizes};
 use moreau_laws::{Friction, Local, Status};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
@@ -39,32 +40,17 @@ impl<const D: usize> ContactProblem<D> {
         previous: Vec<Local<D>>,
     ) -> Result<Self, ContactError> {
         let contacts = laws.len();
-        for (what, found, expected) in [
+        expect_sizes([
             ("stiffness rows", stiffness.nrows(), D * contacts),
             ("stiffness columns", stiffness.ncols(), D * contacts),
             ("load", load.len(), D * contacts),
             ("origin", origin.len(), contacts),
             ("previous", previous.len(), contacts),
-        ] {
-            if found != expected {
-                return Err(ContactError::Dimension {
-                    what,
-                    found,
-                    expected,
-                });
-            }
-        }
-        let finite = |all: &[Local<D>]| all.iter().flat_map(|v| v.iter()).all(|v| v.is_finite());
-        for (what, ok) in [
-            ("stiffness", stiffness.iter().all(|v| v.is_finite())),
-            ("load", load.iter().all(|v| v.is_finite())),
-            ("origin", finite(&origin)),
-            ("previous", finite(&previous)),
-        ] {
-            if !ok {
-                return Err(ContactError::NotFinite { what });
-            }
-        }
+        ])?;
+        expect_finite("stiffness", &stiffness)?;
+        expect_finite("load", &load)?;
+        expect_finite("origin", origin.iter().flatten())?;
+        expect_finite("previous", previous.iter().flatten())?;
         Ok(Self {
             stiffness,
             load,
@@ -85,13 +71,10 @@ impl<const D: usize> ContactProblem<D> {
         laws: Vec<impl Into<Friction>>,
     ) -> Result<Self, ContactError> {
         let size = D * laws.len();
-        if operator.shape() != (size, size) {
-            return Err(ContactError::Dimension {
-                what: "Delassus operator",
-                found: operator.nrows(),
-                expected: size,
-            });
-        }
+        expect_sizes([
+            ("Delassus operator's rows", operator.nrows(), size),
+            ("Delassus operator's columns", operator.ncols(), size),
+        ])?;
         let singular = |component| ContactError::Indefinite {
             what: "Delassus operator",
             component,

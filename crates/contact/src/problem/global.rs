@@ -3,6 +3,7 @@
 
 use super::local::over;
 use super::{BlockMatrix, Factor, LocalProblem, Residual};
+use crate::error::{expect_finite, expect_sizes};
 use crate::{ContactError, LocalSolution, LocalSolver, Unsolved};
 use moreau_laws::{Friction, Local};
 
@@ -80,20 +81,10 @@ impl<const D: usize> GlobalProblem<D> {
                     expected: if beyond_rows { rows } else { columns },
                 });
             }
-            if entries.iter().any(|(.., v)| !v.is_finite()) {
-                return Err(ContactError::NotFinite { what });
-            }
+            expect_finite(what, entries.iter().map(|(.., v)| v))?;
         }
-        if load.iter().any(|v| !v.is_finite()) {
-            return Err(ContactError::NotFinite { what: "load" });
-        }
-        if free.len() != contacts {
-            return Err(ContactError::Dimension {
-                what: "free displacements",
-                found: free.len(),
-                expected: contacts,
-            });
-        }
+        expect_finite("load", &load)?;
+        expect_sizes([("free displacements", free.len(), contacts)])?;
         let mut bodies = bodies(n, &stiffness)?;
         let operator = delassus(contacts, &mut bodies, &directions)?;
         let at_rest = solve(&mut bodies, &load)?;

@@ -2,6 +2,7 @@
 //! not the bodies, see [`GlobalProblem`](crate::GlobalProblem).
 
 use super::{BlockMatrix, criticality, statuses};
+use crate::error::{expect_finite, expect_sizes};
 use crate::{ContactError, Springs};
 use moreau_laws::{Friction, Local, Status};
 use nalgebra::{DMatrix, DVector, Matrix3, SMatrix};
@@ -81,58 +82,30 @@ impl<const D: usize> LocalProblem<D> {
         laws: Vec<impl Into<Friction>>,
     ) -> Result<Self, ContactError> {
         let contacts = laws.len();
-        for (what, found) in [
-            ("Delassus operator", operator.contacts()),
-            ("free displacements", free.len()),
-        ] {
-            if found != contacts {
-                return Err(ContactError::Dimension {
-                    what,
-                    found,
-                    expected: contacts,
-                });
-            }
+        expect_sizes([
+            ("Delassus operator", operator.contacts(), contacts),
+            ("free displacements", free.len(), contacts),
+        ])?;
+        expect_finite("Delassus operator", operator.entries())?;
+        expect_finite("free displacements", free.iter().flatten())?;
+        let own: Vec<_> = (0..contacts).map(|i| operator.diagonal(i)).collect();
+        if let Some(contact) = own.iter().position(|own| own[(0, 0)] <= 0.0) {
+            return Err(ContactError::Rigid {
+                contact,
+                compliance: own[contact][(0, 0)],
+            });
         }
-        for (what, finite) in [
-            ("Delassus operator", operator.is_finite()),
-            (
-                "free displacements",
-                free.iter().flatten().all(|v| v.is_finite()),
-            ),
-        ] {
-            if !finite {
-                return Err(ContactError::NotFinite { what });
-            }
-        }
-        let problem = Self {
-            own: Vec::new(),
-            compliance: Vec::new(),
-            load: 0.0,
+        let compliance: Vec<f64> = own.iter().map(spectral_norm).collect();
+        let scaled = |(q, w): (&Local<D>, &f64)| (q / *w).norm_squared();
+        let load = free.iter().zip(&compliance).map(scaled).sum::<f64>().sqrt();
+        Ok(Self {
+            own,
             operator,
             free,
             laws: laws.into_iter().map(Into::into).collect(),
-        }
-        .weighed();
-        let normal = |own: &SMatrix<f64, D, D>| own[(0, 0)];
-        match problem.own.iter().position(|own| normal(own) <= 0.0) {
-            Some(contact) => Err(ContactError::Rigid {
-                contact,
-                compliance: normal(problem.own(contact)),
-            }),
-            None => Ok(problem),
-        }
-    }
-
-    /// With all that follows from W and q.
-    fn weighed(mut self) -> Self {
-        self.own = (0..self.contacts())
-            .map(|i| self.operator.diagonal(i))
-            .collect();
-        self.compliance = self.own.iter().map(spectral_norm).collect();
-        let scaled = |(q, w): (&Local<D>, &f64)| (q / *w).norm_squared();
-        let squares = self.free.iter().zip(&self.compliance).map(scaled);
-        self.load = squares.sum::<f64>().sqrt();
-        self
+            compliance,
+            load,
+        })
     }
 
     /// Number of contacts.
@@ -281,13 +254,16 @@ impl<const D: usize> LocalProblem<D> {
     }
 
     /// The problem with springs in series: u = (W + C) t + q − C t*, whose u is the part of the
-    /// displacement that obeys the law.
-    pub(crate) fn in_series(mut self, springs: &[Springs<D>]) -> Self {
-        for (i, spring) in springs.iter().enumerate() {
-            self.operator.add_to_diagonal(i, &spring.compliance);
-            self.free[i] -= spring.compliance.component_mul(&spring.force);
+    /// displacement that obeys the law. Residuals are measured as those of the problem without them.
+    pub(crate) fn in_series(&self, springs: impl Fn(usize) -> Springs<D>) -> Self {
+        let mut problem = self.clone();
+        for i in 0..self.contacts() {
+            let Springs { compliance, force } = springs(i);
+            problem.operator.add_to_diagonal(i, &compliance);
+            problem.own[i] += SMatrix::from_diagonal(&compliance);
+            problem.free[i] -= compliance.component_mul(&force);
         }
-        self.weighed()
+        problem
     }
 }
 

@@ -23,10 +23,7 @@ pub struct Admm {
 impl Default for Admm {
     fn default() -> Self {
         Self {
-            tolerance: Tolerance {
-                relative: TOLERANCE,
-                iterations: 20_000,
-            },
+            tolerance: Tolerance::new(TOLERANCE, 20_000),
         }
     }
 }

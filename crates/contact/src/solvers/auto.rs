@@ -2,7 +2,6 @@
 
 use super::gauss_seidel::sweep;
 use super::local::{Best, TOLERANCE, start};
-use super::newton::Proximal;
 use super::{
     Admm, GaussSeidel, LocalSolution, LocalSolver, NewtonMap, ProximalNewton, Reason, Tolerance,
     TrescaFixedPoint, Unsolved, Uzawa,
@@ -70,10 +69,7 @@ impl<const D: usize> LocalSolver<D> for Auto {
 /// The methods after the sweeps, each from the point that the last one left, or where that has led nowhere
 /// from nothing.
 fn methods<const D: usize>() -> [(Box<dyn LocalSolver<D>>, bool); 8] {
-    let cap = |iterations| Tolerance {
-        relative: TOLERANCE,
-        iterations,
-    };
+    let cap = |iterations| Tolerance::new(TOLERANCE, iterations);
     let newton = |map, iterations| -> Box<dyn LocalSolver<D>> {
         Box::new(ProximalNewton {
             map,
@@ -110,14 +106,13 @@ fn sweeps<const D: usize>(
     mut r: Vec<Local<D>>,
     tolerance: f64,
 ) -> LocalSolution<D> {
-    let exact = Proximal::exact(problem);
     let size = |r: &[Local<D>]| problem.size(r, &problem.displacement(r));
     let (mut best, mut least) = (r.clone(), size(&r));
     let (mut sweeps, mut arrived) = (0, 0);
     while least > tolerance {
         for _ in 0..LOOK {
             sweeps += 1;
-            if sweep(&exact, &mut r) <= 0.1 * tolerance {
+            if sweep(problem, &mut r) <= 0.1 * tolerance {
                 break;
             }
         }

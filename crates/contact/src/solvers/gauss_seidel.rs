@@ -2,7 +2,6 @@
 
 use super::fixed_point::fixed_point;
 use super::local::{Best, LocalSolver, Reason, Unsolved, start};
-use super::newton::Proximal;
 use super::one_contact::{self, Bound};
 use super::{ContactSolution, ContactSolver, Goal, LocalSolution, Tolerance, forces};
 use crate::{ContactError, ContactProblem, LocalProblem};
@@ -22,10 +21,7 @@ pub struct GaussSeidel {
 impl Default for GaussSeidel {
     fn default() -> Self {
         Self {
-            tolerance: Tolerance {
-                relative: 1e-10,
-                iterations: 200_000,
-            },
+            tolerance: Tolerance::new(1e-10, 200_000),
         }
     }
 }
@@ -50,9 +46,8 @@ impl GaussSeidel {
         start: Vec<Local<D>>,
         goal: &Goal<D>,
     ) -> Result<ContactSolution<D>, ContactError> {
-        let exact = Proximal::exact(form);
         let swept = |mut t: Vec<Local<D>>| {
-            sweep(&exact, &mut t);
+            sweep(form, &mut t);
             t
         };
         fixed_point(form, start, swept, |k, t, u| goal.judge(NAME, k, t, u))
@@ -78,14 +73,13 @@ impl<const D: usize> LocalSolver<D> for GaussSeidel {
     ) -> Result<LocalSolution<D>, Unsolved<D>> {
         let mut r = start(problem, guess);
         let mut best = Best::new(LocalSolution::at(problem, r.clone(), 0, NAME));
-        let exact = Proximal::exact(problem);
         let mut cycle = Cycle::new(r.clone());
         let mut reason = Reason::Iterations;
         for sweeps in 1..=self.tolerance.iterations {
             if best.size() <= tolerance {
                 break;
             }
-            let change = sweep(&exact, &mut r);
+            let change = sweep(problem, &mut r);
             if sweeps % LOOK == 0 || change <= tolerance {
                 let now = LocalSolution::at(problem, r.clone(), sweeps, NAME);
                 if best.take(now, sweeps) > PATIENCE {
@@ -142,26 +136,22 @@ impl<const D: usize> Cycle<D> {
 }
 
 /// One sweep over all contacts, the forces of all others frozen; the relative change of the forces.
-pub(super) fn sweep<const D: usize>(problem: &Proximal<D>, r: &mut [Local<D>]) -> f64 {
-    let laws = problem.problem.laws();
+pub(super) fn sweep<const D: usize>(problem: &LocalProblem<D>, r: &mut [Local<D>]) -> f64 {
+    let laws = problem.laws();
     sweep_under(problem, |i| Bound::of(&laws[i]), r)
 }
 
 /// One sweep with other bounds of the shear than those of the laws.
 pub(super) fn sweep_under<const D: usize>(
-    problem: &Proximal<D>,
+    problem: &LocalProblem<D>,
     bound: impl Fn(usize) -> Bound,
     r: &mut [Local<D>],
 ) -> f64 {
-    let p = problem.problem;
     let (mut change, mut size) = (0.0, 0.0);
     for i in 0..r.len() {
-        let mut own = *p.own(i);
-        for k in 0..D {
-            own[(k, k)] += problem.spring(i);
-        }
-        let q = problem.displacement_at(i, r) - own * r[i];
-        let updated = one_contact::solve((&own, &q), &p.laws()[i], bound(i), &r[i]);
+        let own = problem.own(i);
+        let q = problem.operator().row_times(i, r) + problem.free()[i] - own * r[i];
+        let updated = one_contact::solve((own, &q), &problem.laws()[i], bound(i), &r[i]);
         change += (updated - r[i]).norm_squared();
         size += updated.norm_squared();
         r[i] = updated;

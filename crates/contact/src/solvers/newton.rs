@@ -1,5 +1,5 @@
-//! Semismooth Newton method on the local form, regularised by a proximal point; not the method on the
-//! condensed stiffness, see `SemismoothNewton`.
+//! Semismooth Newton method on the local form; not the method on the condensed stiffness, see
+//! `SemismoothNewton`, nor what makes a singular W regular, see `ProximalNewton`.
 
 use super::NewtonMap;
 use super::elimination::Elimination;
@@ -7,45 +7,6 @@ use super::newton_map::Linearised;
 use crate::problem::{BlockMatrix, Factor, LocalProblem};
 use moreau_laws::Local;
 use nalgebra::SMatrix;
-
-/// u = W r + q + α |W_ii| (r − c): the problem with a compliance about the forces c at every
-/// contact. It has the same solution as the problem itself where c is one, and a regular operator
-/// whatever the rank of W.
-pub(super) struct Proximal<'a, const D: usize> {
-    pub(super) problem: &'a LocalProblem<D>,
-    pub(super) alpha: f64,
-    pub(super) centre: &'a [Local<D>],
-}
-
-impl<'a, const D: usize> Proximal<'a, D> {
-    /// The problem itself.
-    pub(super) fn exact(problem: &'a LocalProblem<D>) -> Self {
-        Self {
-            problem,
-            alpha: 0.0,
-            centre: &[],
-        }
-    }
-
-    /// Compliance added at contact i.
-    #[inline]
-    pub(super) fn spring(&self, i: usize) -> f64 {
-        self.alpha * self.problem.compliance(i)
-    }
-
-    #[inline]
-    pub(super) fn displacement_at(&self, i: usize, r: &[Local<D>]) -> Local<D> {
-        let own = self.problem.operator().row_times(i, r) + self.problem.free()[i];
-        match self.centre.get(i) {
-            Some(centre) => own + (r[i] - centre) * self.spring(i),
-            None => own,
-        }
-    }
-
-    pub(super) fn displacement(&self, r: &[Local<D>]) -> Vec<Local<D>> {
-        (0..r.len()).map(|i| self.displacement_at(i, r)).collect()
-    }
-}
 
 /// Earlier merits among which the largest must decrease: full steps past a kink are let through.
 const MEMORY: usize = 5;
@@ -69,7 +30,7 @@ pub(super) struct Run<const D: usize> {
 /// Newton's method with a nonmonotone line search, from r until the residual is at most `target` or
 /// the iteration stalls; the best iterate met.
 pub(super) fn newton<const D: usize>(
-    problem: &Proximal<D>,
+    problem: &LocalProblem<D>,
     map: NewtonMap,
     elimination: &mut Option<Elimination<D>>,
     start: &[Local<D>],
@@ -144,8 +105,8 @@ struct Step<const D: usize> {
     displacement: Vec<Local<D>>,
 }
 
-struct Method<'a, 'b, const D: usize> {
-    problem: &'a Proximal<'b, D>,
+struct Method<'a, const D: usize> {
+    problem: &'a LocalProblem<D>,
     map: NewtonMap,
     elimination: &'a mut Option<Elimination<D>>,
     /// ρ of every component.
@@ -157,14 +118,14 @@ struct Method<'a, 'b, const D: usize> {
 const REFINE: f64 = 1e-6;
 const REFUSE: f64 = 1e-3;
 
-impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
+impl<'a, const D: usize> Method<'a, D> {
     fn new(
-        problem: &'a Proximal<'b, D>,
+        problem: &'a LocalProblem<D>,
         map: NewtonMap,
         elimination: &'a mut Option<Elimination<D>>,
     ) -> Self {
         let rho = |i: usize| {
-            let own = problem.problem.own(i);
+            let own = problem.own(i);
             let tangential = (1..D).map(|k| own[(k, k)]).sum::<f64>() / (D.max(2) - 1) as f64;
             let mut rho = Local::repeat(1.0 / tangential.max(1e-3 * own[(0, 0)]));
             rho[0] = 1.0 / own[(0, 0)];
@@ -174,12 +135,12 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
             problem,
             map,
             elimination,
-            rho: (0..problem.problem.contacts()).map(rho).collect(),
+            rho: (0..problem.contacts()).map(rho).collect(),
         }
     }
 
     fn iterate(&self, r: Vec<Local<D>>, u: Vec<Local<D>>) -> Iterate<D> {
-        let p = self.problem.problem;
+        let p = self.problem;
         let linearise = |i| self.map.linearise(&p.laws()[i], &self.rho[i], &r[i], &u[i]);
         let at: Vec<Linearised<D>> = (0..r.len()).map(linearise).collect();
         // Multiplied by a compliance a square is an energy: unlike contacts weigh alike.
@@ -223,24 +184,11 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
         opens: &[bool],
         force: Vec<Local<D>>,
     ) -> Option<Step<D>> {
-        let operator = self.problem.problem.operator();
         elimination.factorise(|i, add| {
-            let at = &now.at[i];
-            if opens[i] {
-                return false;
+            if !opens[i] {
+                self.row(i, now, opens).for_each(|(j, block)| add(j, block));
             }
-            for (j, block) in operator.row(i).filter(|(j, _)| !opens[*j]) {
-                let spread = at.displacement * block;
-                add(
-                    j,
-                    if j == i {
-                        spread + self.own(i, at)
-                    } else {
-                        spread
-                    },
-                );
-            }
-            true
+            !opens[i]
         })?;
         let size: f64 = now.at.iter().map(|at| at.map.norm_squared()).sum();
         let (mut step, mut left, _) = self.check(now, opens, force);
@@ -259,9 +207,19 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
         None
     }
 
-    /// A + s B of a contact.
-    fn own(&self, i: usize, at: &Linearised<D>) -> SMatrix<f64, D, D> {
-        at.force + at.displacement * self.problem.spring(i)
+    /// The blocks A + B W of a contact's row of the matrix, at contacts that do not open.
+    fn row(
+        &self,
+        i: usize,
+        now: &Iterate<D>,
+        opens: &[bool],
+    ) -> impl Iterator<Item = (usize, SMatrix<f64, D, D>)> {
+        let at = &now.at[i];
+        let active = self.problem.operator().row(i).filter(|(j, _)| !opens[*j]);
+        active.map(move |(j, block)| {
+            let spread = at.displacement * block;
+            (j, if j == i { spread + at.force } else { spread })
+        })
     }
 
     /// A step with its change of u, what it leaves of Newton's equation, and the square of that.
@@ -271,8 +229,8 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
         opens: &[bool],
         force: Vec<Local<D>>,
     ) -> (Step<D>, Vec<Local<D>>, f64) {
-        let operator = self.problem.problem.operator();
-        let change = |i| operator.row_times(i, &force) + force[i] * self.problem.spring(i);
+        let operator = self.problem.operator();
+        let change = |i| operator.row_times(i, &force);
         let displacement: Vec<Local<D>> = (0..force.len()).map(change).collect();
         let left = |(i, at): (usize, &Linearised<D>)| match opens[i] {
             true => Local::zeros(),
@@ -294,7 +252,6 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
         opens: &[bool],
         mut force: Vec<Local<D>>,
     ) -> Option<Step<D>> {
-        let operator = self.problem.problem.operator();
         let mut place = vec![usize::MAX; force.len()];
         let active: Vec<usize> = (0..force.len()).filter(|i| !opens[*i]).collect();
         for (at, &i) in active.iter().enumerate() {
@@ -302,19 +259,8 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
         }
         let mut matrix = BlockMatrix::empty();
         for &i in &active {
-            let at = &now.at[i];
-            let row = operator.row(i).filter(|(j, _)| !opens[*j]);
-            matrix.push_row(row.map(|(j, block)| {
-                let spread = at.displacement * block;
-                (
-                    place[j],
-                    if j == i {
-                        spread + self.own(i, at)
-                    } else {
-                        spread
-                    },
-                )
-            }));
+            let row = self.row(i, now, opens);
+            matrix.push_row(row.map(|(j, block)| (place[j], block)));
         }
         let (_, left, _) = self.check(now, opens, force.clone());
         let rhs: Vec<Local<D>> = active.iter().map(|&i| left[i]).collect();

@@ -37,10 +37,7 @@ impl Penalty {
         Ok(Self {
             normal,
             tangent,
-            tolerance: Tolerance {
-                relative: 1e-12,
-                iterations: 300,
-            },
+            tolerance: Tolerance::new(1e-12, 300),
         })
     }
 

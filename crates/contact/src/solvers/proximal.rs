@@ -4,9 +4,9 @@
 use super::elimination::Elimination;
 use super::gauss_seidel::sweep;
 use super::local::{Best, TOLERANCE, start};
-use super::newton::{Proximal, Run, newton};
+use super::newton::{Run, newton};
 use super::{LocalSolution, LocalSolver, NewtonMap, Reason, Tolerance, Unsolved};
-use crate::LocalProblem;
+use crate::{LocalProblem, Springs};
 use moreau_laws::Local;
 
 /// Semismooth Newton on u = W r + q with a nonmonotone line search; it needs a W that is regular on
@@ -23,10 +23,7 @@ impl Default for Newton {
     fn default() -> Self {
         Self {
             map: NewtonMap::default(),
-            tolerance: Tolerance {
-                relative: TOLERANCE,
-                iterations: 200,
-            },
+            tolerance: Tolerance::new(TOLERANCE, 200),
         }
     }
 }
@@ -43,10 +40,9 @@ impl<const D: usize> LocalSolver<D> for Newton {
         tolerance: f64,
     ) -> Result<LocalSolution<D>, Unsolved<D>> {
         let from = start(problem, guess);
-        let exact = Proximal::exact(problem);
         let mut elimination = Elimination::new(problem.operator());
         let limit = self.tolerance.iterations;
-        let run = newton(&exact, self.map, &mut elimination, &from, tolerance, limit);
+        let run = newton(problem, self.map, &mut elimination, &from, tolerance, limit);
         let reason = if run.iterations == limit {
             Reason::Iterations
         } else if run.singular {
@@ -77,10 +73,7 @@ impl Default for ProximalNewton {
     fn default() -> Self {
         Self {
             map: NewtonMap::default(),
-            tolerance: Tolerance {
-                relative: TOLERANCE,
-                iterations: 5_000,
-            },
+            tolerance: Tolerance::new(TOLERANCE, 5_000),
         }
     }
 }
@@ -180,11 +173,11 @@ impl<const D: usize> Path<D> {
             factor,
             ..
         } = self;
-        let softened = Proximal {
-            problem,
-            alpha: (*factor * size.powf(SOFTNESS)).clamp(ALPHA[0], ALPHA[1]),
-            centre,
-        };
+        let alpha = (*factor * size.powf(SOFTNESS)).clamp(ALPHA[0], ALPHA[1]);
+        let softened = problem.in_series(|i| Springs {
+            compliance: Local::repeat(alpha * problem.compliance(i)),
+            force: centre[i],
+        });
         let mut run = newton(&softened, *map, elimination, centre, target, STEPS);
         if run.residual > target {
             for _ in 0..SWEEPS {

@@ -24,10 +24,7 @@ pub struct SemismoothNewton {
 impl Default for SemismoothNewton {
     fn default() -> Self {
         Self {
-            tolerance: Tolerance {
-                relative: 1e-12,
-                iterations: 300,
-            },
+            tolerance: Tolerance::new(1e-12, 300),
         }
     }
 }
@@ -194,7 +191,7 @@ impl<const D: usize> Newton<'_, D> {
     /// Displacements after sweeps of another method, with the springs in series with the structure.
     fn sweep(&self, t: &[Local<D>]) -> Result<Vec<Local<D>>, ContactError> {
         let p = self.problem;
-        let form = p.delassus()?.in_series(self.springs);
+        let form = p.delassus()?.in_series(|i| self.springs[i]);
         // A sweep costs 2 n² operations and a step up to ⅔ n³: no more of them than the attempts
         // with all parts may have taken, or a problem that neither solves takes a hundred times as
         // long as to cut the increment. What takes a tenth of a second is never too much.

@@ -3,7 +3,6 @@
 
 use super::gauss_seidel::sweep_under;
 use super::local::{Best, TOLERANCE, start};
-use super::newton::Proximal;
 use super::one_contact::Bound;
 use super::{LocalSolution, LocalSolver, Reason, Tolerance, Unsolved};
 use crate::LocalProblem;
@@ -23,10 +22,7 @@ pub struct TrescaFixedPoint {
 impl Default for TrescaFixedPoint {
     fn default() -> Self {
         Self {
-            tolerance: Tolerance {
-                relative: TOLERANCE,
-                iterations: 100_000,
-            },
+            tolerance: Tolerance::new(TOLERANCE, 100_000),
         }
     }
 }
@@ -50,7 +46,6 @@ impl<const D: usize> LocalSolver<D> for TrescaFixedPoint {
     ) -> Result<LocalSolution<D>, Unsolved<D>> {
         let mut r = start(problem, guess);
         let mut best = Best::new(LocalSolution::at(problem, r.clone(), 0, NAME));
-        let exact = Proximal::exact(problem);
         let (mut sweeps, mut updates) = (0, 0);
         let mut reason = Reason::Iterations;
         let mut size = best.size();
@@ -62,7 +57,7 @@ impl<const D: usize> LocalSolver<D> for TrescaFixedPoint {
             let bounds: Vec<Bound> = problem.laws().iter().zip(&r).map(bound).collect();
             for _ in 0..SWEEPS {
                 sweeps += 1;
-                if sweep_under(&exact, |i| bounds[i], &mut r) <= 0.01 * size.max(tolerance) {
+                if sweep_under(problem, |i| bounds[i], &mut r) <= 0.01 * size.max(tolerance) {
                     break;
                 }
             }

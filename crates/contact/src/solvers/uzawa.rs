@@ -25,10 +25,7 @@ pub struct Uzawa {
 impl Default for Uzawa {
     fn default() -> Self {
         Self {
-            tolerance: Tolerance {
-                relative: 1e-10,
-                iterations: 200_000,
-            },
+            tolerance: Tolerance::new(1e-10, 200_000),
         }
     }
 }
