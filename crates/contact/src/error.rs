@@ -34,11 +34,19 @@ pub enum ContactError {
     /// by contact alone.
     #[error(
         "the interface stiffness is not positive definite (pivot of component {component}): \
-         {solver} needs bodies held without contact; semismooth Newton does not"
+         this contact method needs bodies held without contact; semismooth Newton does not"
     )]
     Floating {
-        /// The method.
-        solver: &'static str,
+        /// Component at which the factorisation broke down.
+        component: usize,
+    },
+    /// A matrix that a problem is built from has no inverse.
+    #[error(
+        "{what} has no positive pivot at component {component}, expected a positive definite matrix"
+    )]
+    Indefinite {
+        /// The matrix.
+        what: &'static str,
         /// Component at which the factorisation broke down.
         component: usize,
     },
@@ -81,4 +89,36 @@ pub enum ContactError {
         /// Residual asked for \[N\].
         tolerance: f64,
     },
+}
+
+/// Whether the parts of a problem (name, entries found, expected) fit together.
+///
+/// # Errors
+/// [`ContactError::Dimension`] of the first that does not.
+pub(crate) fn expect_sizes(
+    parts: impl IntoIterator<Item = (&'static str, usize, usize)>,
+) -> Result<(), ContactError> {
+    let unlike = |&(_, found, expected): &(_, usize, usize)| found != expected;
+    match parts.into_iter().find(unlike) {
+        Some((what, found, expected)) => Err(ContactError::Dimension {
+            what,
+            found,
+            expected,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Whether all numbers of a part are finite.
+///
+/// # Errors
+/// [`ContactError::NotFinite`].
+pub(crate) fn expect_finite<'a>(
+    what: &'static str,
+    numbers: impl IntoIterator<Item = &'a f64>,
+) -> Result<(), ContactError> {
+    match numbers.into_iter().all(|v| v.is_finite()) {
+        true => Ok(()),
+        false => Err(ContactError::NotFinite { what }),
+    }
 }

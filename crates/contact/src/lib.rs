@@ -2,7 +2,7 @@
 //!
 //! | problem | form | solvers |
 //! |---|---|---|
-//! | [`ContactProblem`] | t = S (u − g) − f, a structure condensed on its interface | [`ContactSolver`] |
+//! | [`ContactProblem`] | t = S (u − g) − f, a structure condensed on its interface | [`ContactSolver`], and by [`Dual`] any of those for the local one |
 //! | [`TiedProblem`] | K Δu = f + Bᵀ t, a structure known by factors of K + BᵀRB | [`solve_tied`] |
 //! | [`LocalProblem`] | u = W r + q, W of any rank, dense or sparse | [`LocalSolver`], above all [`Auto`] |
 //! | [`GlobalProblem`] | M v = H r + f, u = Hᵀ v + w | the same, by reduction |
@@ -23,11 +23,10 @@
 //! let (u, t) = (&solution.displacement, &solution.force);
 //! // It slips against the friction force, and the certificate says that this is the solution.
 //! assert!((t[0][1] + 0.3 * t[0][0]).abs() < 1e-12 && u[0][1] > 0.0);
-//! assert!(Certificate::new(problem.friction(), u, t).bipotential_gap < 1e-12);
+//! assert!(Certificate::new(problem.laws(), u, t).bipotential_gap < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod discrete;
 mod error;
 mod obstacle;
 mod polyline;
@@ -35,16 +34,15 @@ mod problem;
 mod solvers;
 mod tied;
 
-pub use discrete::{
-    Admm, Auto, BlockMatrix, GlobalProblem, GlobalSolution, LocalProblem, LocalSolution,
-    LocalSolver, Newton, NewtonMap, ProximalNewton, Reason, Residual, TrescaFixedPoint, Unsolved,
-};
 pub use error::ContactError;
 pub use obstacle::{Ball, Corner, Cylinder, Obstacle, Plane, frame};
 pub use polyline::Polyline;
-pub use problem::{Certificate, ContactProblem, Delassus};
+pub use problem::{
+    BlockMatrix, Certificate, ContactProblem, GlobalProblem, GlobalSolution, LocalProblem, Residual,
+};
 pub use solvers::{
-    Anderson, ContactSolution, ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Tolerance,
-    Uzawa, solve_tied, uzawa_steps,
+    Admm, Anderson, Auto, ContactSolution, ContactSolver, Dual, GaussSeidel, LocalSolution,
+    LocalSolver, Newton, NewtonMap, Penalty, ProximalNewton, Reason, SemismoothNewton, Tolerance,
+    TrescaFixedPoint, Unsolved, Uzawa, solve_tied, uzawa_steps,
 };
 pub use tied::{Springs, Structure, TiedProblem};

@@ -1,38 +1,18 @@
-//! The condensed contact problem, its residual and its certificate; not how it is solved.
+//! The contact problems, and what is read off a pair (u, t) of any of them; not how they are solved.
 
-use crate::ContactError;
+mod blocks;
+mod condensed;
+mod global;
+mod local;
+
+pub use blocks::BlockMatrix;
+pub(crate) use blocks::Factor;
+pub use condensed::ContactProblem;
+pub use global::{GlobalProblem, GlobalSolution};
+pub use local::{LocalProblem, Residual};
+
 use moreau_laws::{Friction, Local, Status};
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
-
-/// The contact problem of one linearised increment, in the contacts' local frames:
-///
-/// ```text
-/// t = S (u − g) − f,      (−u, t) extremal for [38] at every contact.
-/// ```
-///
-/// u = (u_n, u_t) is the gap at the end of the step and the slip of the step \[mm\], t the contact
-/// force on the body \[N\]; S is the stiffness of the structure condensed on the interface \[N/mm\],
-/// symmetric positive semi-definite, `D·contacts` square; f the condensed load \[N\] and g the
-/// displacement about which the structure was linearised \[mm\].
-#[derive(Debug, Clone)]
-pub struct ContactProblem<const D: usize> {
-    stiffness: DMatrix<f64>,
-    load: DVector<f64>,
-    origin: Vec<Local<D>>,
-    friction: Vec<Friction>,
-    previous: Vec<Local<D>>,
-    /// Whether it has a proximal term.
-    held: bool,
-}
-
-/// The structure seen from its contacts: u = W t + q, with the Delassus operator W \[mm/N\].
-#[derive(Debug, Clone)]
-pub struct Delassus<const D: usize> {
-    /// W = S⁻¹, symmetric positive definite.
-    pub operator: DMatrix<f64>,
-    /// Displacement without contact forces, q = g + W f \[mm\].
-    pub free: DVector<f64>,
-}
+use nalgebra::DVector;
 
 /// How far a pair (u, t) is from the contact law: the bipotential gap and what it cannot see.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -48,14 +28,14 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// The certificate of displacements u and forces t under the laws of friction.
+    /// The certificate of displacements u and forces t under the laws.
     pub fn new<const D: usize>(
-        friction: &[impl Copy + Into<Friction>],
+        laws: &[impl Copy + Into<Friction>],
         u: &[Local<D>],
         t: &[Local<D>],
     ) -> Self {
         let mut certificate = Self::default();
-        for ((&law, u), t) in friction.iter().zip(u).zip(t) {
+        for ((&law, u), t) in laws.iter().zip(u).zip(t) {
             let law: Friction = law.into();
             let admissible = law.project(t);
             let mut open = *u;
@@ -68,225 +48,35 @@ impl Certificate {
     }
 }
 
-impl<const D: usize> ContactProblem<D> {
-    /// A problem from its parts; `previous` are the forces t₀ at the start of the step.
-    ///
-    /// # Errors
-    /// [`ContactError::Dimension`] if sizes disagree, [`ContactError::NotFinite`] for NaN or ∞.
-    pub fn new(
-        stiffness: DMatrix<f64>,
-        load: DVector<f64>,
-        origin: Vec<Local<D>>,
-        friction: Vec<impl Into<Friction>>,
-        previous: Vec<Local<D>>,
-    ) -> Result<Self, ContactError> {
-        let contacts = friction.len();
-        for (what, found, expected) in [
-            ("stiffness rows", stiffness.nrows(), D * contacts),
-            ("stiffness columns", stiffness.ncols(), D * contacts),
-            ("load", load.len(), D * contacts),
-            ("origin", origin.len(), contacts),
-            ("previous", previous.len(), contacts),
-        ] {
-            if found != expected {
-                return Err(ContactError::Dimension {
-                    what,
-                    found,
-                    expected,
-                });
-            }
-        }
-        let finite = |all: &[Local<D>]| all.iter().flat_map(|v| v.iter()).all(|v| v.is_finite());
-        for (what, ok) in [
-            ("stiffness", stiffness.iter().all(|v| v.is_finite())),
-            ("load", load.iter().all(|v| v.is_finite())),
-            ("origin", finite(&origin)),
-            ("previous", finite(&previous)),
-        ] {
-            if !ok {
-                return Err(ContactError::NotFinite { what });
-            }
-        }
-        Ok(Self {
-            stiffness,
-            load,
-            origin,
-            friction: friction.into_iter().map(Into::into).collect(),
-            previous,
-            held: false,
-        })
-    }
+/// Status of every contact at (u, t), \[35\], predicted with the parameter α \[N/mm\] of each.
+pub(crate) fn statuses<const D: usize>(
+    laws: &[Friction],
+    u: &[Local<D>],
+    t: &[Local<D>],
+    alpha: impl Fn(usize) -> f64,
+) -> Vec<Status> {
+    let status = |(i, law): (usize, &Friction)| law.status(&u[i], &t[i], alpha(i));
+    laws.iter().enumerate().map(status).collect()
+}
 
-    /// A problem given in the form u = W t + q of discrete frictional contact; t₀ = 0.
-    ///
-    /// # Errors
-    /// As [`ContactProblem::new`]; [`ContactError::Floating`] if W is not positive definite.
-    pub fn from_delassus(
-        operator: DMatrix<f64>,
-        free: &[Local<D>],
-        friction: Vec<impl Into<Friction>>,
-    ) -> Result<Self, ContactError> {
-        let size = D * friction.len();
-        if operator.shape() != (size, size) {
-            return Err(ContactError::Dimension {
-                what: "Delassus operator",
-                found: operator.nrows(),
-                expected: size,
-            });
-        }
-        let stiffness = inverse(operator, "the Delassus form")?;
-        let zero = vec![Local::zeros(); friction.len()];
-        Self::new(
-            stiffness,
-            DVector::zeros(size),
-            free.to_vec(),
-            friction,
-            zero,
-        )
-    }
-
-    /// A proximal term c/2 |u − g|² about the origin, c \[N/mm\]: S + c 1 takes the place of S. Where
-    /// the statuses leave the bodies a rigid motion S is singular, and the solutions are many; this has
-    /// one, near to the origin. Repeated about its own solution it ends at one of the problem itself.
-    pub fn hold(&mut self, c: f64) {
-        for k in 0..self.stiffness.nrows() {
-            self.stiffness[(k, k)] += c;
-        }
-        self.held = true;
-    }
-
-    /// Whether only a proximal term makes S regular: its inverse is then too large to iterate on.
-    pub(crate) fn is_held(&self) -> bool {
-        self.held
-    }
-
-    /// Number of contacts.
-    pub fn contacts(&self) -> usize {
-        self.friction.len()
-    }
-
-    /// S, `D·contacts` square \[N/mm\].
-    pub fn stiffness(&self) -> &DMatrix<f64> {
-        &self.stiffness
-    }
-
-    /// The friction law of every contact.
-    pub fn friction(&self) -> &[Friction] {
-        &self.friction
-    }
-
-    /// Contact forces t₀ at the start of the step \[N\].
-    pub fn previous(&self) -> &[Local<D>] {
-        &self.previous
-    }
-
-    /// Displacement g about which the structure was linearised \[mm\].
-    pub fn origin(&self) -> &[Local<D>] {
-        &self.origin
-    }
-
-    /// Forces that displacements u ask of the structure: t = S (u − g) − f \[N\].
-    pub fn force(&self, u: &[Local<D>]) -> Vec<Local<D>> {
-        self.force_of(&self.relative(u))
-    }
-
-    /// Displacements from the origin, x = u − g \[mm\].
-    pub(crate) fn relative(&self, u: &[Local<D>]) -> Vec<Local<D>> {
-        u.iter().zip(&self.origin).map(|(u, g)| u - g).collect()
-    }
-
-    /// Forces for displacements x = u − g from the origin: t = S x − f \[N\].
-    pub(crate) fn force_of(&self, x: &[Local<D>]) -> Vec<Local<D>> {
-        split(&(&self.stiffness * stack(x) - &self.load))
-    }
-
-    /// The form u = W t + q.
-    ///
-    /// # Errors
-    /// [`ContactError::Floating`] if S is singular: the bodies are held by contact alone.
-    pub fn delassus(&self, solver: &'static str) -> Result<Delassus<D>, ContactError> {
-        let operator = inverse(self.stiffness.clone(), solver)?;
-        let mut free = &operator * &self.load;
-        for (i, g) in self.origin.iter().enumerate() {
-            for k in 0..D {
-                free[D * i + k] += g[k];
-            }
-        }
-        Ok(Delassus { operator, free })
-    }
-
-    /// Parameter α of \[90′\] for contact i \[N/mm\]: the mean stiffness of its own components, so
-    /// that a residual in newtons weighs gaps and forces alike in any system of units.
-    pub fn alpha(&self, i: usize) -> f64 {
-        (0..D)
-            .map(|k| self.stiffness[(D * i + k, D * i + k)])
-            .sum::<f64>()
-            / D as f64
-    }
-
-    /// Largest norm over the contacts of the natural map t − proj(t − α ũ), \[90′\] \[N\].
-    pub fn residual(&self, u: &[Local<D>], t: &[Local<D>]) -> f64 {
-        (0..self.contacts())
-            .map(|i| {
-                self.friction[i]
-                    .natural_map(&u[i], &t[i], self.alpha(i))
-                    .norm()
-            })
-            .fold(0.0, f64::max)
-    }
-
-    /// Size of the forces in play, against which a residual is judged \[N\]: the largest of the
-    /// forces now and at the start of the step, and of the condensed load.
-    pub fn force_scale(&self, t: &[Local<D>]) -> f64 {
-        let forces = t
-            .iter()
-            .chain(&self.previous)
-            .map(|t| t.norm())
-            .fold(0.0, f64::max);
-        forces.max(self.load.amax()).max(f64::MIN_POSITIVE)
-    }
-
-    /// Rounding of forces S x − f \[N\], x = u − g: no residual can be expected below it.
-    pub(crate) fn rounding(&self, x: &[Local<D>]) -> f64 {
-        let reach = x.iter().map(|x| x.amax()).fold(0.0, f64::max);
-        let stiffest = self.stiffness.diagonal().amax();
-        let terms = (self.load.len() as f64).sqrt();
-        4.0 * f64::EPSILON * terms * (stiffest * reach + self.load.amax())
-    }
-
-    /// Largest ratio μ/μ_c over the contacts that are closed, or were at the start of the step, with its
-    /// contact, 1/μ_c = |S_tt⁻¹ S_tn| of the diagonal block; `None` if there are none.
-    ///
-    /// In the plane μ_c = S_tt/|S_tn|: while all others stick, a contact has exactly one solution for
-    /// μ < μ_c, and from μ_c on it may have several, lose the path of its load, or wedge (A. Klarbring,
-    /// *Ingenieur-Archiv* 60 (1990) 529-541). That is one contact alone: together contacts may have
-    /// several solutions at smaller ratios, and need not have them at larger ones, nor in space. It
-    /// is an indicator, not a bound. For a single contact it is that of
-    /// [`LocalProblem::criticality`](crate::LocalProblem::criticality); of several, the block of W is
-    /// taken while all others are open.
-    pub fn criticality(&self, status: &[Status]) -> Option<(usize, f64)> {
-        let ratio = |i: usize| {
-            let s = |a: usize, b: usize| match a.max(b) < D {
-                true => self.stiffness[(D * i + a, D * i + b)],
-                false => f64::from(u8::from(a == b)),
-            };
-            let along = Matrix2::new(s(1, 1), s(1, 2), s(2, 1), s(2, 2)).cholesky();
-            let coupling = Vector2::new(s(1, 0), s(2, 0));
-            // What has no stiffness has no coupling either.
-            let moved = along.map_or(0.0, |along| along.solve(&coupling).norm());
-            (i, self.friction[i].friction() * moved)
-        };
-        let touches = |i: &usize| status[*i] != Status::Open || self.previous[*i][0] > 0.0;
-        let touching = (0..self.contacts()).filter(touches);
-        touching.map(ratio).max_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
-    /// Status of every contact at (u, t), \[35\].
-    pub fn statuses(&self, u: &[Local<D>], t: &[Local<D>]) -> Vec<Status> {
-        (0..self.contacts())
-            .map(|i| self.friction[i].status(&u[i], &t[i], self.alpha(i)))
-            .collect()
-    }
+/// Largest ratio μ/μ_c over some contacts with its contact, 1/μ_c = |d|; `None` without contacts.
+///
+/// d(i) is the tangential displacement of contact i over its normal one under a normal force, all other
+/// contacts as the problem says. A single plane contact has exactly one solution for μ < μ_c. From μ_c on
+/// it may have several, lose the path of its load, or wedge (A. Klarbring, *Ingenieur-Archiv* 60 (1990)
+/// 529-541). Together contacts may have several solutions at smaller ratios, and need not have them at
+/// larger ones, nor in space: it is an indicator, not a bound.
+fn criticality<const D: usize>(
+    laws: &[Friction],
+    contacts: impl Iterator<Item = usize>,
+    d: impl Fn(usize) -> Local<D>,
+) -> Option<(usize, f64)> {
+    let ratio = |i: usize| {
+        // Between stretched vectors an anisotropic law is isotropic.
+        let moved = d(i).component_mul(&laws[i].stretch());
+        (i, laws[i].friction() * moved.norm())
+    };
+    contacts.map(ratio).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Splits a vector of all components into contacts.
@@ -302,62 +92,14 @@ pub(crate) fn stack<const D: usize>(t: &[Local<D>]) -> DVector<f64> {
     DVector::from_iterator(D * t.len(), t.iter().flat_map(|t| (0..D).map(|k| t[k])))
 }
 
-/// Inverse of a symmetric positive definite matrix.
-fn inverse(a: DMatrix<f64>, solver: &'static str) -> Result<DMatrix<f64>, ContactError> {
-    if a.is_empty() {
-        return Ok(a); // Nothing touches.
-    }
-    let scale = a.diagonal().amax();
-    match a.clone().cholesky() {
-        // A pivot at rounding level is a rigid motion, not a stiffness.
-        Some(factor) if factor.l_dirty().diagonal().amin().powi(2) > 1e-13 * scale => {
-            Ok(factor.inverse())
-        }
-        Some(factor) => Err(ContactError::Floating {
-            solver,
-            component: factor.l_dirty().diagonal().imin(),
-        }),
-        None => Err(ContactError::Floating {
-            solver,
-            component: a.diagonal().imin(),
-        }),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use moreau_laws::Coulomb;
 
-    fn coulomb(mu: f64) -> Friction {
-        Coulomb::new(mu).expect("valid").into()
-    }
-
-    #[test]
-    fn nothing_in_contact_has_a_form_too() {
-        let (s, f) = (DMatrix::zeros(0, 0), DVector::zeros(0));
-        let problem = ContactProblem::<2>::new(s, f, vec![], Vec::<Friction>::new(), vec![]);
-        let form = problem.expect("valid").delassus("test").expect("empty");
-        assert!(form.operator.is_empty() && form.free.is_empty());
-    }
-
-    #[test]
-    fn delassus_form_inverts_the_stiffness_form() {
-        let s = DMatrix::from_row_slice(2, 2, &[3.0, 1.0, 1.0, 2.0]);
-        let f = DVector::from_row_slice(&[0.5, -0.25]);
-        let g = vec![Local::<2>::new(0.1, 0.2)];
-        let zero = vec![Local::zeros()];
-        let problem = ContactProblem::new(s, f, g, vec![coulomb(0.3)], zero).expect("valid");
-        let t = Local::<2>::new(0.7, -0.2);
-        let form = problem.delassus("test").expect("definite");
-        let u = &form.operator * DVector::from_column_slice(t.as_slice()) + &form.free;
-        let back = problem.force(&split(&u));
-        assert!((back[0] - t).norm() < 1e-14);
-    }
-
     #[test]
     fn certificate_is_zero_on_the_law_and_counts_what_is_lost() {
-        let law = [coulomb(0.5)];
+        let law = [Coulomb::new(0.5).expect("valid")];
         // Slip against the force: b_c = t·(−u).
         let exact = Certificate::new(
             &law,
@@ -385,38 +127,5 @@ mod tests {
             &[Local::<2>::new(-1.0, 0.0)],
         );
         assert_eq!((outside.penetration, outside.excess_force), (0.3, 1.0));
-    }
-
-    #[test]
-    fn bad_data_is_refused() {
-        let s = DMatrix::identity(2, 2);
-        let one = vec![coulomb(0.1)];
-        let zero = vec![Local::<2>::zeros()];
-        let f = DVector::zeros(2);
-        let nan = DVector::from_element(2, f64::NAN);
-        let new = ContactProblem::new;
-        assert!(matches!(
-            new(s.clone(), nan, zero.clone(), one.clone(), zero.clone()),
-            Err(ContactError::NotFinite { what: "load" })
-        ));
-        assert!(matches!(
-            new(
-                DMatrix::identity(3, 3),
-                f.clone(),
-                zero.clone(),
-                one.clone(),
-                zero.clone()
-            ),
-            Err(ContactError::Dimension {
-                found: 3,
-                expected: 2,
-                ..
-            })
-        ));
-        let singular = new(DMatrix::zeros(2, 2), f, zero.clone(), one, zero).expect("valid");
-        assert!(matches!(
-            singular.delassus("test"),
-            Err(ContactError::Floating { .. })
-        ));
     }
 }

@@ -414,13 +414,7 @@ fn newton_treats_a_body_that_only_contact_holds() {
         assert!((t - Local::<2>::new(10.0, -1.0)).norm() < 1e-10);
     }
     let refused = Uzawa::default().solve(&problem, None);
-    assert!(matches!(
-        refused,
-        Err(ContactError::Floating {
-            solver: "Uzawa",
-            ..
-        })
-    ));
+    assert!(matches!(refused, Err(ContactError::Floating { .. })));
 }
 
 /// Stopped early, a solution is a prefix of the exact one: as good as was asked, with forces the law

@@ -22,7 +22,7 @@ fn the_three_storages_say_the_same() {
         let own = problem.operator().diagonal(0);
         assert_eq!(own.as_slice(), [2.0, 0.0, 1.0, 3.0]);
         assert_eq!(problem.free()[0].as_slice(), [-1.0, 0.5]);
-        assert_eq!(problem.friction()[0].friction(), 0.25);
+        assert_eq!(problem.laws()[0].friction(), 0.25);
     }
 }
 
@@ -113,7 +113,7 @@ fn a_local_problem_in_hdf5_is_read() {
     assert_eq!(below[(0, 0)], 0.5);
     assert_eq!(problem.operator().diagonal(1)[(1, 1)], 5.0);
     assert_eq!(problem.free()[1].as_slice(), [-2.0, 0.2]);
-    assert_eq!(problem.friction()[1].friction(), 0.4);
+    assert_eq!(problem.laws()[1].friction(), 0.4);
 }
 
 /// The same numbers in both formats, where the collection lies beside the workspace.
@@ -142,7 +142,7 @@ fn both_formats_say_the_same() {
         match pair {
             [Problem::Local3(a), Problem::Local3(b)] => {
                 assert_eq!(a.operator(), b.operator(), "{name}");
-                assert_eq!((a.free(), a.friction()), (b.free(), b.friction()), "{name}");
+                assert_eq!((a.free(), a.laws()), (b.free(), b.laws()), "{name}");
             }
             [Problem::Global3(a), Problem::Global3(b)] => {
                 let sorted = |entries: &Entries| {

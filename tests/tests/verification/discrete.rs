@@ -17,7 +17,7 @@ fn local<const D: usize>(problem: &LocalProblem<D>) -> Fallible<LocalSolution<D>
     use moreau::contact::LocalSolver;
     let solution = Auto::default().solve(problem, None)?;
     let (u, r) = (&solution.displacement, &solution.force);
-    let certificate = Certificate::new(problem.friction(), u, r);
+    let certificate = Certificate::new(problem.laws(), u, r);
     let norm =
         |v: &[moreau::laws::Local<D>]| v.iter().map(|v| v.norm_squared()).sum::<f64>().sqrt();
     // Between the work of the forces and the bipotential, of the products of which they are made.

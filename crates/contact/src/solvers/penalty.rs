@@ -37,10 +37,7 @@ impl Penalty {
         Ok(Self {
             normal,
             tangent,
-            tolerance: Tolerance {
-                relative: 1e-12,
-                iterations: 300,
-            },
+            tolerance: Tolerance::new(1e-12, 300),
         })
     }
 
@@ -58,8 +55,7 @@ impl<const D: usize> ContactSolver<D> for Penalty {
         guess: Option<&ContactSolution<D>>,
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
-        let compliance = vec![self.compliance(); problem.contacts()];
-        semismooth::newton(problem, &compliance, guess, (self.tolerance, enough))
+        semismooth::newton(problem, self.compliance(), guess, (self.tolerance, enough))
     }
 
     fn springs(&self) -> Option<(Local<D>, Tolerance)> {

@@ -1,11 +1,12 @@
 //! Semismooth Newton method on the natural map; not a regularisation: its zeros are the law.
 
 use super::linearised::{self, Row};
-use super::{ContactSolution, ContactSolver, GaussSeidel, Tolerance, Uzawa};
-use crate::discrete::{Auto, BlockMatrix, LocalProblem, LocalSolver};
-use crate::problem::stack;
-use crate::{ContactError, ContactProblem, Delassus};
-use moreau_laws::{Coulomb, Friction, Local};
+use super::{
+    Auto, ContactSolution, ContactSolver, GaussSeidel, Goal, LocalSolver, Tolerance, Uzawa,
+};
+use crate::problem::statuses;
+use crate::{ContactError, ContactProblem, Springs};
+use moreau_laws::{Friction, Local};
 use nalgebra::{DVector, SMatrix};
 
 /// Newton's method on t − proj(t − α ũ) = 0, \[90′\], with t = S (u − g) − f.
@@ -23,10 +24,7 @@ pub struct SemismoothNewton {
 impl Default for SemismoothNewton {
     fn default() -> Self {
         Self {
-            tolerance: Tolerance {
-                relative: 1e-12,
-                iterations: 300,
-            },
+            tolerance: Tolerance::new(1e-12, 300),
         }
     }
 }
@@ -38,8 +36,7 @@ impl<const D: usize> ContactSolver<D> for SemismoothNewton {
         guess: Option<&ContactSolution<D>>,
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
-        let rigid = vec![Local::zeros(); problem.contacts()];
-        newton(problem, &rigid, guess, (self.tolerance, enough))
+        newton(problem, Local::zeros(), guess, (self.tolerance, enough))
     }
 
     fn springs(&self) -> Option<(Local<D>, Tolerance)> {
@@ -69,14 +66,21 @@ struct Iterate<const D: usize> {
     merit: f64,
 }
 
-/// Newton on the natural map at u + C (t − t₀*), with a diagonal compliance C \[mm/N\] per contact
+/// Newton on the natural map at u + C (t − t₀*), with a diagonal compliance C \[mm/N\] of every contact
 /// (zero: the exact law) and t₀* = (0, t₀ₜ), the penalty of \[81\]–\[82\] as a spring in series.
 pub(super) fn newton<const D: usize>(
     problem: &ContactProblem<D>,
-    compliance: &[Local<D>],
+    compliance: Local<D>,
     guess: Option<&ContactSolution<D>>,
     (tolerance, enough): (Tolerance, f64),
 ) -> Result<ContactSolution<D>, ContactError> {
+    let springs: Vec<Springs<D>> = (problem.previous().iter())
+        .map(|previous| {
+            let mut force = *previous;
+            force[0] = 0.0;
+            Springs { compliance, force }
+        })
+        .collect();
     let zero = vec![Local::zeros(); problem.contacts()];
     let mut start = guess.map_or(zero, |g| problem.relative(&g.displacement));
     let mut iterations = 0;
@@ -87,7 +91,7 @@ pub(super) fn newton<const D: usize>(
     loop {
         let newton = Newton {
             problem,
-            compliance,
+            springs: &springs,
             part: PARTS[part % PARTS.len()],
         };
         let mut now = newton.iterate(start.clone());
@@ -144,7 +148,7 @@ pub(super) fn newton<const D: usize>(
 
 struct Newton<'a, const D: usize> {
     problem: &'a ContactProblem<D>,
-    compliance: &'a [Local<D>],
+    springs: &'a [Springs<D>],
     part: f64,
 }
 
@@ -152,7 +156,7 @@ impl<const D: usize> Newton<'_, D> {
     /// α of \[90′\]: the stiffness of the structure and of the penalty spring in series.
     fn alpha(&self, i: usize) -> f64 {
         let alpha = self.part * self.problem.alpha(i);
-        let compliance = self.compliance[i].mean();
+        let compliance = self.springs[i].compliance.mean();
         alpha / (1.0 + alpha * compliance)
     }
 
@@ -162,13 +166,12 @@ impl<const D: usize> Newton<'_, D> {
         let u: Vec<Local<D>> = x.iter().zip(p.origin()).map(|(x, g)| x + g).collect();
         let irreversible: Vec<Local<D>> = (0..u.len())
             .map(|i| {
-                let mut origin = p.previous()[i];
-                origin[0] = 0.0;
-                u[i] + self.compliance[i].component_mul(&(t[i] - origin))
+                let Springs { compliance, force } = &self.springs[i];
+                u[i] + compliance.component_mul(&(t[i] - force))
             })
             .collect();
         let map: Vec<Local<D>> = (0..u.len())
-            .map(|i| p.friction()[i].natural_map(&irreversible[i], &t[i], self.alpha(i)))
+            .map(|i| p.laws()[i].natural_map(&irreversible[i], &t[i], self.alpha(i)))
             .collect();
         let residual = map.iter().map(|g| g.norm()).fold(0.0, f64::max);
         // Divided by α a square is an energy: contacts of unlike stiffness weigh alike.
@@ -188,19 +191,7 @@ impl<const D: usize> Newton<'_, D> {
     /// Displacements after sweeps of another method, with the springs in series with the structure.
     fn sweep(&self, t: &[Local<D>]) -> Result<Vec<Local<D>>, ContactError> {
         let p = self.problem;
-        let mut form = p.delassus("Gauss-Seidel")?;
-        let spring = |i: usize, t: &Local<D>| {
-            let mut origin = p.previous()[i];
-            origin[0] = 0.0;
-            self.compliance[i].component_mul(&(t - origin))
-        };
-        for (i, compliance) in self.compliance.iter().enumerate() {
-            let rest = spring(i, &Local::zeros());
-            for k in 0..D {
-                form.operator[(D * i + k, D * i + k)] += compliance[k];
-                form.free[D * i + k] += rest[k];
-            }
-        }
+        let form = p.delassus()?.in_series(|i| self.springs[i]);
         // A sweep costs 2 n² operations and a step up to ⅔ n³: no more of them than the attempts
         // with all parts may have taken, or a problem that neither solves takes a hundred times as
         // long as to cut the increment. What takes a tenth of a second is never too much.
@@ -210,17 +201,27 @@ impl<const D: usize> Newton<'_, D> {
             relative: 1e-8,
             iterations: (ATTEMPT * size).max(quick).min(20_000),
         };
+        let goal = Goal::new(p, tolerance, 0.0);
         // Where sweeps cycle, which takes a large friction, corrections may not, and conversely; and
-        // the methods for the discrete problem arrive where neither does.
-        let (seidel, uzawa) = (GaussSeidel { tolerance }, Uzawa { tolerance });
-        let swept = seidel
-            .sweeps(p, &form, stack(t), 0.0)
-            .or_else(|_| uzawa.corrections(p, &form, stack(t), 0.0));
+        // the methods for the local form arrive where neither does.
+        let swept = GaussSeidel::extrapolated(&form, t.to_vec(), &goal).or_else(|_| {
+            let judge = |k, t: &[Local<D>], u: &[Local<D>]| goal.judge("Uzawa", k, t, u);
+            Uzawa::corrections(&form, t.to_vec(), judge)
+        });
         let (force, displacement) = match swept {
             Ok(swept) => (swept.force, swept.displacement),
-            Err(error) => discrete(p.friction(), &form, t).ok_or(error)?,
+            Err(error) => {
+                let found = Auto::default().solve(&form, Some(t)).map_err(|_| error)?;
+                (found.force, found.displacement)
+            }
         };
-        let own = |(i, v): (usize, &Local<D>)| v - spring(i, &force[i]);
+        let own = |(i, v): (usize, &Local<D>)| {
+            let Springs {
+                compliance,
+                force: rest,
+            } = &self.springs[i];
+            v - compliance.component_mul(&(force[i] - rest))
+        };
         Ok(displacement.iter().enumerate().map(own).collect())
     }
 
@@ -246,14 +247,14 @@ impl<const D: usize> Newton<'_, D> {
             // dT = P dt − A du, with P the projector and A = α P ∂ũ/∂u under Coulomb's law:
             // dG = [(1 − P) + A C] S du + A du
             let (projector, shift) = law.correct_jacobian(v, t, self.alpha(i));
-            let compliance = SMatrix::from_diagonal(&self.compliance[i]);
+            let compliance = SMatrix::from_diagonal(&self.springs[i].compliance);
             Row {
                 elastic: SMatrix::identity() - projector + shift * compliance,
                 shift,
                 value: -now.map[i],
             }
         };
-        let laws = self.problem.friction().iter().enumerate();
+        let laws = self.problem.laws().iter().enumerate();
         // A rigid motion that no contact stops leaves the matrix singular.
         linearised::solve(self.problem, laws.map(row).collect())
     }
@@ -265,9 +266,7 @@ impl<const D: usize> Newton<'_, D> {
         let force = (0..p.contacts())
             .map(|i| now.t[i] - now.map[i])
             .collect::<Vec<_>>();
-        let status = (0..p.contacts())
-            .map(|i| p.friction()[i].status(&now.irreversible[i], &now.t[i], self.alpha(i)))
-            .collect();
+        let status = statuses(p.laws(), &now.irreversible, &now.t, |i| self.alpha(i));
         ContactSolution {
             residual: p.residual(&now.irreversible, &force),
             displacement: now.u,
@@ -293,23 +292,4 @@ fn add<const D: usize>(u: &[Local<D>], step: &DVector<f64>, s: f64) -> Vec<Local
         .enumerate()
         .map(|(i, u)| Local::from_fn(|k, _| u[k] + s * step[D * i + k]))
         .collect()
-}
-
-/// Forces and displacements by the methods for the discrete problem, which know Coulomb's law.
-fn discrete<const D: usize>(
-    friction: &[Friction],
-    form: &Delassus<D>,
-    guess: &[Local<D>],
-) -> Option<(Vec<Local<D>>, Vec<Local<D>>)> {
-    let coulomb = |law: &Friction| match law {
-        Friction::Coulomb(law) => Some(*law),
-        _ => None,
-    };
-    let laws: Option<Vec<Coulomb>> = friction.iter().map(coulomb).collect();
-    let free = form.free.as_slice().chunks_exact(D);
-    let free = free.map(Local::<D>::from_column_slice).collect();
-    let operator = BlockMatrix::from_dense(&form.operator);
-    let problem = LocalProblem::new(operator, free, laws?).ok()?;
-    let solution = Auto::default().solve(&problem, Some(guess)).ok()?;
-    Some((solution.force, solution.displacement))
 }

@@ -711,7 +711,7 @@ mod tests {
         let mut own = TiedProblem {
             structure,
             origin: problem.origin().to_vec(),
-            friction: problem.friction().to_vec(),
+            friction: problem.laws().to_vec(),
             springs: vec![Springs::default(); contacts],
             load,
             previous: problem.previous().to_vec(),
@@ -804,7 +804,7 @@ mod tests {
         let mut own = TiedProblem {
             structure: &mut structure,
             origin: problem.origin().to_vec(),
-            friction: problem.friction().to_vec(),
+            friction: problem.laws().to_vec(),
             springs: vec![springs; 6],
             load,
             previous: problem.previous().to_vec(),

@@ -1,17 +1,21 @@
-//! Uzawa's projection on the Coulomb cone, \[85\]–\[90′\]; not the nesting around the bulk solve.
+//! Uzawa's projection on the admissible forces, \[85\]–\[90′\]; not the nesting around the bulk solve.
 
-use super::{ContactSolution, ContactSolver, Tolerance, fixed_point};
+use super::fixed_point::fixed_point;
+use super::local::{Best, LocalSolver, Reason, Unsolved, start};
+use super::{ContactSolution, ContactSolver, Goal, LocalSolution, Tolerance, forces};
 use crate::problem::{split, stack};
-use crate::{ContactError, ContactProblem, Delassus};
+use crate::{ContactError, ContactProblem, LocalProblem};
 use moreau_laws::Local;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
+
+const NAME: &str = "Uzawa";
 
 /// Prediction t̂ = t − α ũ and correction t = proj(t̂) on u = W t + q, accelerated.
 ///
 /// α is the inverse of the largest eigenvalue of W in the scaling that gives every contact a unit
-/// diagonal, over √(1 + μ²) for the slope of ũ: there is no number to choose. Near a limit load W has eigenvalues of very unlike
-/// size, on which the plain scheme takes 10⁵ corrections and more; Anderson's extrapolation brings
-/// them down to some hundreds and leaves the fixed point what it is.
+/// diagonal, over √(1 + μ²) for the slope of ũ: there is no number to choose. Near a limit load W has
+/// eigenvalues of very unlike size, on which the plain scheme takes 10⁵ corrections and more;
+/// Anderson's extrapolation brings them down to some hundreds and leaves the fixed point what it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Uzawa {
     /// When to stop.
@@ -21,10 +25,7 @@ pub struct Uzawa {
 impl Default for Uzawa {
     fn default() -> Self {
         Self {
-            tolerance: Tolerance {
-                relative: 1e-10,
-                iterations: 200_000,
-            },
+            tolerance: Tolerance::new(1e-10, 200_000),
         }
     }
 }
@@ -36,39 +37,61 @@ impl<const D: usize> ContactSolver<D> for Uzawa {
         guess: Option<&ContactSolution<D>>,
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
-        let form = problem.delassus("Uzawa")?;
-        let start = guess.map_or_else(|| DVector::zeros(form.free.len()), |g| stack(&g.force));
-        self.corrections(problem, &form, start, enough)
+        let form = problem.delassus()?;
+        let goal = Goal::new(problem, self.tolerance, enough);
+        Self::corrections(&form, forces(&form, guess), |k, t, u| {
+            goal.judge(NAME, k, t, u)
+        })
     }
 }
 
 impl Uzawa {
-    /// Solves u = W t + q for a form that need not be that of the problem.
-    pub(super) fn corrections<const D: usize>(
-        &self,
-        problem: &ContactProblem<D>,
-        form: &Delassus<D>,
-        start: DVector<f64>,
-        enough: f64,
-    ) -> Result<ContactSolution<D>, ContactError> {
-        let alpha = steps::<D>(problem, &form.operator);
-        let correct = |t: &DVector<f64>| -> Vec<Local<D>> {
-            let u = split::<D>(&(&form.operator * t + &form.free));
-            let t = split::<D>(t);
-            let corrected = |i: usize| {
-                let law = &problem.friction()[i];
-                law.correct(&u[i], &t[i], alpha[i])
-            };
+    /// Corrections on u = W t + q until `judge` ends them.
+    pub(super) fn corrections<const D: usize, E>(
+        form: &LocalProblem<D>,
+        start: Vec<Local<D>>,
+        judge: impl FnMut(usize, &[Local<D>], &[Local<D>]) -> Option<E>,
+    ) -> E {
+        let alpha = steps(form);
+        let correct = |t: Vec<Local<D>>| -> Vec<Local<D>> {
+            let u = form.displacement(&t);
+            let corrected = |i: usize| form.laws()[i].correct(&u[i], &t[i], alpha[i]);
             (0..t.len()).map(corrected).collect()
         };
-        fixed_point(
-            "Uzawa",
-            problem,
-            form,
-            start,
-            (self.tolerance, enough),
-            correct,
-        )
+        fixed_point(form, start, correct, judge)
+    }
+}
+
+/// Corrections over which the residual must fall by a tenth.
+const PATIENCE: usize = 5_000;
+
+impl<const D: usize> LocalSolver<D> for Uzawa {
+    fn tolerance(&self) -> f64 {
+        self.tolerance.relative
+    }
+
+    fn solve_to(
+        &self,
+        problem: &LocalProblem<D>,
+        guess: Option<&[Local<D>]>,
+        tolerance: f64,
+    ) -> Result<LocalSolution<D>, Unsolved<D>> {
+        let start = start(problem, guess);
+        let mut best = Best::new(LocalSolution::at(problem, start.clone(), 0, NAME));
+        let limit = self.tolerance.iterations;
+        if best.size() <= tolerance || limit == 0 {
+            return best.judge(tolerance, Reason::Iterations);
+        }
+        let reason = Self::corrections(problem, start, |before, t, _| {
+            let iterations = before + 1;
+            let now = LocalSolution::at(problem, t.to_vec(), iterations, NAME);
+            let idle = best.take(now, iterations);
+            if idle > PATIENCE {
+                return Some(Reason::Stalled);
+            }
+            (best.size() <= tolerance || iterations == limit).then_some(Reason::Iterations)
+        });
+        best.judge(tolerance, reason)
     }
 }
 
@@ -77,37 +100,30 @@ impl Uzawa {
 /// # Errors
 /// [`ContactError::Floating`] if the stiffness is singular.
 pub fn uzawa_steps<const D: usize>(problem: &ContactProblem<D>) -> Result<Vec<f64>, ContactError> {
-    Ok(steps(problem, &problem.delassus("Uzawa")?.operator))
+    Ok(steps(&problem.delassus()?))
 }
 
-/// α per contact: 1/W̄_ii over the largest eigenvalue of the scaled operator, by power iteration.
-fn steps<const D: usize>(problem: &ContactProblem<D>, operator: &DMatrix<f64>) -> Vec<f64> {
-    let scale: Vec<f64> = (0..problem.contacts())
-        .map(|i| {
-            D as f64
-                / (0..D)
-                    .map(|k| operator[(D * i + k, D * i + k)])
-                    .sum::<f64>()
-        })
+/// α per contact: the inverse of the mean diagonal of W_ii over the largest eigenvalue of the operator so
+/// scaled, by power iteration.
+fn steps<const D: usize>(problem: &LocalProblem<D>) -> Vec<f64> {
+    let contacts = problem.contacts();
+    let scale: Vec<f64> = (0..contacts)
+        .map(|i| D as f64 / problem.own(i).trace())
         .collect();
-    let n = operator.nrows();
     // Not symmetric about anything a structure would be symmetric about.
-    let mut v = DVector::from_fn(n, |i, _| 1.0 + 0.3 * ((i * i) as f64 * 0.7).sin());
+    let entry = |i: usize, _| 1.0 + 0.3 * ((i * i) as f64 * 0.7).sin();
+    let mut v = DVector::from_fn(D * contacts, entry);
     let mut largest = 1.0;
     for _ in 0..60 {
-        let mut w = operator * &v;
-        for i in 0..n {
-            w[i] *= scale[i / D];
-        }
+        let seen = split(&v);
+        let scaled = |i: usize| problem.operator().row_times(i, &seen) * scale[i];
+        let w = stack(&(0..contacts).map(scaled).collect::<Vec<_>>());
         largest = w.norm() / v.norm();
         v = w / largest;
     }
     // Friction adds μ‖u_t‖ to the normal displacement: its slope enters the Lipschitz constant.
-    scale
-        .iter()
-        .enumerate()
-        .map(|(i, s)| {
-            s / (1.05 * largest * (1.0 + problem.friction()[i].friction().powi(2)).sqrt())
-        })
+    let slope = |i: usize| (1.0 + problem.laws()[i].friction().powi(2)).sqrt();
+    (0..contacts)
+        .map(|i| scale[i] / (1.05 * largest * slope(i)))
         .collect()
 }

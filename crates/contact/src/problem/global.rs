@@ -1,11 +1,11 @@
 //! The discrete frictional contact problem in its global form, reduced to the local one; no solver of
 //! its own.
 
-use super::blocks::{BlockMatrix, Factor};
-use super::problem::over;
-use super::{LocalProblem, LocalSolution, LocalSolver, Residual, Unsolved};
-use crate::ContactError;
-use moreau_laws::{Coulomb, Local};
+use super::local::over;
+use super::{BlockMatrix, Factor, LocalProblem, Residual};
+use crate::error::{expect_finite, expect_sizes};
+use crate::{ContactError, LocalSolution, LocalSolver, Unsolved};
+use moreau_laws::{Friction, Local};
 
 /// An entry of a sparse matrix: row, column, value. Those at the same place are added.
 type Entry = (usize, usize, f64);
@@ -58,16 +58,16 @@ impl<const D: usize> GlobalProblem<D> {
     ///
     /// # Errors
     /// [`ContactError::Dimension`] for entries beyond the unknowns or contacts,
-    /// [`ContactError::NotFinite`], [`ContactError::Floating`] if M is singular, and those of
+    /// [`ContactError::NotFinite`], [`ContactError::Indefinite`] if M is singular, and those of
     /// [`LocalProblem::new`].
     pub fn new(
         stiffness: Vec<Entry>,
         directions: Vec<Entry>,
         load: Vec<f64>,
         free: Vec<Local<D>>,
-        friction: Vec<Coulomb>,
+        laws: Vec<impl Into<Friction>>,
     ) -> Result<Self, ContactError> {
-        let (n, contacts) = (load.len(), friction.len());
+        let (n, contacts) = (load.len(), laws.len());
         for (what, entries, rows, columns) in [
             ("matrix M", &stiffness, n, n),
             ("matrix H", &directions, n, D * contacts),
@@ -81,20 +81,10 @@ impl<const D: usize> GlobalProblem<D> {
                     expected: if beyond_rows { rows } else { columns },
                 });
             }
-            if entries.iter().any(|(.., v)| !v.is_finite()) {
-                return Err(ContactError::NotFinite { what });
-            }
+            expect_finite(what, entries.iter().map(|(.., v)| v))?;
         }
-        if load.iter().any(|v| !v.is_finite()) {
-            return Err(ContactError::NotFinite { what: "load" });
-        }
-        if free.len() != contacts {
-            return Err(ContactError::Dimension {
-                what: "free displacements",
-                found: free.len(),
-                expected: contacts,
-            });
-        }
+        expect_finite("load", &load)?;
+        expect_sizes([("free displacements", free.len(), contacts)])?;
         let mut bodies = bodies(n, &stiffness)?;
         let operator = delassus(contacts, &mut bodies, &directions)?;
         let at_rest = solve(&mut bodies, &load)?;
@@ -103,7 +93,7 @@ impl<const D: usize> GlobalProblem<D> {
             q[j / D][j % D] += h * at_rest[i];
         }
         Ok(Self {
-            local: LocalProblem::new(operator, q, friction)?,
+            local: LocalProblem::new(operator, q, laws)?,
             stiffness,
             directions,
             load,
@@ -204,15 +194,15 @@ fn bodies(n: usize, stiffness: &[Entry]) -> Result<Vec<Body>, ContactError> {
         let matrix = BlockMatrix::<1>::from_entries(unknowns.len(), entries);
         match Factor::new(&matrix) {
             Some(factor) => Ok(Body { unknowns, factor }),
-            None => Err(floating(&unknowns)),
+            None => Err(indefinite(&unknowns)),
         }
     };
     unknowns.into_iter().zip(entries).map(factorise).collect()
 }
 
-fn floating(unknowns: &[usize]) -> ContactError {
-    ContactError::Floating {
-        solver: "the global form",
+fn indefinite(unknowns: &[usize]) -> ContactError {
+    ContactError::Indefinite {
+        what: "matrix M",
         component: unknowns.first().copied().unwrap_or(0),
     }
 }
@@ -229,7 +219,7 @@ fn solve(bodies: &mut [Body], b: &[f64]) -> Result<Vec<f64>, ContactError> {
         let own = body
             .factor
             .solve(&rhs)
-            .ok_or_else(|| floating(&body.unknowns))?;
+            .ok_or_else(|| indefinite(&body.unknowns))?;
         for (&i, own) in body.unknowns.iter().zip(own) {
             x[i] = own[0];
         }
@@ -269,7 +259,7 @@ fn delassus<const D: usize>(
             let x = body
                 .factor
                 .solve(&rhs)
-                .ok_or_else(|| floating(&body.unknowns))?;
+                .ok_or_else(|| indefinite(&body.unknowns))?;
             for &(i, k, h) in columns.iter() {
                 entries.push((i, column[0].0, h * x[k][0]));
             }

@@ -1,7 +1,7 @@
 //! Gaussian elimination of matrices with the pattern of W, contact by contact, in an order that is found
 //! once; no pivots are exchanged between contacts, for matrices that need it see `blocks`.
 
-use super::BlockMatrix;
+use crate::BlockMatrix;
 use moreau_laws::Local;
 use nalgebra::SMatrix;
 use std::collections::BTreeSet;

@@ -1,37 +1,15 @@
-//! The discrete frictional contact problem u = W r + q and the methods that solve it; not the
-//! condensed problem t = S (u − g) − f of the driver, whose S need not be invertible.
+//! What the methods for the local problem u = W r + q have in common: their trait, their solutions and
+//! failures; none of them.
 //!
 //! Every method is judged by the same residual, whichever map it iterates on.
 
-mod admm;
-mod auto;
-mod blocks;
-mod elimination;
-mod gauss_seidel;
-mod global;
-mod newton;
-mod one_contact;
-mod problem;
-mod projection;
-mod proximal;
-#[cfg(test)]
-mod tests;
-mod tresca;
-
-pub use admm::Admm;
-pub use auto::Auto;
-pub use blocks::BlockMatrix;
-pub use global::{GlobalProblem, GlobalSolution};
-pub use newton::NewtonMap;
-pub use problem::{LocalProblem, Residual};
-pub use proximal::{Newton, ProximalNewton};
-pub use tresca::TrescaFixedPoint;
-
+use crate::LocalProblem;
+use crate::problem::Residual;
 use moreau_laws::Local;
 
 /// Residual at which the methods stop when nothing else is asked for: small enough that measures in
 /// other units, which may be some ten times larger, are met as well.
-const TOLERANCE: f64 = 1e-10;
+pub(super) const TOLERANCE: f64 = 1e-10;
 
 /// A solution of the local problem, or the best point that a method met.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,7 +27,7 @@ pub struct LocalSolution<const D: usize> {
 }
 
 impl<const D: usize> LocalSolution<D> {
-    fn at(
+    pub(super) fn at(
         problem: &LocalProblem<D>,
         force: Vec<Local<D>>,
         iterations: usize,
@@ -119,38 +97,89 @@ pub struct Unsolved<const D: usize> {
 
 /// A method for the local problem. All solve the same problem and report the same residual.
 pub trait LocalSolver<const D: usize>: std::fmt::Debug + Send + Sync {
-    /// Solves a problem, starting from the forces `guess` if there are any.
+    /// [`Residual::size`] that the method stops at of itself.
+    fn tolerance(&self) -> f64;
+
+    /// Solves a problem to a residual of `tolerance`, starting from the forces `guess` if there are any.
     ///
     /// # Errors
     /// [`Unsolved`] with the best point met and the reason for the end.
+    fn solve_to(
+        &self,
+        problem: &LocalProblem<D>,
+        guess: Option<&[Local<D>]>,
+        tolerance: f64,
+    ) -> Result<LocalSolution<D>, Unsolved<D>>;
+
+    /// Solves a problem to the method's own tolerance.
+    ///
+    /// # Errors
+    /// As [`LocalSolver::solve_to`].
     fn solve(
         &self,
         problem: &LocalProblem<D>,
         guess: Option<&[Local<D>]>,
-    ) -> Result<LocalSolution<D>, Unsolved<D>>;
+    ) -> Result<LocalSolution<D>, Unsolved<D>> {
+        self.solve_to(problem, guess, self.tolerance())
+    }
 }
 
 /// The forces to start from.
-fn start<const D: usize>(problem: &LocalProblem<D>, guess: Option<&[Local<D>]>) -> Vec<Local<D>> {
+pub(super) fn start<const D: usize>(
+    problem: &LocalProblem<D>,
+    guess: Option<&[Local<D>]>,
+) -> Vec<Local<D>> {
     match guess {
         Some(guess) if guess.len() == problem.contacts() => guess.to_vec(),
         _ => vec![Local::zeros(); problem.contacts()],
     }
 }
 
-/// A solution if it is within the tolerance, else the failure.
-fn judge<const D: usize>(
-    best: LocalSolution<D>,
-    tolerance: f64,
-    reason: Reason,
-) -> Result<LocalSolution<D>, Unsolved<D>> {
-    if best.residual.size() <= tolerance {
-        Ok(best)
-    } else {
-        Err(Unsolved {
-            best: Box::new(best),
-            tolerance,
-            reason,
-        })
+/// The best point met, and when the residual last fell by a tenth.
+pub(super) struct Best<const D: usize> {
+    pub(super) point: LocalSolution<D>,
+    milestone: (usize, f64),
+}
+
+impl<const D: usize> Best<D> {
+    /// The first point.
+    pub(super) fn new(point: LocalSolution<D>) -> Self {
+        Self {
+            milestone: (0, point.residual.size()),
+            point,
+        }
+    }
+
+    /// Its residual.
+    pub(super) fn size(&self) -> f64 {
+        self.point.residual.size()
+    }
+
+    /// Takes note of the point met at a count; for how many counts the residual has not fallen by a tenth.
+    pub(super) fn take(&mut self, point: LocalSolution<D>, count: usize) -> usize {
+        if point.residual.size() < self.size() {
+            self.point = point;
+        }
+        if self.size() < 0.9 * self.milestone.1 {
+            self.milestone = (count, self.size());
+        }
+        count - self.milestone.0
+    }
+
+    /// The solution if it is within the tolerance, else the failure.
+    pub(super) fn judge(
+        self,
+        tolerance: f64,
+        reason: Reason,
+    ) -> Result<LocalSolution<D>, Unsolved<D>> {
+        if self.size() <= tolerance {
+            Ok(self.point)
+        } else {
+            Err(Unsolved {
+                best: Box::new(self.point),
+                tolerance,
+                reason,
+            })
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Square matrices of D×D blocks, compressed by block rows, and their factorisation; the libraries
 //! that factorise are behind `dense` and `sparse`.
 
-use crate::problem::{split, stack};
+use super::{split, stack};
 use moreau_algebra::Lu;
 use moreau_algebra::{Rows, SparseLu};
 use moreau_laws::Local;
@@ -54,7 +54,7 @@ impl<const D: usize> BlockMatrix<D> {
     }
 
     /// Without rows; they follow by [`Self::push_row`].
-    pub(super) fn empty() -> Self {
+    pub(crate) fn empty() -> Self {
         Self {
             starts: vec![0],
             columns: Vec::new(),
@@ -63,7 +63,7 @@ impl<const D: usize> BlockMatrix<D> {
     }
 
     /// Appends a row of blocks, given in increasing order of their columns.
-    pub(super) fn push_row(&mut self, row: impl IntoIterator<Item = (usize, SMatrix<f64, D, D>)>) {
+    pub(crate) fn push_row(&mut self, row: impl IntoIterator<Item = (usize, SMatrix<f64, D, D>)>) {
         for (column, block) in row {
             self.columns.push(column);
             self.blocks.push(block);
@@ -73,9 +73,14 @@ impl<const D: usize> BlockMatrix<D> {
 
     /// From a dense matrix of `D·contacts` rows and columns; blocks of zeros are not stored.
     pub fn from_dense(dense: &DMatrix<f64>) -> Self {
-        let n = dense.nrows();
-        let entry = |k: usize| (k % n, k / n, dense[(k % n, k / n)]);
-        Self::from_entries(n / D, (0..dense.len()).map(entry))
+        let contacts = dense.nrows() / D;
+        let mut matrix = Self::empty();
+        for i in 0..contacts {
+            let block = |j: usize| (j, dense.fixed_view::<D, D>(D * i, D * j).into_owned());
+            let row = (0..contacts).map(block);
+            matrix.push_row(row.filter(|(_, block)| block.iter().any(|v| *v != 0.0)));
+        }
+        matrix
     }
 
     /// Number of block rows.
@@ -104,19 +109,34 @@ impl<const D: usize> BlockMatrix<D> {
         own.map_or_else(SMatrix::zeros, |(_, block)| *block)
     }
 
+    /// Adds to the diagonal of a stored diagonal block.
+    pub(crate) fn add_to_diagonal(&mut self, i: usize, d: &Local<D>) {
+        let mut range = self.starts[i]..self.starts[i + 1];
+        if let Some(own) = range.find(|at| self.columns[*at] == i) {
+            for k in 0..D {
+                self.blocks[own][(k, k)] += d[k];
+            }
+        }
+    }
+
     /// Row i of the product A x.
     #[inline]
     pub fn row_times(&self, i: usize, x: &[Local<D>]) -> Local<D> {
         let mut sum = Local::zeros();
         for (j, block) in self.row(i) {
-            sum += block * x[j];
+            // Column by column, the order of sums of a dense product.
+            for l in 0..D {
+                for k in 0..D {
+                    sum[k] += block[(k, l)] * x[j][l];
+                }
+            }
         }
         sum
     }
 
-    /// Whether all entries are finite.
-    pub(super) fn is_finite(&self) -> bool {
-        self.blocks.iter().flatten().all(|v| v.is_finite())
+    /// All entries of the stored blocks.
+    pub(crate) fn entries(&self) -> impl Iterator<Item = &f64> {
+        self.blocks.iter().flatten()
     }
 }
 
@@ -127,14 +147,14 @@ const SMALL: usize = 60;
 const FULL: f64 = 0.15;
 
 /// A factorised block matrix.
-pub(super) enum Factor {
+pub(crate) enum Factor {
     Dense(Lu),
     Sparse(Box<SparseLu>),
 }
 
 impl Factor {
     /// Factorises; `None` if the matrix is singular.
-    pub(super) fn new<const D: usize>(matrix: &BlockMatrix<D>) -> Option<Self> {
+    pub(crate) fn new<const D: usize>(matrix: &BlockMatrix<D>) -> Option<Self> {
         let (n, rows) = (D * matrix.contacts(), matrix.contacts());
         if n <= SMALL || matrix.stored() as f64 > FULL * (rows * rows) as f64 {
             let mut dense = DMatrix::zeros(n, n);
@@ -162,7 +182,7 @@ impl Factor {
     }
 
     /// x of A x = b; `None` where A was singular to rounding.
-    pub(super) fn solve<const D: usize>(&mut self, b: &[Local<D>]) -> Option<Vec<Local<D>>> {
+    pub(crate) fn solve<const D: usize>(&mut self, b: &[Local<D>]) -> Option<Vec<Local<D>>> {
         let x = match self {
             Self::Dense(lu) => lu.solve(stack(b)),
             Self::Sparse(lu) => lu.solve(stack(b))?,

@@ -3,9 +3,10 @@
 
 use super::elimination::Elimination;
 use super::gauss_seidel::sweep;
-use super::newton::{NewtonMap, Proximal, newton};
-use super::{LocalProblem, LocalSolution, LocalSolver, Reason, TOLERANCE, Unsolved, judge, start};
-use crate::Tolerance;
+use super::local::{Best, TOLERANCE, start};
+use super::newton::{Run, newton};
+use super::{LocalSolution, LocalSolver, NewtonMap, Reason, Tolerance, Unsolved};
+use crate::{LocalProblem, Springs};
 use moreau_laws::Local;
 
 /// Semismooth Newton on u = W r + q with a nonmonotone line search; it needs a W that is regular on
@@ -22,40 +23,27 @@ impl Default for Newton {
     fn default() -> Self {
         Self {
             map: NewtonMap::default(),
-            tolerance: Tolerance {
-                relative: TOLERANCE,
-                iterations: 200,
-            },
+            tolerance: Tolerance::new(TOLERANCE, 200),
         }
     }
 }
 
 impl<const D: usize> LocalSolver<D> for Newton {
-    fn solve(
+    fn tolerance(&self) -> f64 {
+        self.tolerance.relative
+    }
+
+    fn solve_to(
         &self,
         problem: &LocalProblem<D>,
         guess: Option<&[Local<D>]>,
+        tolerance: f64,
     ) -> Result<LocalSolution<D>, Unsolved<D>> {
-        let Tolerance {
-            relative,
-            iterations,
-        } = self.tolerance;
         let from = start(problem, guess);
-        let exact = Proximal {
-            problem,
-            alpha: 0.0,
-            centre: &from,
-        };
         let mut elimination = Elimination::new(problem.operator());
-        let run = newton(
-            &exact,
-            self.map,
-            &mut elimination,
-            &from,
-            relative,
-            iterations,
-        );
-        let reason = if run.iterations == iterations {
+        let limit = self.tolerance.iterations;
+        let run = newton(problem, self.map, &mut elimination, &from, tolerance, limit);
+        let reason = if run.iterations == limit {
             Reason::Iterations
         } else if run.singular {
             Reason::Singular
@@ -63,7 +51,7 @@ impl<const D: usize> LocalSolver<D> for Newton {
             Reason::Stalled
         };
         let best = LocalSolution::at(problem, run.force, run.iterations, "Newton");
-        judge(best, relative, reason)
+        Best::new(best).judge(tolerance, reason)
     }
 }
 
@@ -85,10 +73,7 @@ impl Default for ProximalNewton {
     fn default() -> Self {
         Self {
             map: NewtonMap::default(),
-            tolerance: Tolerance {
-                relative: TOLERANCE,
-                iterations: 5_000,
-            },
+            tolerance: Tolerance::new(TOLERANCE, 5_000),
         }
     }
 }
@@ -124,80 +109,106 @@ const LONGEST: f64 = 10.0;
 const PATIENCE: usize = 300;
 
 impl<const D: usize> LocalSolver<D> for ProximalNewton {
-    fn solve(
+    fn tolerance(&self) -> f64 {
+        self.tolerance.relative
+    }
+
+    fn solve_to(
         &self,
         problem: &LocalProblem<D>,
         guess: Option<&[Local<D>]>,
+        tolerance: f64,
     ) -> Result<LocalSolution<D>, Unsolved<D>> {
         const NAME: &str = "proximal Newton";
-        let Tolerance {
-            relative,
-            iterations: limit,
-        } = self.tolerance;
+        let limit = self.tolerance.iterations;
         let mut now = LocalSolution::at(problem, start(problem, guess), 0, NAME);
-        let mut best = now.clone();
-        let mut centre = now.force.clone();
-        let (mut iterations, mut idle, mut milestone) = (0, 0, best.residual.size());
-        let mut elimination = Elimination::new(problem.operator());
-        let (mut factor, mut stride) = (1.0, 1.0);
-        while best.residual.size() > relative && iterations < limit && idle < PATIENCE {
+        let mut best = Best::new(now.clone());
+        let mut path = Path {
+            map: self.map,
+            elimination: Elimination::new(problem.operator()),
+            centre: now.force.clone(),
+            factor: 1.0,
+            stride: 1.0,
+        };
+        let (mut iterations, mut problems, mut idle) = (0, 0, 0);
+        while best.size() > tolerance && iterations < limit && idle < PATIENCE {
             let size = now.residual.size();
-            let softened = Proximal {
-                problem,
-                alpha: (factor * size.powf(SOFTNESS)).clamp(ALPHA[0], ALPHA[1]),
-                centre: &centre,
-            };
-            let target = (TARGET * size).clamp(0.3 * relative, 1.0);
-            let mut run = newton(
-                &softened,
-                self.map,
-                &mut elimination,
-                &centre,
-                target,
-                STEPS,
-            );
+            let target = (TARGET * size).clamp(0.3 * tolerance, 1.0);
+            let run = path.softened(problem, size, target);
             iterations += run.iterations.max(1);
             let reached = run.residual <= target;
-            if !reached {
-                for _ in 0..SWEEPS {
-                    if sweep(&softened, &mut run.force) < 0.01 * target {
-                        break;
-                    }
-                }
-                factor = (SOFTER * factor).min(1.0 / f64::EPSILON);
-            } else if run.iterations <= EASY {
-                factor = (HARDER * factor).max(1.0);
-            }
             let next = LocalSolution::at(problem, run.force, iterations, NAME);
-            let change = next.residual.size() / size;
-            stride = if reached && size < NEAR && (0.5..2.0).contains(&change) {
-                (STRIDE * stride).min(LONGEST)
-            } else {
-                1.0
-            };
-            // What is worse is kept only as the exact answer of a softened problem.
-            if reached || change < 1.0 {
-                let ahead = |(r, before): (&Local<D>, &Local<D>)| r + (r - before) * (stride - 1.0);
-                centre = next.force.iter().zip(&now.force).map(ahead).collect();
-                now = next;
-            } else {
-                centre.clone_from(&now.force);
-            }
-            if now.residual.size() < best.residual.size() {
-                best = now.clone();
-            }
-            idle += 1;
-            if best.residual.size() < 0.9 * milestone {
-                milestone = best.residual.size();
-                idle = 0;
-            }
+            path.advance(reached, &mut now, next);
+            problems += 1;
+            idle = best.take(now.clone(), problems);
         }
-        best.iterations = iterations;
+        best.point.iterations = iterations;
         let reason = if iterations >= limit {
             Reason::Iterations
         } else {
             Reason::Stalled
         };
-        judge(best, relative, reason)
+        best.judge(tolerance, reason)
+    }
+}
+
+/// The sequence of softened problems: where the next one is, and how soft.
+struct Path<const D: usize> {
+    map: NewtonMap,
+    elimination: Option<Elimination<D>>,
+    centre: Vec<Local<D>>,
+    /// α over what follows from the residual.
+    factor: f64,
+    /// How far the centre runs ahead, in steps.
+    stride: f64,
+}
+
+impl<const D: usize> Path<D> {
+    /// Solves the problem softened about the centre to a target, or as well as may be.
+    fn softened(&mut self, problem: &LocalProblem<D>, size: f64, target: f64) -> Run<D> {
+        let Self {
+            map,
+            elimination,
+            centre,
+            factor,
+            ..
+        } = self;
+        let alpha = (*factor * size.powf(SOFTNESS)).clamp(ALPHA[0], ALPHA[1]);
+        let softened = problem.in_series(|i| Springs {
+            compliance: Local::repeat(alpha * problem.compliance(i)),
+            force: centre[i],
+        });
+        let mut run = newton(&softened, *map, elimination, centre, target, STEPS);
+        if run.residual > target {
+            for _ in 0..SWEEPS {
+                if sweep(&softened, &mut run.force) < 0.01 * target {
+                    break;
+                }
+            }
+            *factor = (SOFTER * *factor).min(1.0 / f64::EPSILON);
+        } else if run.iterations <= EASY {
+            *factor = (HARDER * *factor).max(1.0);
+        }
+        run
+    }
+
+    /// Goes on from the solution of a softened problem, its target reached or not.
+    fn advance(&mut self, reached: bool, now: &mut LocalSolution<D>, next: LocalSolution<D>) {
+        let size = now.residual.size();
+        let change = next.residual.size() / size;
+        self.stride = if reached && size < NEAR && (0.5..2.0).contains(&change) {
+            (STRIDE * self.stride).min(LONGEST)
+        } else {
+            1.0
+        };
+        // What is worse is kept only as the exact answer of a softened problem.
+        if reached || change < 1.0 {
+            let stride = self.stride;
+            let ahead = |(r, before): (&Local<D>, &Local<D>)| r + (r - before) * (stride - 1.0);
+            self.centre = next.force.iter().zip(&now.force).map(ahead).collect();
+            *now = next;
+        } else {
+            self.centre.clone_from(&now.force);
+        }
     }
 }

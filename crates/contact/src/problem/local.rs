@@ -1,9 +1,10 @@
 //! The discrete frictional contact problem in its local form and how far a point is from solving it;
 //! not the bodies, see [`GlobalProblem`](crate::GlobalProblem).
 
-use super::BlockMatrix;
-use crate::ContactError;
-use moreau_laws::{Coulomb, Local, Status};
+use super::{BlockMatrix, criticality, statuses};
+use crate::error::{expect_finite, expect_sizes};
+use crate::{ContactError, Springs};
+use moreau_laws::{Friction, Local, Status};
 use nalgebra::{DMatrix, DVector, Matrix3, SMatrix};
 
 /// The discrete frictional contact problem in local form: find r and u with
@@ -35,7 +36,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, SMatrix};
 pub struct LocalProblem<const D: usize> {
     operator: BlockMatrix<D>,
     free: Vec<Local<D>>,
-    friction: Vec<Coulomb>,
+    laws: Vec<Friction>,
     /// W_ii of every contact.
     own: Vec<SMatrix<f64, D, D>>,
     /// |W_ii|₂ of every contact.
@@ -78,32 +79,15 @@ impl<const D: usize> LocalProblem<D> {
     pub fn new(
         operator: BlockMatrix<D>,
         free: Vec<Local<D>>,
-        friction: Vec<Coulomb>,
+        laws: Vec<impl Into<Friction>>,
     ) -> Result<Self, ContactError> {
-        let contacts = friction.len();
-        for (what, found) in [
-            ("Delassus operator", operator.contacts()),
-            ("free displacements", free.len()),
-        ] {
-            if found != contacts {
-                return Err(ContactError::Dimension {
-                    what,
-                    found,
-                    expected: contacts,
-                });
-            }
-        }
-        for (what, finite) in [
-            ("Delassus operator", operator.is_finite()),
-            (
-                "free displacements",
-                free.iter().flatten().all(|v| v.is_finite()),
-            ),
-        ] {
-            if !finite {
-                return Err(ContactError::NotFinite { what });
-            }
-        }
+        let contacts = laws.len();
+        expect_sizes([
+            ("Delassus operator", operator.contacts(), contacts),
+            ("free displacements", free.len(), contacts),
+        ])?;
+        expect_finite("Delassus operator", operator.entries())?;
+        expect_finite("free displacements", free.iter().flatten())?;
         let own: Vec<_> = (0..contacts).map(|i| operator.diagonal(i)).collect();
         if let Some(contact) = own.iter().position(|own| own[(0, 0)] <= 0.0) {
             return Err(ContactError::Rigid {
@@ -112,16 +96,13 @@ impl<const D: usize> LocalProblem<D> {
             });
         }
         let compliance: Vec<f64> = own.iter().map(spectral_norm).collect();
-        let scaled = free
-            .iter()
-            .zip(&compliance)
-            .map(|(q, w)| (q / *w).norm_squared());
-        let load = scaled.sum::<f64>().sqrt();
+        let scaled = |(q, w): (&Local<D>, &f64)| (q / *w).norm_squared();
+        let load = free.iter().zip(&compliance).map(scaled).sum::<f64>().sqrt();
         Ok(Self {
             own,
             operator,
             free,
-            friction,
+            laws: laws.into_iter().map(Into::into).collect(),
             compliance,
             load,
         })
@@ -129,7 +110,7 @@ impl<const D: usize> LocalProblem<D> {
 
     /// Number of contacts.
     pub fn contacts(&self) -> usize {
-        self.friction.len()
+        self.laws.len()
     }
 
     /// The Delassus operator W.
@@ -142,14 +123,14 @@ impl<const D: usize> LocalProblem<D> {
         &self.free
     }
 
-    /// The friction law of every contact.
-    pub fn friction(&self) -> &[Coulomb] {
-        &self.friction
+    /// The law of every contact.
+    pub fn laws(&self) -> &[Friction] {
+        &self.laws
     }
 
     /// W_ii of contact i.
     #[inline]
-    pub(super) fn own(&self, i: usize) -> &SMatrix<f64, D, D> {
+    pub(crate) fn own(&self, i: usize) -> &SMatrix<f64, D, D> {
         &self.own[i]
     }
 
@@ -180,9 +161,9 @@ impl<const D: usize> LocalProblem<D> {
     }
 
     /// [`Residual::size`] alone, for those who ask often.
-    pub(super) fn size(&self, r: &[Local<D>], u: &[Local<D>]) -> f64 {
+    pub(crate) fn size(&self, r: &[Local<D>], u: &[Local<D>]) -> f64 {
         let (mut map, mut forces) = (0.0, 0.0);
-        for (i, law) in self.friction.iter().enumerate() {
+        for (i, law) in self.laws.iter().enumerate() {
             let rho = 1.0 / self.compliance[i];
             map += law.natural_map(&u[i], &r[i], rho).norm_squared();
             forces += r[i].norm_squared();
@@ -192,9 +173,9 @@ impl<const D: usize> LocalProblem<D> {
     }
 
     /// The norms of which residuals are made.
-    pub(super) fn norms(&self, r: &[Local<D>], u: &[Local<D>]) -> Norms {
+    pub(crate) fn norms(&self, r: &[Local<D>], u: &[Local<D>]) -> Norms {
         let mut squares = Norms::default();
-        for (i, law) in self.friction.iter().enumerate() {
+        for (i, law) in self.laws.iter().enumerate() {
             let rho = 1.0 / self.compliance[i];
             squares.scaled += law.natural_map(&u[i], &r[i], rho).norm_squared();
             squares.unscaled += law.natural_map(&u[i], &r[i], 1.0).norm_squared();
@@ -214,9 +195,7 @@ impl<const D: usize> LocalProblem<D> {
 
     /// Status of every contact at (r, u), \[35\].
     pub fn statuses(&self, r: &[Local<D>], u: &[Local<D>]) -> Vec<Status> {
-        (0..self.contacts())
-            .map(|i| self.friction[i].status(&u[i], &r[i], 1.0 / self.compliance[i]))
-            .collect()
+        statuses(&self.laws, u, r, |i| 1.0 / self.compliance[i])
     }
 
     /// Numerical rank of W, by Cholesky's factorisation of its symmetric part with pivots down to
@@ -261,35 +240,52 @@ impl<const D: usize> LocalProblem<D> {
     /// or wedge (A. Klarbring, *Ingenieur-Archiv* 60 (1990) 529-541); in space and for several
     /// contacts the ratio is an indicator, not a bound.
     pub fn criticality(&self) -> Option<(usize, f64)> {
-        let ratio = |i: usize| {
+        let moved_along = |i: usize| {
             let own = self.own(i);
-            let coupling = (1..D).fold(0.0, |norm: f64, k| norm.hypot(own[(0, k)]));
-            (i, self.friction[i].friction() * coupling / own[(0, 0)])
+            Local::<D>::from_fn(|k, _| {
+                if k == 0 {
+                    0.0
+                } else {
+                    own[(0, k)] / own[(0, 0)]
+                }
+            })
         };
-        let worst = (0..self.contacts()).map(ratio);
-        worst.max_by(|a, b| a.1.total_cmp(&b.1))
+        criticality(&self.laws, 0..self.contacts(), moved_along)
+    }
+
+    /// The problem with springs in series: u = (W + C) t + q − C t*, whose u is the part of the
+    /// displacement that obeys the law. Residuals are measured as those of the problem without them.
+    pub(crate) fn in_series(&self, springs: impl Fn(usize) -> Springs<D>) -> Self {
+        let mut problem = self.clone();
+        for i in 0..self.contacts() {
+            let Springs { compliance, force } = springs(i);
+            problem.operator.add_to_diagonal(i, &compliance);
+            problem.own[i] += SMatrix::from_diagonal(&compliance);
+            problem.free[i] -= compliance.component_mul(&force);
+        }
+        problem
     }
 }
 
 /// Euclidean norms over all contacts.
 #[derive(Debug, Default, Clone, Copy)]
-pub(super) struct Norms {
+pub(crate) struct Norms {
     /// |F_ρ| with ρ = 1/|W_ii|₂.
-    pub(super) scaled: f64,
+    pub(crate) scaled: f64,
     /// |F_1|.
-    pub(super) unscaled: f64,
+    pub(crate) unscaled: f64,
     /// |r|.
-    pub(super) forces: f64,
+    pub(crate) forces: f64,
     /// |u|.
-    pub(super) displacements: f64,
+    pub(crate) displacements: f64,
     /// |q|.
-    pub(super) loads: f64,
+    pub(crate) loads: f64,
     /// |ρ q|.
-    pub(super) scaled_loads: f64,
+    pub(crate) scaled_loads: f64,
 }
 
 /// A ratio of norms; zero over zero is zero, and what has overflowed solves nothing.
-pub(super) fn over(norm: f64, scale: f64) -> f64 {
+pub(crate) fn over(norm: f64, scale: f64) -> f64 {
     if norm == 0.0 && scale.is_finite() {
         0.0
     } else if norm.is_finite() && scale.is_finite() {

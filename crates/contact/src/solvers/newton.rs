@@ -1,133 +1,12 @@
-//! Semismooth Newton method on the local form, regularised by a proximal point; not the method on the
-//! condensed stiffness, see `SemismoothNewton`.
+//! Semismooth Newton method on the local form; not the method on the condensed stiffness, see
+//! `SemismoothNewton`, nor what makes a singular W regular, see `ProximalNewton`.
 
-use super::blocks::{BlockMatrix, Factor};
+use super::NewtonMap;
 use super::elimination::Elimination;
-use super::problem::LocalProblem;
-use moreau_laws::{Coulomb, Local};
+use super::newton_map::Linearised;
+use crate::problem::{BlockMatrix, Factor, LocalProblem};
+use moreau_laws::Local;
 use nalgebra::SMatrix;
-
-/// The equation F(r, u) = 0 that Newton's method solves in place of the contact law.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum NewtonMap {
-    /// P. Alart and A. Curnier's augmented Lagrangian: r_n = (r_n − ρ_n u_n)⁺, and r_t the
-    /// projection of r_t − ρ_t u_t on the disc of radius μ (r_n − ρ_n u_n)⁺ (*Comput. Methods Appl.
-    /// Mech. Engrg.* 92 (1991) 353-375).
-    #[default]
-    AlartCurnier,
-    /// The same with the disc of radius μ r_n⁺, after M. Jean and J. J. Moreau.
-    JeanMoreau,
-    /// The natural map r − proj(r − ρ ũ, K_μ) of \[90′\].
-    Natural,
-}
-
-/// F of a contact with its derivatives: dF = A dr + B du.
-struct Linearised<const D: usize> {
-    map: Local<D>,
-    force: SMatrix<f64, D, D>,
-    displacement: SMatrix<f64, D, D>,
-}
-
-impl NewtonMap {
-    fn linearise<const D: usize>(
-        self,
-        law: &Coulomb,
-        rho: &Local<D>,
-        r: &Local<D>,
-        u: &Local<D>,
-    ) -> Linearised<D> {
-        let mut at = Linearised {
-            map: Local::zeros(),
-            force: SMatrix::zeros(),
-            displacement: SMatrix::zeros(),
-        };
-        if self == Self::Natural {
-            let rho = rho.mean();
-            let prediction = r - rho * law.shifted(u);
-            let projector = law.project_jacobian(&prediction);
-            at.map = r - law.project(&prediction);
-            at.force = SMatrix::identity() - projector;
-            at.displacement = rho * projector * law.shifted_jacobian(u);
-            return at;
-        }
-        let mu = law.friction();
-        let prediction = r - rho.component_mul(u);
-        let closed = prediction[0] > 0.0;
-        if closed {
-            at.map[0] = rho[0] * u[0];
-            at.displacement[(0, 0)] = rho[0];
-        } else {
-            at.map[0] = r[0];
-            at.force[(0, 0)] = 1.0;
-        }
-        let pressure = if self == Self::AlartCurnier {
-            prediction[0]
-        } else {
-            r[0]
-        };
-        let radius = mu * pressure.max(0.0);
-        let size = (1..D)
-            .map(|k| prediction[k] * prediction[k])
-            .sum::<f64>()
-            .sqrt();
-        if size <= radius && radius > 0.0 {
-            for k in 1..D {
-                at.map[k] = rho[k] * u[k];
-                at.displacement[(k, k)] = rho[k];
-            }
-            return at;
-        }
-        for k in 1..D {
-            at.map[k] = r[k];
-            at.force[(k, k)] = 1.0;
-        }
-        if radius > 0.0 {
-            let shrunk = radius / size;
-            for k in 1..D {
-                let d_k = prediction[k] / size;
-                at.map[k] -= radius * d_k;
-                for l in 1..D {
-                    let turned = if k == l { 1.0 } else { 0.0 } - d_k * prediction[l] / size;
-                    at.force[(k, l)] -= shrunk * turned;
-                    at.displacement[(k, l)] += shrunk * rho[l] * turned;
-                }
-                at.force[(k, 0)] -= mu * d_k;
-                if self == Self::AlartCurnier {
-                    at.displacement[(k, 0)] += mu * rho[0] * d_k;
-                }
-            }
-        }
-        at
-    }
-}
-
-/// u = W r + q + α |W_ii| (r − c): the problem with a compliance about the forces c at every
-/// contact. It has the same solution as the problem itself where c is one, and a regular operator
-/// whatever the rank of W.
-pub(super) struct Proximal<'a, const D: usize> {
-    pub(super) problem: &'a LocalProblem<D>,
-    pub(super) alpha: f64,
-    pub(super) centre: &'a [Local<D>],
-}
-
-impl<const D: usize> Proximal<'_, D> {
-    /// Compliance added at contact i.
-    #[inline]
-    pub(super) fn spring(&self, i: usize) -> f64 {
-        self.alpha * self.problem.compliance(i)
-    }
-
-    #[inline]
-    pub(super) fn displacement_at(&self, i: usize, r: &[Local<D>]) -> Local<D> {
-        self.problem.operator().row_times(i, r)
-            + self.problem.free()[i]
-            + (r[i] - self.centre[i]) * self.spring(i)
-    }
-
-    pub(super) fn displacement(&self, r: &[Local<D>]) -> Vec<Local<D>> {
-        (0..r.len()).map(|i| self.displacement_at(i, r)).collect()
-    }
-}
 
 /// Earlier merits among which the largest must decrease: full steps past a kink are let through.
 const MEMORY: usize = 5;
@@ -151,7 +30,7 @@ pub(super) struct Run<const D: usize> {
 /// Newton's method with a nonmonotone line search, from r until the residual is at most `target` or
 /// the iteration stalls; the best iterate met.
 pub(super) fn newton<const D: usize>(
-    problem: &Proximal<D>,
+    problem: &LocalProblem<D>,
     map: NewtonMap,
     elimination: &mut Option<Elimination<D>>,
     start: &[Local<D>],
@@ -226,8 +105,8 @@ struct Step<const D: usize> {
     displacement: Vec<Local<D>>,
 }
 
-struct Method<'a, 'b, const D: usize> {
-    problem: &'a Proximal<'b, D>,
+struct Method<'a, const D: usize> {
+    problem: &'a LocalProblem<D>,
     map: NewtonMap,
     elimination: &'a mut Option<Elimination<D>>,
     /// ρ of every component.
@@ -239,14 +118,14 @@ struct Method<'a, 'b, const D: usize> {
 const REFINE: f64 = 1e-6;
 const REFUSE: f64 = 1e-3;
 
-impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
+impl<'a, const D: usize> Method<'a, D> {
     fn new(
-        problem: &'a Proximal<'b, D>,
+        problem: &'a LocalProblem<D>,
         map: NewtonMap,
         elimination: &'a mut Option<Elimination<D>>,
     ) -> Self {
         let rho = |i: usize| {
-            let own = problem.problem.own(i);
+            let own = problem.own(i);
             let tangential = (1..D).map(|k| own[(k, k)]).sum::<f64>() / (D.max(2) - 1) as f64;
             let mut rho = Local::repeat(1.0 / tangential.max(1e-3 * own[(0, 0)]));
             rho[0] = 1.0 / own[(0, 0)];
@@ -256,16 +135,13 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
             problem,
             map,
             elimination,
-            rho: (0..problem.problem.contacts()).map(rho).collect(),
+            rho: (0..problem.contacts()).map(rho).collect(),
         }
     }
 
     fn iterate(&self, r: Vec<Local<D>>, u: Vec<Local<D>>) -> Iterate<D> {
-        let p = self.problem.problem;
-        let linearise = |i| {
-            let law: &Coulomb = &p.friction()[i];
-            self.map.linearise(law, &self.rho[i], &r[i], &u[i])
-        };
+        let p = self.problem;
+        let linearise = |i| self.map.linearise(&p.laws()[i], &self.rho[i], &r[i], &u[i]);
         let at: Vec<Linearised<D>> = (0..r.len()).map(linearise).collect();
         // Multiplied by a compliance a square is an energy: unlike contacts weigh alike.
         let energy = |(i, at): (usize, &Linearised<D>)| at.map.norm_squared() * p.compliance(i);
@@ -308,24 +184,11 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
         opens: &[bool],
         force: Vec<Local<D>>,
     ) -> Option<Step<D>> {
-        let operator = self.problem.problem.operator();
         elimination.factorise(|i, add| {
-            let at = &now.at[i];
-            if opens[i] {
-                return false;
+            if !opens[i] {
+                self.row(i, now, opens).for_each(|(j, block)| add(j, block));
             }
-            for (j, block) in operator.row(i).filter(|(j, _)| !opens[*j]) {
-                let spread = at.displacement * block;
-                add(
-                    j,
-                    if j == i {
-                        spread + self.own(i, at)
-                    } else {
-                        spread
-                    },
-                );
-            }
-            true
+            !opens[i]
         })?;
         let size: f64 = now.at.iter().map(|at| at.map.norm_squared()).sum();
         let (mut step, mut left, _) = self.check(now, opens, force);
@@ -344,9 +207,19 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
         None
     }
 
-    /// A + s B of a contact.
-    fn own(&self, i: usize, at: &Linearised<D>) -> SMatrix<f64, D, D> {
-        at.force + at.displacement * self.problem.spring(i)
+    /// The blocks A + B W of a contact's row of the matrix, at contacts that do not open.
+    fn row(
+        &self,
+        i: usize,
+        now: &Iterate<D>,
+        opens: &[bool],
+    ) -> impl Iterator<Item = (usize, SMatrix<f64, D, D>)> {
+        let at = &now.at[i];
+        let active = self.problem.operator().row(i).filter(|(j, _)| !opens[*j]);
+        active.map(move |(j, block)| {
+            let spread = at.displacement * block;
+            (j, if j == i { spread + at.force } else { spread })
+        })
     }
 
     /// A step with its change of u, what it leaves of Newton's equation, and the square of that.
@@ -356,8 +229,8 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
         opens: &[bool],
         force: Vec<Local<D>>,
     ) -> (Step<D>, Vec<Local<D>>, f64) {
-        let operator = self.problem.problem.operator();
-        let change = |i| operator.row_times(i, &force) + force[i] * self.problem.spring(i);
+        let operator = self.problem.operator();
+        let change = |i| operator.row_times(i, &force);
         let displacement: Vec<Local<D>> = (0..force.len()).map(change).collect();
         let left = |(i, at): (usize, &Linearised<D>)| match opens[i] {
             true => Local::zeros(),
@@ -379,7 +252,6 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
         opens: &[bool],
         mut force: Vec<Local<D>>,
     ) -> Option<Step<D>> {
-        let operator = self.problem.problem.operator();
         let mut place = vec![usize::MAX; force.len()];
         let active: Vec<usize> = (0..force.len()).filter(|i| !opens[*i]).collect();
         for (at, &i) in active.iter().enumerate() {
@@ -387,19 +259,8 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
         }
         let mut matrix = BlockMatrix::empty();
         for &i in &active {
-            let at = &now.at[i];
-            let row = operator.row(i).filter(|(j, _)| !opens[*j]);
-            matrix.push_row(row.map(|(j, block)| {
-                let spread = at.displacement * block;
-                (
-                    place[j],
-                    if j == i {
-                        spread + self.own(i, at)
-                    } else {
-                        spread
-                    },
-                )
-            }));
+            let row = self.row(i, now, opens);
+            matrix.push_row(row.map(|(j, block)| (place[j], block)));
         }
         let (_, left, _) = self.check(now, opens, force.clone());
         let rhs: Vec<Local<D>> = active.iter().map(|&i| left[i]).collect();
@@ -408,50 +269,5 @@ impl<'a, 'b, const D: usize> Method<'a, 'b, D> {
             force[i] = solved;
         }
         Some(self.check(now, opens, force).0)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A and B are the derivatives of F, in every branch of every map.
-    #[test]
-    fn derivatives_are_those_of_the_map() {
-        let law = Coulomb::new(0.6).expect("valid");
-        let rho = Local::<3>::new(1.3, 0.7, 0.7);
-        let points = [
-            ([1.0, 0.2, 0.1], [0.1, 0.05, -0.1]),
-            ([1.0, 0.9, -0.5], [0.1, -0.8, 0.3]),
-            ([0.1, 0.2, 0.1], [0.9, -0.8, 0.3]),
-            ([-0.4, 0.2, 0.1], [-0.9, -0.8, 0.3]),
-        ];
-        for map in [
-            NewtonMap::AlartCurnier,
-            NewtonMap::JeanMoreau,
-            NewtonMap::Natural,
-        ] {
-            let rho = if map == NewtonMap::Natural {
-                Local::repeat(rho.mean())
-            } else {
-                rho
-            };
-            for (r, u) in points {
-                let (r, u) = (Local::<3>::from(r), Local::<3>::from(u));
-                let at = map.linearise(&law, &rho, &r, &u);
-                for k in 0..3 {
-                    let mut d = Local::<3>::zeros();
-                    d[k] = 1e-6;
-                    let f = |r: &Local<3>, u: &Local<3>| map.linearise(&law, &rho, r, u).map;
-                    let by_force = (f(&(r + d), &u) - f(&(r - d), &u)) / 2e-6;
-                    let by_displacement = (f(&r, &(u + d)) - f(&r, &(u - d))) / 2e-6;
-                    assert!(
-                        (by_force - at.force.column(k)).norm() < 1e-8,
-                        "{map:?} {r} {u}"
-                    );
-                    assert!((by_displacement - at.displacement.column(k)).norm() < 1e-8);
-                }
-            }
-        }
     }
 }

@@ -1,25 +1,44 @@
-//! The methods that solve a contact problem, one file each, behind one trait.
+//! The methods that solve contact problems, one file each, behind a trait for each form of the problem:
+//! [`ContactSolver`] for the condensed one, [`LocalSolver`] for u = W r + q.
 
+mod admm;
 mod anderson;
+mod auto;
+mod dual;
+mod elimination;
+mod fixed_point;
 mod gauss_seidel;
 mod linearised;
+mod local;
+mod newton;
+mod newton_map;
+mod one_contact;
 mod penalty;
+mod proximal;
 mod recycled;
 mod semismooth;
+#[cfg(test)]
+mod tests;
 mod tied;
+mod tresca;
 mod uzawa;
 
+pub use admm::Admm;
 pub use anderson::Anderson;
+pub use auto::Auto;
+pub use dual::Dual;
 pub use gauss_seidel::GaussSeidel;
+pub use local::{LocalSolution, LocalSolver, Reason, Unsolved};
+pub use newton_map::NewtonMap;
 pub use penalty::Penalty;
+pub use proximal::{Newton, ProximalNewton};
 pub use semismooth::SemismoothNewton;
 pub use tied::solve_tied;
+pub use tresca::TrescaFixedPoint;
 pub use uzawa::{Uzawa, uzawa_steps};
 
-use crate::problem::{split, stack};
-use crate::{Certificate, ContactError, ContactProblem, Delassus};
+use crate::{Certificate, ContactError, ContactProblem, LocalProblem};
 use moreau_laws::{Local, Status};
-use nalgebra::DVector;
 
 /// When an iterative method stops.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +47,16 @@ pub struct Tolerance {
     pub relative: f64,
     /// Iterations after which the method gives up.
     pub iterations: usize,
+}
+
+impl Tolerance {
+    /// From a residual and a number of iterations.
+    pub fn new(relative: f64, iterations: usize) -> Self {
+        Self {
+            relative,
+            iterations,
+        }
+    }
 }
 
 /// Solution of a contact problem.
@@ -57,7 +86,7 @@ impl<const D: usize> ContactSolution<D> {
     /// Bipotential gap, penetration and excess force of the solution under the exact law, taken
     /// at the irreversible displacement.
     pub fn certificate(&self, problem: &ContactProblem<D>) -> Certificate {
-        Certificate::new(problem.friction(), &self.irreversible, &self.force)
+        Certificate::new(problem.laws(), &self.irreversible, &self.force)
     }
 }
 
@@ -96,47 +125,64 @@ pub trait ContactSolver<const D: usize>: std::fmt::Debug + Send + Sync {
     }
 }
 
-/// Iterates t ← T(t), extrapolated, on u = W t + q until the residual common to all methods is met.
-fn fixed_point<const D: usize>(
-    solver: &'static str,
-    problem: &ContactProblem<D>,
-    form: &Delassus<D>,
-    start: DVector<f64>,
-    (tolerance, enough): (Tolerance, f64),
-    map: impl Fn(&DVector<f64>) -> Vec<Local<D>>,
-) -> Result<ContactSolution<D>, ContactError> {
-    let mut anderson = Anderson::default();
-    let mut t = start;
-    let mut iterations = 0;
-    loop {
-        let image = map(&t);
-        let stacked = stack(&image);
-        let u = split::<D>(&(&form.operator * &stacked + &form.free));
-        let residual = problem.residual(&u, &image);
-        let target = tolerance.relative * problem.force_scale(&image);
-        let target = target.max(problem.rounding(&problem.relative(&u)));
-        if residual <= target.max(enough) {
-            let status = problem.statuses(&u, &image);
-            return Ok(ContactSolution {
-                irreversible: u.clone(),
-                motion: problem.relative(&u),
-                displacement: u,
-                force: image,
-                status,
+/// Forces of a guess to start from.
+fn forces<const D: usize>(
+    form: &LocalProblem<D>,
+    guess: Option<&ContactSolution<D>>,
+) -> Vec<Local<D>> {
+    local::start(form, guess.map(|g| g.force.as_slice()))
+}
+
+/// When a method on the form u = W t + q of a condensed problem has arrived.
+struct Goal<'a, const D: usize> {
+    problem: &'a ContactProblem<D>,
+    tolerance: Tolerance,
+    /// Residual that is enough \[N\].
+    enough: f64,
+}
+
+impl<'a, const D: usize> Goal<'a, D> {
+    fn new(problem: &'a ContactProblem<D>, tolerance: Tolerance, enough: f64) -> Self {
+        Self {
+            problem,
+            tolerance,
+            enough,
+        }
+    }
+
+    /// Residual that meets the tolerance at forces t and displacements u, or is rounding \[N\].
+    fn target(&self, t: &[Local<D>], u: &[Local<D>]) -> f64 {
+        let asked = self.tolerance.relative * self.problem.force_scale(t);
+        asked.max(self.problem.rounding(&self.problem.relative(u)))
+    }
+
+    /// The solution at a point that is one, the failure where the iterations are used up.
+    fn judge(
+        &self,
+        solver: &'static str,
+        iterations: usize,
+        t: &[Local<D>],
+        u: &[Local<D>],
+    ) -> Option<Result<ContactSolution<D>, ContactError>> {
+        let residual = self.problem.residual(u, t);
+        let target = self.target(t, u);
+        if residual <= target.max(self.enough) {
+            return Some(Ok(ContactSolution {
+                displacement: u.to_vec(),
+                motion: self.problem.relative(u),
+                irreversible: u.to_vec(),
+                force: t.to_vec(),
+                status: self.problem.statuses(u, t),
                 iterations,
                 residual,
                 exact: residual <= target,
-            });
+            }));
         }
-        if iterations >= tolerance.iterations {
-            return Err(ContactError::NotConverged {
-                solver,
-                iterations,
-                residual,
-                tolerance: target,
-            });
-        }
-        iterations += 1;
-        t = anderson.next(&t, stacked);
+        (iterations >= self.tolerance.iterations).then_some(Err(ContactError::NotConverged {
+            solver,
+            iterations,
+            residual,
+            tolerance: target,
+        }))
     }
 }

@@ -1,0 +1,300 @@
+//! The condensed contact problem t = S (u − g) − f and its residual; not how it is solved.
+
+use super::{BlockMatrix, LocalProblem, criticality, split, stack, statuses};
+use crate::ContactError;
+use crate::error::{expect_finite, expect_sizes};
+use moreau_laws::{Friction, Local, Status};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+
+/// The contact problem of one linearised increment, in the contacts' local frames:
+///
+/// ```text
+/// t = S (u − g) − f,      (−u, t) extremal for [38] at every contact.
+/// ```
+///
+/// u = (u_n, u_t) is the gap at the end of the step and the slip of the step \[mm\], t the contact
+/// force on the body \[N\]; S is the stiffness of the structure condensed on the interface \[N/mm\],
+/// symmetric positive semi-definite, `D·contacts` square; f the condensed load \[N\] and g the
+/// displacement about which the structure was linearised \[mm\].
+#[derive(Debug, Clone)]
+pub struct ContactProblem<const D: usize> {
+    stiffness: DMatrix<f64>,
+    load: DVector<f64>,
+    origin: Vec<Local<D>>,
+    laws: Vec<Friction>,
+    previous: Vec<Local<D>>,
+    /// Whether it has a proximal term.
+    held: bool,
+}
+
+impl<const D: usize> ContactProblem<D> {
+    /// A problem from its parts; `previous` are the forces t₀ at the start of the step.
+    ///
+    /// # Errors
+    /// [`ContactError::Dimension`] if sizes disagree, [`ContactError::NotFinite`] for NaN or ∞.
+    pub fn new(
+        stiffness: DMatrix<f64>,
+        load: DVector<f64>,
+        origin: Vec<Local<D>>,
+        laws: Vec<impl Into<Friction>>,
+        previous: Vec<Local<D>>,
+    ) -> Result<Self, ContactError> {
+        let contacts = laws.len();
+        expect_sizes([
+            ("stiffness rows", stiffness.nrows(), D * contacts),
+            ("stiffness columns", stiffness.ncols(), D * contacts),
+            ("load", load.len(), D * contacts),
+            ("origin", origin.len(), contacts),
+            ("previous", previous.len(), contacts),
+        ])?;
+        expect_finite("stiffness", &stiffness)?;
+        expect_finite("load", &load)?;
+        expect_finite("origin", origin.iter().flatten())?;
+        expect_finite("previous", previous.iter().flatten())?;
+        Ok(Self {
+            stiffness,
+            load,
+            origin,
+            laws: laws.into_iter().map(Into::into).collect(),
+            previous,
+            held: false,
+        })
+    }
+
+    /// A problem given in the form u = W t + q of discrete frictional contact; t₀ = 0.
+    ///
+    /// # Errors
+    /// As [`ContactProblem::new`]; [`ContactError::Indefinite`] if W is not positive definite.
+    pub fn from_delassus(
+        operator: DMatrix<f64>,
+        free: &[Local<D>],
+        laws: Vec<impl Into<Friction>>,
+    ) -> Result<Self, ContactError> {
+        let size = D * laws.len();
+        expect_sizes([
+            ("Delassus operator's rows", operator.nrows(), size),
+            ("Delassus operator's columns", operator.ncols(), size),
+        ])?;
+        let singular = |component| ContactError::Indefinite {
+            what: "Delassus operator",
+            component,
+        };
+        let stiffness = inverse(operator).map_err(singular)?;
+        let zero = vec![Local::zeros(); laws.len()];
+        Self::new(stiffness, DVector::zeros(size), free.to_vec(), laws, zero)
+    }
+
+    /// A proximal term c/2 |u − g|² about the origin, c \[N/mm\]: S + c 1 takes the place of S. Where
+    /// the statuses leave the bodies a rigid motion S is singular, and the solutions are many; this has
+    /// one, near to the origin. Repeated about its own solution it ends at one of the problem itself.
+    pub fn hold(&mut self, c: f64) {
+        for k in 0..self.stiffness.nrows() {
+            self.stiffness[(k, k)] += c;
+        }
+        self.held = true;
+    }
+
+    /// Whether only a proximal term makes S regular: its inverse is then too large to iterate on.
+    pub(crate) fn is_held(&self) -> bool {
+        self.held
+    }
+
+    /// Number of contacts.
+    pub fn contacts(&self) -> usize {
+        self.laws.len()
+    }
+
+    /// S, `D·contacts` square \[N/mm\].
+    pub fn stiffness(&self) -> &DMatrix<f64> {
+        &self.stiffness
+    }
+
+    /// The law of every contact.
+    pub fn laws(&self) -> &[Friction] {
+        &self.laws
+    }
+
+    /// Contact forces t₀ at the start of the step \[N\].
+    pub fn previous(&self) -> &[Local<D>] {
+        &self.previous
+    }
+
+    /// Displacement g about which the structure was linearised \[mm\].
+    pub fn origin(&self) -> &[Local<D>] {
+        &self.origin
+    }
+
+    /// Forces that displacements u ask of the structure: t = S (u − g) − f \[N\].
+    pub fn force(&self, u: &[Local<D>]) -> Vec<Local<D>> {
+        self.force_of(&self.relative(u))
+    }
+
+    /// Displacements from the origin, x = u − g \[mm\].
+    pub(crate) fn relative(&self, u: &[Local<D>]) -> Vec<Local<D>> {
+        u.iter().zip(&self.origin).map(|(u, g)| u - g).collect()
+    }
+
+    /// Forces for displacements x = u − g from the origin: t = S x − f \[N\].
+    pub(crate) fn force_of(&self, x: &[Local<D>]) -> Vec<Local<D>> {
+        split(&(&self.stiffness * stack(x) - &self.load))
+    }
+
+    /// The form u = W t + q, with the Delassus operator W = S⁻¹ and q = g + W f.
+    ///
+    /// # Errors
+    /// [`ContactError::Floating`] if S is singular: the bodies are held by contact alone.
+    pub fn delassus(&self) -> Result<LocalProblem<D>, ContactError> {
+        let operator = inverse(self.stiffness.clone())
+            .map_err(|component| ContactError::Floating { component })?;
+        let free = split::<D>(&(&operator * &self.load));
+        let free = free.iter().zip(&self.origin).map(|(w, g)| w + g).collect();
+        LocalProblem::new(BlockMatrix::from_dense(&operator), free, self.laws.clone())
+    }
+
+    /// Parameter α of \[90′\] for contact i \[N/mm\]: the mean stiffness of its own components, so
+    /// that a residual in newtons weighs gaps and forces alike in any system of units.
+    pub fn alpha(&self, i: usize) -> f64 {
+        (0..D)
+            .map(|k| self.stiffness[(D * i + k, D * i + k)])
+            .sum::<f64>()
+            / D as f64
+    }
+
+    /// Largest norm over the contacts of the natural map t − proj(t − α ũ), \[90′\] \[N\].
+    pub fn residual(&self, u: &[Local<D>], t: &[Local<D>]) -> f64 {
+        (0..self.contacts())
+            .map(|i| self.laws[i].natural_map(&u[i], &t[i], self.alpha(i)).norm())
+            .fold(0.0, f64::max)
+    }
+
+    /// Size of the forces in play, against which a residual is judged \[N\]: the largest of the
+    /// forces now and at the start of the step, and of the condensed load.
+    pub fn force_scale(&self, t: &[Local<D>]) -> f64 {
+        let forces = t
+            .iter()
+            .chain(&self.previous)
+            .map(|t| t.norm())
+            .fold(0.0, f64::max);
+        forces.max(self.load.amax()).max(f64::MIN_POSITIVE)
+    }
+
+    /// Rounding of forces S x − f \[N\], x = u − g: no residual can be expected below it.
+    pub(crate) fn rounding(&self, x: &[Local<D>]) -> f64 {
+        let reach = x.iter().map(|x| x.amax()).fold(0.0, f64::max);
+        let stiffest = self.stiffness.diagonal().amax();
+        let terms = (self.load.len() as f64).sqrt();
+        4.0 * f64::EPSILON * terms * (stiffest * reach + self.load.amax())
+    }
+
+    /// Largest ratio μ/μ_c over the contacts that are closed, or were at the start of the step, with its
+    /// contact; `None` if there are none.
+    ///
+    /// It is 1/μ_c = |S_tt⁻¹ S_tn| of the diagonal block, which belongs to a contact beside which all others
+    /// stick: an indicator, not a bound (A. Klarbring, *Ingenieur-Archiv* 60 (1990) 529-541). Of a single
+    /// contact it is that of [`LocalProblem::criticality`]; of several, the block of W is taken while all
+    /// others are open.
+    pub fn criticality(&self, status: &[Status]) -> Option<(usize, f64)> {
+        let touches = |i: &usize| status[*i] != Status::Open || self.previous[*i][0] > 0.0;
+        let touching = (0..self.contacts()).filter(touches);
+        criticality(&self.laws, touching, |i| self.moved_along(i))
+    }
+
+    /// −S_tt⁻¹ S_tn of contact i, what it moves along while it opens by one.
+    fn moved_along(&self, i: usize) -> Local<D> {
+        let s = |a: usize, b: usize| match a.max(b) < D {
+            true => self.stiffness[(D * i + a, D * i + b)],
+            false => f64::from(u8::from(a == b)),
+        };
+        let along = Matrix2::new(s(1, 1), s(1, 2), s(2, 1), s(2, 2)).cholesky();
+        // What has no stiffness has no coupling either.
+        let moved = along.map_or_else(Vector2::zeros, |along| {
+            -along.solve(&Vector2::new(s(1, 0), s(2, 0)))
+        });
+        Local::from_fn(|k, _| if k == 0 { 0.0 } else { moved[k - 1] })
+    }
+
+    /// Status of every contact at (u, t), \[35\].
+    pub fn statuses(&self, u: &[Local<D>], t: &[Local<D>]) -> Vec<Status> {
+        statuses(&self.laws, u, t, |i| self.alpha(i))
+    }
+}
+
+/// Inverse of a symmetric positive definite matrix, or the component at which it is not.
+fn inverse(a: DMatrix<f64>) -> Result<DMatrix<f64>, usize> {
+    if a.is_empty() {
+        return Ok(a); // Nothing touches.
+    }
+    let scale = a.diagonal().amax();
+    match a.clone().cholesky() {
+        // A pivot at rounding level is a rigid motion, not a stiffness.
+        Some(factor) if factor.l_dirty().diagonal().amin().powi(2) > 1e-13 * scale => {
+            Ok(factor.inverse())
+        }
+        Some(factor) => Err(factor.l_dirty().diagonal().imin()),
+        None => Err(a.diagonal().imin()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moreau_laws::Coulomb;
+
+    fn coulomb(mu: f64) -> Friction {
+        Coulomb::new(mu).expect("valid").into()
+    }
+
+    #[test]
+    fn nothing_in_contact_has_a_form_too() {
+        let (s, f) = (DMatrix::zeros(0, 0), DVector::zeros(0));
+        let problem = ContactProblem::<2>::new(s, f, vec![], Vec::<Friction>::new(), vec![]);
+        let form = problem.expect("valid").delassus().expect("empty");
+        assert_eq!(form.contacts(), 0);
+    }
+
+    #[test]
+    fn delassus_form_inverts_the_stiffness_form() {
+        let s = DMatrix::from_row_slice(2, 2, &[3.0, 1.0, 1.0, 2.0]);
+        let f = DVector::from_row_slice(&[0.5, -0.25]);
+        let g = vec![Local::<2>::new(0.1, 0.2)];
+        let zero = vec![Local::zeros()];
+        let problem = ContactProblem::new(s, f, g, vec![coulomb(0.3)], zero).expect("valid");
+        let t = Local::<2>::new(0.7, -0.2);
+        let form = problem.delassus().expect("definite");
+        let back = problem.force(&form.displacement(&[t]));
+        assert!((back[0] - t).norm() < 1e-14);
+    }
+
+    #[test]
+    fn bad_data_is_refused() {
+        let s = DMatrix::identity(2, 2);
+        let one = vec![coulomb(0.1)];
+        let zero = vec![Local::<2>::zeros()];
+        let f = DVector::zeros(2);
+        let nan = DVector::from_element(2, f64::NAN);
+        let new = ContactProblem::new;
+        assert!(matches!(
+            new(s.clone(), nan, zero.clone(), one.clone(), zero.clone()),
+            Err(ContactError::NotFinite { what: "load" })
+        ));
+        assert!(matches!(
+            new(
+                DMatrix::identity(3, 3),
+                f.clone(),
+                zero.clone(),
+                one.clone(),
+                zero.clone()
+            ),
+            Err(ContactError::Dimension {
+                found: 3,
+                expected: 2,
+                ..
+            })
+        ));
+        let singular = new(DMatrix::zeros(2, 2), f, zero.clone(), one, zero).expect("valid");
+        assert!(matches!(
+            singular.delassus(),
+            Err(ContactError::Floating { .. })
+        ));
+    }
+}
