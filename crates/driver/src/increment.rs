@@ -77,7 +77,7 @@ const FARTHEST: f64 = 10.0;
 
 /// Part of the tolerance at which an increment with tied contacts is accepted as long as steps make the
 /// imbalance smaller.
-const WELL: f64 = 1e-2;
+const WELL: f64 = 0.1;
 
 /// Parts of what flow adds to the stiffness that are tried in turn where the tangent is a mechanism.
 const BLENDS: [f64; 4] = [1.0 - 1e-4, 0.99, 0.8, 0.0];
@@ -211,8 +211,8 @@ impl<const D: usize> Driver<D> {
             let moved = counts.newton == 1
                 && !(start.displacement.range(tools.clone())).eq(end.displacement.range(tools));
             let complete = !moved && arrived;
-            // Where the step is linear it may be the last; what a tool has moved is no imbalance yet.
-            let exact = !now.assembly.flows || moved || control.is_some();
+            // Where the step is linear it may be the last.
+            let exact = !now.assembly.flows || control.is_some();
             let enough = match exact {
                 true => 0.0,
                 false => chord.contact_residual(imbalance, balance),
