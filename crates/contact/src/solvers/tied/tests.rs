@@ -238,3 +238,54 @@ fn the_number_of_factors_and_solves_does_not_follow_that_of_contacts() {
         "{few} {some}, {many} {all}"
     );
 }
+
+/// A long beam on springs, all of it on the ground, pressed down in the middle: next to where it bears it
+/// would pull, and next to that bear again. It lifts off at once, not one wave after the other.
+#[test]
+fn what_lifts_off_is_not_peeled_off() {
+    let contacts = 200;
+    let bend = DMatrix::from_fn(contacts - 2, contacts, |i, j| match j.wrapping_sub(i) {
+        0 | 2 => 1.0,
+        1 => -2.0,
+        _ => 0.0,
+    });
+    let beam = bend.transpose() * &bend * 30.0;
+    let stiffness = DMatrix::from_fn(2 * contacts, 2 * contacts, |i, j| match (i % 2, j % 2) {
+        (0, 0) => beam[(i / 2, j / 2)] + if i == j { 1e-6 } else { 0.0 },
+        _ => f64::from(u8::from(i == j)),
+    });
+    let load = DVector::from_fn(2 * contacts, |i, _| if i == contacts { -1.0 } else { 0.0 });
+    let mut structure = Dense {
+        stiffness,
+        load,
+        factor: None,
+        factorisations: 0,
+        solves: 0,
+    };
+    let springs = Springs {
+        compliance: Local::<2>::new(1.0, 1.0),
+        force: Local::zeros(),
+    };
+    let mut problem = TiedProblem {
+        structure: &mut structure,
+        origin: vec![Local::zeros(); contacts],
+        friction: vec![Coulomb::new(0.0).expect("valid").into(); contacts],
+        springs: vec![springs; contacts],
+        load: 1.0,
+        previous: vec![Local::zeros(); contacts],
+    };
+    let asked = (SemismoothNewton::default().tolerance, 0.0);
+    let (found, _) = solve_tied(&mut problem, None, asked).expect("solved");
+    let closed = found.force.iter().filter(|t| t[0] > 0.0).count();
+    assert!((5..30).contains(&closed), "{closed} bear");
+    for (t, u) in found.force.iter().zip(&found.displacement) {
+        assert!(t[0] >= 0.0 && u[0] + t[0] > -1e-9 && t[0] * (u[0] + t[0]) < 1e-9);
+    }
+    let total: f64 = found.force.iter().map(|t| t[0]).sum();
+    assert!((total - 1.0).abs() < 1e-3, "{total}");
+    assert!(
+        structure.factorisations <= 4,
+        "{} factors",
+        structure.factorisations
+    );
+}
