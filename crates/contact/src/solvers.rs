@@ -15,7 +15,6 @@ mod newton_map;
 mod one_contact;
 mod penalty;
 mod proximal;
-mod recycled;
 mod semismooth;
 #[cfg(test)]
 mod tests;

@@ -12,15 +12,25 @@ pub trait Structure<const D: usize> {
     /// Stiffness of a contact's own components \[N/mm\], that of K between the nodes there: a measure.
     fn stiffness(&self, contact: usize) -> f64;
 
-    /// Factorises K + BᵀRB; false if that is not positive definite.
+    /// Factorises K + BᵀRB; false if that is not positive definite, beyond rounding.
     fn tie(&mut self, ties: &[SMatrix<f64, D, D>]) -> bool;
 
     /// v = B (K + BᵀRB)⁻¹ (f + Bᵀ z), in the order of the contacts' components \[mm\], with the load f
     /// of the structure or without it.
     fn displacement(&mut self, z: &DVector<f64>, loaded: bool) -> DVector<f64>;
 
-    /// How many of these take as long as a factorisation.
+    /// The same of several z at once, without the load.
+    fn displacements(&mut self, z: &[DVector<f64>]) -> Vec<DVector<f64>> {
+        z.iter().map(|z| self.displacement(z, false)).collect()
+    }
+
+    /// How many displacements take as long as a factorisation.
     fn worth(&self) -> f64;
+
+    /// What one of several at once takes, over one alone.
+    fn together(&self) -> f64 {
+        1.0
+    }
 }
 
 /// Springs in series with a contact: the law holds between its force t and u + C (t − t*).

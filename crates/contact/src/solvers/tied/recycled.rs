@@ -13,11 +13,6 @@ pub(super) struct Recycled {
 const DEPENDENT: f64 = 1e-10;
 
 impl Recycled {
-    /// Forgets all: W has changed.
-    pub(super) fn clear(&mut self) {
-        self.pairs.clear();
-    }
-
     /// Adds a direction and its answer.
     pub(super) fn add(&mut self, z: DVector<f64>, answer: DVector<f64>) {
         self.pairs.push((z, answer));
