@@ -5,7 +5,9 @@ use moreau_contact::{
     LocalProblem, Penalty, SemismoothNewton, Uzawa,
 };
 use moreau_laws::textbook::RegularisedCoulomb;
-use moreau_laws::{AnisotropicCoulomb, Coulomb, Friction, LimitedCoulomb, Local, Status, Tresca};
+use moreau_laws::{
+    AnisotropicCoulomb, Coulomb, Friction, LimitedCoulomb, Local, ShearBound, Status, Tresca,
+};
 use nalgebra::{DMatrix, DVector, Matrix3};
 use proptest::prelude::*;
 
@@ -25,9 +27,25 @@ fn under<const D: usize>(w: DMatrix<f64>, q: &[Local<D>], law: Friction) -> Cont
     ContactProblem::from_delassus(w, q, vec![law; q.len()]).expect("valid problem")
 }
 
+/// A law from outside: g = g₀ tanh(μ t_n/g₀).
+#[derive(Debug)]
+struct Saturating(f64, f64);
+
+impl ShearBound for Saturating {
+    fn bound(&self, t_n: f64) -> f64 {
+        self.1 * (self.0 * t_n / self.1).tanh()
+    }
+
+    fn slope(&self, t_n: f64) -> f64 {
+        self.0 / (self.0 * t_n / self.1).cosh().powi(2)
+    }
+}
+
 /// The laws but Coulomb's, with friction and limit of the size of the problems' forces.
-fn other_laws(mu: f64, limit: f64) -> [Friction; 3] {
+fn other_laws(mu: f64, limit: f64) -> [Friction; 4] {
+    let saturating: &'static Saturating = Box::leak(Box::new(Saturating(mu, limit + 0.01)));
     [
+        saturating.into(),
         Tresca::new(limit).expect("valid limit").into(),
         LimitedCoulomb::new(mu, limit).expect("valid data").into(),
         AnisotropicCoulomb::new(mu + 0.01, 0.5 * mu + 0.01)

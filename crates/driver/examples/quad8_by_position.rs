@@ -7,9 +7,7 @@ use moreau_mesh::{
     CellKind, Element, Integration, Mapped, PlaneStrain, Quad8, Quad9, Rule, block2,
 };
 use nalgebra::{SMatrix, SVector, Vector2};
-use std::array::from_fn;
-
-type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
+use std::{array::from_fn, error::Error};
 
 /// [`Quad9`] with Σ c_a u_a for the value of its middle node, where c is the nearest to (−¼, ½) of the
 /// serendipity element that is exact for quadratic functions of the position.
@@ -18,7 +16,6 @@ struct Quad8ByPosition;
 impl Element<2, 8> for Quad8ByPosition {
     const NODES: [[f64; 2]; 8] = Quad8::NODES;
     const FACETS: &'static [&'static [usize]] = Quad8::FACETS;
-
     fn shape(xi: [f64; 2]) -> [f64; 8] {
         Quad8::shape(xi)
     }
@@ -41,20 +38,15 @@ impl Element<2, 8> for Quad8ByPosition {
         let lacking = moments.unwrap_or_default() * (terms(&middle) - known * usual);
         let c = usual + known.transpose() * lacking;
         let of = Quad9::map(&from_fn(|a| *nodes.get(a).unwrap_or(&middle)), xi);
-        let slope = |a: usize| from_fn(|i| of.gradient[a][i] + c[a] * of.gradient[8][i]);
-        let (x, det, gradient) = (of.x, of.det, from_fn(slope));
-        let shape = from_fn(|a| of.shape[a] + c[a] * of.shape[8]);
-        Mapped {
-            x,
-            shape,
-            gradient,
-            det,
-        }
+        let mut mapped = Quad8::map(nodes, xi);
+        mapped.shape = from_fn(|a| of.shape[a] + c[a] * of.shape[8]);
+        mapped.gradient = from_fn(|a| from_fn(|i| of.gradient[a][i] + c[a] * of.gradient[8][i]));
+        mapped
     }
 }
 
 /// Largest error in four distorted cells whose border is displaced as a function says.
-fn patch<E: Element<2, 8>>(exact: impl Fn(f64, f64) -> [f64; 2]) -> Fallible<f64> {
+fn patch<E: Element<2, 8>>(exact: impl Fn(f64, f64) -> [f64; 2]) -> Result<f64, Box<dyn Error>> {
     let mesh = block2("patch", CellKind::Quad8, &[0.0, 2.0, 4.0], &[0.0, 1.0, 2.0])?;
     let hat = |x: f64, y: f64| (1.0 - 0.5 * (x - 2.0).abs()) * (1.0 - (y - 1.0).abs());
     let mesh = mesh.map(|[x, y]| [x + 0.6 * hat(x, y), y - 0.3 * hat(x, y)])?;
@@ -67,10 +59,9 @@ fn patch<E: Element<2, 8>>(exact: impl Fn(f64, f64) -> [f64; 2]) -> Fallible<f64
     let places = driver.mesh().nodes().to_vec();
     for (n, &[x, y]) in places.iter().enumerate() {
         if x == 0.0 || x == 4.0 || y == 0.0 || y == 2.0 {
-            let u = exact(x, y);
-            loading
-                .displacement
-                .extend([(2 * n, u[0]), (2 * n + 1, u[1])]);
+            let [u, v] = exact(x, y);
+            let held = [(2 * n, u), (2 * n + 1, v)];
+            loading.displacement.extend(held);
         }
     }
     driver.advance(&loading)?;
@@ -79,7 +70,7 @@ fn patch<E: Element<2, 8>>(exact: impl Fn(f64, f64) -> [f64; 2]) -> Fallible<f64
     Ok(errors.fold(0.0, f64::max))
 }
 
-pub(crate) fn main() -> Fallible<()> {
+pub(crate) fn main() -> Result<(), Box<dyn Error>> {
     let stretched = |x: f64, y: f64| [2e-3 * x + 1e-3 * y, 5e-4 * x - 1e-3 * y];
     assert!(patch::<Quad8ByPosition>(stretched)? < 1e-15);
     // Pure bending in plane strain: σ_x = E κ y/(1 − ν²) alone.

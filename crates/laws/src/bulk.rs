@@ -20,7 +20,8 @@ pub const COMMON_FIELDS: [&str; 8] = [
 ];
 
 /// The numbers that a state consists of, always the same count in the same order: enough to write
-/// the state to a file and to read it back to the bit.
+/// the state to a file and to read it back to the bit. Tensors, numbers, arrays and tuples of such have
+/// them.
 pub trait Numbers {
     /// Hands every number on, to be read or replaced.
     fn visit(&mut self, each: &mut dyn FnMut(&mut f64));
@@ -29,6 +30,33 @@ pub trait Numbers {
 impl Numbers for Sym2 {
     fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
         self.iter_mut().for_each(each);
+    }
+}
+
+impl Numbers for f64 {
+    fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        each(self);
+    }
+}
+
+impl<T: Numbers, const N: usize> Numbers for [T; N] {
+    fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        self.iter_mut().for_each(|part| part.visit(each));
+    }
+}
+
+impl<A: Numbers, B: Numbers> Numbers for (A, B) {
+    fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        self.0.visit(each);
+        self.1.visit(each);
+    }
+}
+
+impl<A: Numbers, B: Numbers, C: Numbers> Numbers for (A, B, C) {
+    fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        self.0.visit(each);
+        self.1.visit(each);
+        self.2.visit(each);
     }
 }
 

@@ -7,6 +7,7 @@ mod coarse;
 mod collapse;
 mod corners;
 mod doubts;
+mod examples;
 mod increments;
 mod klarbring;
 mod law;

@@ -2,7 +2,12 @@
 
 use crate::steps::on_floor;
 use moreau_contact::GaussSeidel;
-use moreau_driver::{Axis, ModelError, Nesting, Numbers, Saved, Settings, Step, StepError};
+use moreau_driver::{
+    Axis, ElementCells, Model, ModelError, Nesting, Numbers, Saved, Settings, SolidBlock, Step,
+    StepError,
+};
+use moreau_laws::Elastic;
+use moreau_mesh::{CellKind, Integration, PlaneStrain, Quad4, Quad8, block2};
 
 #[test]
 fn a_body_pulled_off_its_floor_is_an_error_that_changes_nothing() {
@@ -150,5 +155,40 @@ fn gauss_seidel_says_that_it_cannot_hold_a_floating_body() {
             .to_string()
             .contains("Gauss-Seidel needs bodies held without contact"),
         "{error}"
+    );
+}
+
+/// A block from outside brings cells of the mesh, each once, on their own nodes; an element as many nodes
+/// as they have.
+#[test]
+fn blocks_that_do_not_fit_the_mesh_are_refused() {
+    let line = [0.0, 1.0, 2.0];
+    let mesh = || block2("b", CellKind::Quad8, &line, &line).expect("valid");
+    let rule = Integration::Full;
+    let plane = PlaneStrain::default();
+    let wrong = ElementCells::new::<Quad4, _>(&mesh(), &[0], &plane, rule);
+    let message = wrong.err().map(|e| e.to_string());
+    assert_eq!(
+        message.as_deref(),
+        Some("cell 0 has not the 4 nodes of the element")
+    );
+    assert!(ElementCells::new::<Quad8, _>(&mesh(), &[4], &plane, rule).is_err());
+    let block = |members: &[usize], of: &[usize]| {
+        let cells = ElementCells::new::<Quad8, _>(&mesh(), of, &plane, rule).expect("valid");
+        let law = Elastic::new(1.0, 0.3).expect("valid");
+        SolidBlock::new(members.to_vec(), Box::new(cells), law)
+    };
+    let model = || Model::new(mesh(), plane);
+    let refused = |members: &[usize], of: &[usize]| {
+        let error = model().block("mine", block(members, of)).err();
+        error.expect("refused").to_string()
+    };
+    assert!(refused(&[0, 9], &[0, 1]).contains("cell 9 of block \"mine\" is none of the mesh"));
+    assert!(refused(&[0, 1], &[0, 2]).contains("nodes that are not those of its cell"));
+    assert!(refused(&[0, 0], &[0, 0]).contains("cell 0 of group \"mine\" has a material already"));
+    assert!(
+        model()
+            .block("mine", block(&[0, 1, 2, 3], &[0, 1, 2, 3]))
+            .is_ok()
     );
 }
