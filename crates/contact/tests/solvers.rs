@@ -1,8 +1,9 @@
 //! Every solver on problems with known answers, and all of them against each other.
 
 use moreau_contact::{
-    BlockMatrix, ContactError, ContactProblem, ContactSolution, ContactSolver, GaussSeidel,
-    LocalProblem, Penalty, SemismoothNewton, Uzawa,
+    Admm, Auto, BlockMatrix, ContactError, ContactProblem, ContactSolution, ContactSolver, Dual,
+    GaussSeidel, LocalProblem, NewtonMap, Penalty, ProximalNewton, SemismoothNewton,
+    TrescaFixedPoint, Uzawa,
 };
 use moreau_laws::textbook::RegularisedCoulomb;
 use moreau_laws::{
@@ -16,6 +17,26 @@ fn exact<const D: usize>() -> Vec<Box<dyn ContactSolver<D>>> {
         Box::new(SemismoothNewton::default()),
         Box::new(GaussSeidel::default()),
         Box::new(Uzawa::default()),
+    ]
+}
+
+/// The methods for the local form, on the dual form of a condensed problem.
+fn dual<const D: usize>() -> Vec<Box<dyn ContactSolver<D>>> {
+    let newton = |map| {
+        Dual(ProximalNewton {
+            map,
+            ..ProximalNewton::default()
+        })
+    };
+    vec![
+        Box::new(Dual(Auto::default())),
+        Box::new(Dual(GaussSeidel::default())),
+        Box::new(Dual(Uzawa::default())),
+        Box::new(Dual(Admm::default())),
+        Box::new(Dual(TrescaFixedPoint::default())),
+        Box::new(newton(NewtonMap::AlartCurnier)),
+        Box::new(newton(NewtonMap::JeanMoreau)),
+        Box::new(newton(NewtonMap::Natural)),
     ]
 }
 
@@ -187,7 +208,7 @@ fn agree<const D: usize>(w: DMatrix<f64>, q: &[f64], law: Friction) -> Result<()
         .collect();
     let problem = under(w, &free, law);
     let mut solutions = Vec::new();
-    for solver in exact() {
+    for solver in exact().into_iter().chain(dual()) {
         let solution = solver
             .solve(&problem, None)
             .map_err(|e| TestCaseError::fail(format!("{solver:?}, {law:?}: {e}")))?;
@@ -213,6 +234,102 @@ fn agree<const D: usize>(w: DMatrix<f64>, q: &[f64], law: Friction) -> Result<()
         prop_assert!((a - b).norm() <= 1e-8 * scale, "{} against {}", a, b);
     }
     Ok(())
+}
+
+/// μ and g₀ of a plane law, infinite where there is none.
+fn plane_bound(law: &Friction) -> (f64, f64) {
+    match law {
+        Friction::Coulomb(law) => (law.friction(), f64::INFINITY),
+        Friction::Tresca(law) => (f64::INFINITY, law.limit()),
+        Friction::Limited(law) => (law.friction(), law.limit()),
+        Friction::Anisotropic(law) => (law.friction()[0], f64::INFINITY),
+    }
+}
+
+/// All solutions of a plane problem: with every contact open or closed, and stuck or on one of the edges of
+/// the friction, its equations are linear; kept is what meets all inequalities.
+fn enumerate(w: &DMatrix<f64>, q: &[f64], law: &Friction) -> Vec<DVector<f64>> {
+    let (n, (mu, limit)) = (w.nrows(), plane_bound(law));
+    let q = DVector::from_fn(n, |i, _| q[i % q.len()]);
+    // Stuck, or t_t = a t_n + b.
+    let mut shears = vec![None];
+    for side in [-1.0, 1.0] {
+        shears.extend(mu.is_finite().then_some(Some((side * mu, 0.0))));
+        shears.extend(limit.is_finite().then_some(Some((0.0, side * limit))));
+    }
+    let ways = 2 * shears.len();
+    let mut found = Vec::new();
+    for code in 0..ways.pow(n as u32 / 2) {
+        let way = |i: usize| code / ways.pow(i as u32) % ways;
+        let mut rows = w.clone();
+        let mut rhs = -&q;
+        for i in 0..n / 2 {
+            // Open at the odd ones.
+            if way(i) % 2 == 1 {
+                rows.row_mut(2 * i).fill(0.0);
+                (rows[(2 * i, 2 * i)], rhs[2 * i]) = (1.0, 0.0);
+            }
+            if let Some((a, b)) = shears[way(i) / 2] {
+                let k = 2 * i + 1;
+                rows.row_mut(k).fill(0.0);
+                (rows[(k, k)], rows[(k, k - 1)], rhs[k]) = (1.0, -a, b);
+            }
+        }
+        let Some(t) = rows.lu().solve(&rhs) else {
+            continue;
+        };
+        let u = w * &t + &q;
+        let obeys = |i: usize| {
+            let (t_n, t_t, u_n, u_t) = (t[2 * i], t[2 * i + 1], u[2 * i], u[2 * i + 1]);
+            let bound = if mu.is_finite() {
+                (mu * t_n).min(limit)
+            } else {
+                limit
+            };
+            let opposed = u_t.abs() < 1e-12 || (t_t + bound * u_t.signum()).abs() < 1e-12;
+            t_n > -1e-12 && u_n > -1e-12 && t_t.abs() < bound + 1e-12 && opposed
+        };
+        if (0..n / 2).all(obeys) {
+            found.push(t);
+        }
+    }
+    found
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    /// Against the answer that comes from trying all statuses, of which there is one.
+    #[test]
+    fn the_answer_is_that_of_all_statuses_tried(
+        contacts in 1usize..4,
+        entries in prop::collection::vec(-1.0..1.0f64, 197),
+        q in prop::collection::vec(-1.0..0.4f64, 14),
+        mu in 0.0..0.35f64,
+        limit in 0.01..0.3f64,
+    ) {
+        let w = definite(2 * contacts, &entries);
+        let coulomb = Coulomb::new(mu).expect("valid").into();
+        for law in other_laws(mu, limit).into_iter().chain([coulomb]) {
+            let answers = enumerate(&w, &q, &law);
+            prop_assert!(!answers.is_empty());
+            let free: Vec<_> =
+                (0..contacts).map(|i| Local::<2>::new(q[2 * i], q[2 * i + 1])).collect();
+            let problem = under(w.clone(), &free, law);
+            for solver in exact().into_iter().chain(dual()) {
+                let s = solver
+                    .solve(&problem, None)
+                    .map_err(|e| TestCaseError::fail(format!("{solver:?}, {law:?}: {e}")))?;
+                let scale = problem.force_scale(&s.force);
+                let off = |answer: &DVector<f64>| {
+                    let pairs = answer.iter().zip(s.force.iter().flatten());
+                    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+                };
+                let nearest = answers.iter().map(off).fold(f64::INFINITY, f64::min);
+                prop_assert!(nearest <= 1e-8 * scale, "{solver:?}, {law:?}: {nearest}");
+            }
+        }
+    }
 }
 
 proptest! {
@@ -461,6 +578,39 @@ fn a_solution_is_as_good_as_was_asked() {
             k == 0 || 2 * saved > whole.iterations,
             "{solver:?}: {saved}"
         );
+    }
+}
+
+/// The same of the methods for the local form, which measure residuals otherwise: they are asked again
+/// until the measure of condensed problems is met, and from a solution they need not move.
+#[test]
+fn a_dual_solution_is_as_good_as_was_asked() {
+    let problem = mixed();
+    for solver in dual() {
+        let whole = solver.solve(&problem, None).expect("solvable");
+        assert!(whole.exact, "{solver:?}");
+        assert!(whole.residual <= 1e-10 * problem.force_scale(&whole.force));
+        let mut iterations = whole.iterations;
+        for enough in [1e-6, 1e-3, 1e-1] {
+            let part = solver.approach(&problem, None, enough).expect("solvable");
+            assert!(part.residual <= enough, "{solver:?}: {}", part.residual);
+            assert!(part.iterations <= iterations, "{solver:?}");
+            iterations = part.iterations;
+        }
+        assert!(iterations < whole.iterations, "{solver:?}: nothing saved");
+        let again = solver.solve(&problem, Some(&whole)).expect("solved");
+        assert!(again.iterations <= 1, "{solver:?}: {}", again.iterations);
+    }
+    let mut seidel = GaussSeidel::default();
+    seidel.tolerance.iterations = 3;
+    match Dual(seidel).solve(&problem, None) {
+        Err(ContactError::NotConverged {
+            solver: "Gauss-Seidel",
+            iterations,
+            residual,
+            tolerance,
+        }) => assert!(iterations <= 3 && residual > tolerance && residual.is_finite()),
+        other => panic!("expected NotConverged, got {other:?}"),
     }
 }
 

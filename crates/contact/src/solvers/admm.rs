@@ -3,9 +3,9 @@
 
 use super::local::{Best, TOLERANCE, start};
 use super::{LocalSolution, LocalSolver, Reason, Tolerance, Unsolved};
-use crate::problem::{BlockMatrix, Factor, LocalProblem};
+use crate::Springs;
+use crate::problem::{Factor, LocalProblem};
 use moreau_laws::{Friction, Local};
-use nalgebra::SMatrix;
 
 const NAME: &str = "ADMM";
 
@@ -160,11 +160,9 @@ fn weight<const D: usize>(problem: &LocalProblem<D>, rho: f64, i: usize) -> Loca
 
 /// W and the weights.
 fn factorise<const D: usize>(problem: &LocalProblem<D>, rho: f64) -> Option<Factor> {
-    let mut matrix = BlockMatrix::empty();
-    for i in 0..problem.contacts() {
-        let spring = SMatrix::<f64, D, D>::from_diagonal(&weight(problem, rho, i));
-        let row = problem.operator().row(i);
-        matrix.push_row(row.map(|(j, w)| (j, if i == j { w + spring } else { *w })));
-    }
-    Factor::new(&matrix)
+    let weighted = problem.in_series(|i| Springs {
+        compliance: weight(problem, rho, i),
+        force: Local::zeros(),
+    });
+    Factor::new(weighted.operator())
 }

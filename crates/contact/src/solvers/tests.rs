@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::{BlockMatrix, GlobalProblem};
-use moreau_laws::Coulomb;
+use moreau_laws::{AnisotropicCoulomb, Coulomb, Friction, LimitedCoulomb, Tresca};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
@@ -31,8 +31,24 @@ fn methods<const D: usize>() -> Vec<Box<dyn LocalSolver<D>>> {
 }
 
 fn problem<const D: usize>(w: &DMatrix<f64>, q: &[Local<D>], mu: f64) -> LocalProblem<D> {
-    let laws = vec![Coulomb::new(mu).expect("valid friction"); q.len()];
+    under(w, q, Coulomb::new(mu).expect("valid friction").into())
+}
+
+fn under<const D: usize>(w: &DMatrix<f64>, q: &[Local<D>], law: Friction) -> LocalProblem<D> {
+    let laws = vec![law; q.len()];
     LocalProblem::new(BlockMatrix::from_dense(w), q.to_vec(), laws).expect("valid problem")
+}
+
+/// All laws, of a friction and a limit.
+fn laws(mu: f64, limit: f64) -> [Friction; 4] {
+    [
+        Coulomb::new(mu).expect("valid friction").into(),
+        Tresca::new(limit).expect("valid limit").into(),
+        LimitedCoulomb::new(mu, limit).expect("valid data").into(),
+        AnisotropicCoulomb::new(mu + 0.01, 0.5 * mu + 0.01)
+            .expect("valid friction")
+            .into(),
+    ]
 }
 
 fn solve<const D: usize>(
@@ -121,9 +137,12 @@ proptest! {
         entries in prop::collection::vec(-1.0..1.0f64, 229),
         q in prop::collection::vec(-1.0..0.4f64, 17),
         mu in 0.35..3.0f64,
+        limit in 0.0..1.0f64,
     ) {
         let (w, q) = random::<3>(contacts, &entries, &q);
-        solve(&Auto::default(), &problem(&w, &q, mu))?;
+        for law in laws(mu, limit) {
+            solve(&Auto::default(), &under(&w, &q, law))?;
+        }
     }
 
     /// More contacts than the bodies have freedoms: W is rank deficient, and a solution exists because
@@ -134,22 +153,27 @@ proptest! {
         entries in prop::collection::vec(-1.0..1.0f64, 229),
         load in prop::collection::vec(-1.0..1.0f64, 9),
         mu in 0.0..0.9f64,
+        limit in 0.01..1.0f64,
     ) {
         let contacts = 5;
-        let stiffness = (0..unknowns).map(|i| (i, i, 1.0 + i as f64)).collect();
+        let stiffness: Vec<_> = (0..unknowns).map(|i| (i, i, 1.0 + i as f64)).collect();
         let entry = |k: usize| (k % unknowns, k / unknowns, entries[(7 * k) % entries.len()]);
-        let directions = (0..3 * contacts * unknowns).map(entry).collect();
-        let laws = vec![Coulomb::new(mu).expect("valid"); contacts];
-        let mut global = GlobalProblem::<3>::new(
-            stiffness, directions, load[..unknowns].to_vec(), vec![Local::zeros(); contacts],
-            laws.clone(),
-        ).expect("valid");
-        prop_assert!(global.local().rank() <= unknowns);
-        let solution = global
-            .solve(&Auto::default())
-            .map_err(|error| TestCaseError::fail(error.to_string()))?;
-        prop_assert!(solution.balance < 1e-12);
-        prop_assert!(solution.residual.scaled < 1e-6 || solution.local.force.iter().all(|r| r.norm() < 1e-8));
+        let directions: Vec<_> = (0..3 * contacts * unknowns).map(entry).collect();
+        for law in laws(mu, limit) {
+            let mut global = GlobalProblem::<3>::new(
+                stiffness.clone(), directions.clone(), load[..unknowns].to_vec(),
+                vec![Local::zeros(); contacts], vec![law; contacts],
+            ).expect("valid");
+            prop_assert!(global.local().rank() <= unknowns);
+            let solution = global
+                .solve(&Auto::default())
+                .map_err(|error| TestCaseError::fail(format!("{law:?}: {error}")))?;
+            prop_assert!(solution.balance < 1e-12);
+            prop_assert!(
+                solution.residual.scaled < 1e-6
+                    || solution.local.force.iter().all(|r| r.norm() < 1e-8)
+            );
+        }
     }
 }
 
