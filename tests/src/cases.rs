@@ -7,6 +7,7 @@ mod collapse;
 mod compare;
 mod greco;
 mod penalty;
+mod pictures;
 mod prandtl;
 mod punch_in_space;
 mod ring;

@@ -65,6 +65,36 @@ impl Check {
             pass,
         }
     }
+
+    /// A value that is its reference but for a part of it, [`Kind::Relative`].
+    pub fn relative(
+        name: impl Into<String>,
+        value: (f64, &str),
+        reference: (f64, f64),
+        source: &str,
+    ) -> Self {
+        Self::new(name, value, Kind::Relative, reference, source)
+    }
+
+    /// A value that is its reference but for a tolerance in its unit, [`Kind::Absolute`].
+    pub fn absolute(
+        name: impl Into<String>,
+        value: (f64, &str),
+        reference: (f64, f64),
+        source: &str,
+    ) -> Self {
+        Self::new(name, value, Kind::Absolute, reference, source)
+    }
+
+    /// A value that does not exceed a bound, [`Kind::AtMost`].
+    pub fn at_most(name: impl Into<String>, value: (f64, &str), bound: f64, source: &str) -> Self {
+        Self::new(name, value, Kind::AtMost, (bound, 0.0), source)
+    }
+
+    /// A value that reaches a bound, [`Kind::AtLeast`].
+    pub fn at_least(name: impl Into<String>, value: (f64, &str), bound: f64, source: &str) -> Self {
+        Self::new(name, value, Kind::AtLeast, (bound, 0.0), source)
+    }
 }
 
 /// A table of the report, and a CSV file.
@@ -80,6 +110,23 @@ pub struct Table {
     pub rows: Vec<Vec<String>>,
 }
 
+impl Table {
+    /// A table whose rows have a cell for every column.
+    pub fn new<const N: usize>(
+        name: &str,
+        title: impl Into<String>,
+        header: [&str; N],
+        rows: impl IntoIterator<Item = [String; N]>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            title: title.into(),
+            header: header.map(String::from).to_vec(),
+            rows: rows.into_iter().map(Vec::from).collect(),
+        }
+    }
+}
+
 /// A figure of the report, and an SVG file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Figure {
@@ -89,6 +136,17 @@ pub struct Figure {
     pub caption: String,
     /// The picture.
     pub svg: String,
+}
+
+impl Figure {
+    /// A picture and what it shows.
+    pub fn new(name: &str, caption: impl Into<String>, svg: String) -> Self {
+        Self {
+            name: name.into(),
+            caption: caption.into(),
+            svg,
+        }
+    }
 }
 
 /// All that a case has to show.

@@ -1,7 +1,8 @@
 //! Two elastic bodies pressed on each other and dragged, forth and back: stick, slip, reverse slip.
 
+use super::pictures::tractions;
 use crate::problems::shapes::graded;
-use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome};
+use crate::{Case, Chapter, Check, Figure, Options, Outcome};
 use moreau::driver::{Axis, ContactRecord, Driver, Model, Settings, Step};
 use moreau::laws::{Coulomb, Elastic, Status};
 use moreau::mesh::{CellKind, Integration, Mesh, MeshError, PlaneStrain, block2, uniform};
@@ -84,17 +85,6 @@ fn ellipse(x: f64, a: f64) -> f64 {
     (1.0 - (x / a).powi(2)).max(0.0).sqrt()
 }
 
-/// Positions along the contact, sorted, with a component of the traction \[MPa\].
-fn tractions(driver: &Driver<2>, of: fn(&ContactRecord<2>) -> f64) -> Vec<[f64; 2]> {
-    let mut points: Vec<[f64; 2]> = driver
-        .contacts()
-        .iter()
-        .map(|c| [c.position[0], of(c) / c.area])
-        .collect();
-    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    points
-}
-
 /// Mean distance of tractions from an exact one over the contact, in parts of `scale`.
 fn distance(points: &[[f64; 2]], a: f64, exact: impl Fn(f64) -> f64, scale: f64) -> f64 {
     let (mut sum, mut length) = (0.0, 0.0);
@@ -110,141 +100,229 @@ fn distance(points: &[[f64; 2]], a: f64, exact: impl Fn(f64) -> f64, scale: f64)
     sum / length / scale
 }
 
+/// What is exact for the forces that the bodies bear.
+#[derive(Clone, Copy)]
+struct Exact {
+    /// Pressing force \[N/mm\].
+    p: f64,
+    /// Half width of the contact \[mm\].
+    a: f64,
+    /// Largest pressure \[MPa\].
+    p0: f64,
+}
+
+impl Exact {
+    fn new(p: f64) -> Self {
+        let e_star = 0.5 * E / (1.0 - NU * NU);
+        let a = (4.0 * p * RADIUS / (PI * e_star)).sqrt();
+        let p0 = 2.0 * p / (PI * a);
+        Self { p, a, p0 }
+    }
+
+    fn pressure(self, x: f64) -> f64 {
+        self.p0 * ellipse(x, self.a)
+    }
+
+    /// Half width that sticks when the drag has changed by q, its bound `full` in full slip.
+    fn stick(self, q: f64, full: f64) -> f64 {
+        self.a * (1.0 - q / full).sqrt()
+    }
+
+    /// Half width that sticks under the drag `q`.
+    fn stick_forth(self, q: f64) -> f64 {
+        self.stick(q, MU * self.p)
+    }
+
+    /// Half width without reverse slip after the drag has come back by `q`.
+    fn stick_back(self, q: f64) -> f64 {
+        self.stick(q, 2.0 * MU * self.p)
+    }
+
+    /// Shear of slip outside of `c`.
+    fn shear(self, x: f64, c: f64) -> f64 {
+        MU * self.p0 * (ellipse(x, self.a) - c / self.a * ellipse(x, c))
+    }
+
+    /// Shear after reverse slip outside of `b`.
+    fn shear_back(self, x: f64, c: f64, b: f64) -> f64 {
+        self.shear(x, c) - 2.0 * self.shear(x, b)
+    }
+}
+
+/// Two bodies on their way: pressed, dragged forth, dragged back.
+struct Path {
+    driver: Driver<2>,
+    drag: f64,
+}
+
+/// Forces at the end of a stage, and the contact then.
+struct Stage {
+    /// Pressing force and drag \[N/mm\].
+    p: f64,
+    q: f64,
+    /// Half width that sticks \[mm\].
+    stuck: f64,
+    /// Positions and traction \[MPa\].
+    tractions: Vec<[f64; 2]>,
+}
+
+impl Path {
+    /// How deep the upper body is pressed \[mm\].
+    const DEPTH: f64 = 2.3e-3;
+    /// Drag in an increment \[mm\].
+    const DRAG: f64 = 1e-4;
+
+    fn new(n: usize) -> Result<Self, Box<dyn Error>> {
+        let driver = bodies(n)?;
+        Ok(Self { driver, drag: 0.0 })
+    }
+
+    fn stage(&self, (p, q): (f64, f64), traction: fn(&ContactRecord<2>) -> f64) -> Stage {
+        let contacts = self.driver.contacts().iter();
+        let stuck = contacts.filter(|c| c.status == Status::Stick);
+        Stage {
+            p,
+            q,
+            stuck: stuck.map(|c| c.position[0].abs()).fold(0.0, f64::max),
+            tractions: tractions(&self.driver, traction),
+        }
+    }
+
+    fn press(&mut self) -> Result<Stage, Box<dyn Error>> {
+        let forces = moved(&mut self.driver, [0.0, -Self::DEPTH], 4)?;
+        Ok(self.stage(forces, |c| c.t[0]))
+    }
+
+    /// Forces after one increment more of the drag.
+    fn drag(&mut self, by: f64) -> Result<(f64, f64), Box<dyn Error>> {
+        self.drag += by;
+        moved(&mut self.driver, [self.drag, -Self::DEPTH], 1)
+    }
+
+    /// Until the drag is as large as `most`.
+    fn forth(&mut self, most: f64) -> Result<Stage, Box<dyn Error>> {
+        let mut forces = (0.0, 0.0);
+        while forces.1 < most {
+            forces = self.drag(Self::DRAG)?;
+        }
+        Ok(self.stage(forces, |c| c.force[0].abs()))
+    }
+
+    /// Until the drag is nil.
+    fn back(&mut self) -> Result<Stage, Box<dyn Error>> {
+        let mut forces = (0.0, f64::INFINITY);
+        while forces.1 > 0.0 {
+            forces = self.drag(-Self::DRAG)?;
+        }
+        Ok(self.stage(forces, |c| -c.force[0]))
+    }
+}
+
 fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
-    let mut outcome = Outcome::default();
     let n = if options.quick { 10 } else { 20 };
-    let h = 1.2 * A / n as f64;
-    let e_star = 0.5 * E / (1.0 - NU * NU);
-    let mut driver = bodies(n)?;
-    let mut add = |name: &str, value: (f64, &str), kind, reference| {
-        let check = Check::new(name, value, kind, reference, SOURCE);
-        outcome.checks.push(check);
-    };
-
+    let mut path = Path::new(n)?;
     (options.progress)("pressed");
-    let depth = 2.3e-3;
-    let (p, _) = moved(&mut driver, [0.0, -depth], 4)?;
-    let a = (4.0 * p * RADIUS / (PI * e_star)).sqrt();
-    let p0 = 2.0 * p / (PI * a);
-    let pressure = tractions(&driver, |c| c.t[0]);
-    let worst = distance(&pressure, a, |x| p0 * ellipse(x, a), p0);
-    add(
-        "pressed: distance from Hertz' pressure over its largest",
-        (worst, "1"),
-        Kind::AtMost,
-        (1e-2, 0.0),
-    );
-    let edge = |status: Status, driver: &Driver<2>| {
-        let of = |c: &&ContactRecord<2>| c.status == status;
-        driver
-            .contacts()
-            .iter()
-            .filter(of)
-            .map(|c| c.position[0].abs())
-            .fold(0.0, f64::max)
-    };
-
+    let pressed = path.press()?;
+    let exact = Exact::new(pressed.p);
     (options.progress)("dragged forth");
-    let (mut drag, mut q, mut now) = (0.0, 0.0, p);
-    while q < 0.6 * MU * p {
-        drag += 1e-4;
-        (now, q) = moved(&mut driver, [drag, -depth], 1)?;
-    }
-    add(
-        "forth: pressing force",
-        (now, "N/mm"),
-        Kind::Relative,
-        (p, 2e-3),
-    );
-    let c = a * (1.0 - q / (MU * p)).sqrt();
-    let stuck = edge(Status::Stick, &driver);
-    add(
-        "forth: half width that sticks",
-        (stuck, "mm"),
-        Kind::Absolute,
-        (c, h),
-    );
-    let forth = |x: f64| MU * p0 * (ellipse(x, a) - c / a * ellipse(x, c));
-    let shear = tractions(&driver, |c| c.force[0].abs());
-    let worst = distance(&shear, a, forth, MU * p0);
-    add(
-        "forth: distance from Mindlin's shear over its largest",
-        (worst, "1"),
-        Kind::AtMost,
-        (3e-2, 0.0),
-    );
-
+    let forth = path.forth(0.6 * MU * pressed.p)?;
+    let c = exact.stick_forth(forth.q);
     (options.progress)("dragged back");
-    let most = q;
-    while q > 0.0 {
-        drag -= 1e-4;
-        (now, q) = moved(&mut driver, [drag, -depth], 1)?;
-    }
-    // Reverse slip outside b.
-    let b = a * (1.0 - (most - q) / (2.0 * MU * p)).sqrt();
-    let back = |x: f64| forth(x) - 2.0 * MU * p0 * (ellipse(x, a) - b / a * ellipse(x, b));
-    let left = tractions(&driver, |c| -c.force[0]);
-    add(
-        "back: pressing force",
-        (now, "N/mm"),
-        Kind::Relative,
-        (p, 2e-3),
-    );
-    add(
-        "back: half width that sticks",
-        (edge(Status::Stick, &driver), "mm"),
-        Kind::Absolute,
-        (b, h),
-    );
-    add(
-        "back: distance from the exact shear over μ p0",
-        (distance(&left, a, back, MU * p0), "1"),
-        Kind::AtMost,
-        (3e-2, 0.0),
-    );
-    let remains = left.iter().map(|t| t[1].abs()).fold(0.0, f64::max);
-    add(
-        "back: largest shear that remains over μ p0",
-        (remains / (MU * p0), "1"),
-        Kind::AtLeast,
-        (0.1, 0.0),
-    );
+    let back = path.back()?;
+    let b = exact.stick_back(forth.q - back.q);
 
+    let pressure = distance(&pressed.tractions, exact.a, |x| exact.pressure(x), exact.p0);
+    let mut checks = vec![Check::at_most(
+        "pressed: distance from Hertz' pressure over its largest",
+        (pressure, "1"),
+        1e-2,
+        SOURCE,
+    )];
+    let h = 1.2 * A / n as f64;
+    let shear = |x| exact.shear(x, c);
+    let name = "forth: distance from Mindlin's shear over its largest";
+    checks.extend(dragged("forth", name, &forth, exact, (c, h), shear));
+    let shear = |x| exact.shear_back(x, c, b);
+    let name = "back: distance from the exact shear over μ p0";
+    checks.extend(dragged("back", name, &back, exact, (b, h), shear));
+    let remains = back.tractions.iter().map(|t| t[1].abs());
+    checks.push(Check::at_least(
+        "back: largest shear that remains over μ p0",
+        (remains.fold(0.0, f64::max) / (MU * exact.p0), "1"),
+        0.1,
+        SOURCE,
+    ));
+    let figure = figure(exact, (c, b), [pressed, forth, back], n)?;
+    Ok(Outcome {
+        checks,
+        figures: vec![figure],
+        ..Outcome::default()
+    })
+}
+
+/// Checks of a stage of the drag: pressing force, half width that sticks within a cell, shear.
+fn dragged(
+    what: &str,
+    distance_name: &str,
+    stage: &Stage,
+    exact: Exact,
+    stick: (f64, f64),
+    shear: impl Fn(f64) -> f64,
+) -> [Check; 3] {
+    let worst = distance(&stage.tractions, exact.a, shear, MU * exact.p0);
+    [
+        Check::relative(
+            format!("{what}: pressing force"),
+            (stage.p, "N/mm"),
+            (exact.p, 2e-3),
+            SOURCE,
+        ),
+        Check::absolute(
+            format!("{what}: half width that sticks"),
+            (stage.stuck, "mm"),
+            stick,
+            SOURCE,
+        ),
+        Check::at_most(distance_name, (worst, "1"), 3e-2, SOURCE),
+    ]
+}
+
+/// Tractions at the end of the three stages beside the exact ones.
+fn figure(
+    exact: Exact,
+    (c, b): (f64, f64),
+    [pressed, forth, back]: [Stage; 3],
+    n: usize,
+) -> Result<Figure, Box<dyn Error>> {
     let x = uniform(-1.2 * A, 1.2 * A, 240);
     let curve = |f: &dyn Fn(f64) -> f64| x.iter().map(|x| [*x, f(*x)]).collect::<Vec<_>>();
-    let chart = Chart::new(
+    let bound = pressed.tractions.iter().map(|t| [t[0], MU * t[1]]);
+    let bound: Vec<[f64; 2]> = bound.collect();
+    let mut chart = Chart::new(
         "Tractions on the contact",
         "position [mm]",
         "traction [MPa]",
-    )
-    .with(
-        "μ p, exact",
-        Style::Line,
-        curve(&|x| MU * p0 * ellipse(x, a)),
-    )
-    .with(
-        "μ p",
-        Style::Points,
-        pressure
-            .iter()
-            .map(|t| [t[0], MU * t[1]])
-            .collect::<Vec<_>>(),
-    )
-    .with(
-        "shear at the largest drag, exact",
-        Style::Line,
-        curve(&forth),
-    )
-    .with("shear at the largest drag", Style::Points, shear)
-    .with("shear after it, exact", Style::Line, curve(&back))
-    .with("shear after it", Style::Points, left);
-    outcome.figures.push(Figure {
-        name: "cattaneo-tractions".into(),
-        caption: format!(
-            "Tractions along the contact, {n} cells in 1.2 mm; the meshes of the two bodies do not \
-             match."
+    );
+    for (name, line, points) in [
+        ("μ p", curve(&|x| MU * exact.pressure(x)), bound),
+        (
+            "shear at the largest drag",
+            curve(&|x| exact.shear(x, c)),
+            forth.tractions,
         ),
-        svg: chart.to_svg()?,
-    });
-    Ok(outcome)
+        (
+            "shear after it",
+            curve(&|x| exact.shear_back(x, c, b)),
+            back.tractions,
+        ),
+    ] {
+        chart = chart
+            .with(format!("{name}, exact"), Style::Line, line)
+            .with(name, Style::Points, points);
+    }
+    let caption = format!(
+        "Tractions along the contact, {n} cells in 1.2 mm; the meshes of the two bodies do not \
+         match."
+    );
+    Ok(Figure::new("cattaneo-tractions", caption, chart.to_svg()?))
 }

@@ -153,38 +153,8 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
         let load = body.overload * collapse.load_factor;
         let bound = collapse.upper_bound.ok_or("von Mises has a bound")?;
         let upper = body.overload * bound.load_factor;
-        let mut add = |what: &str, value: f64, kind, reference, source| {
-            let name = format!("{}: {what}", body.name);
-            let check = Check::new(name, (value, "1"), kind, (reference, 0.0), source);
-            outcome.checks.push(check);
-        };
-        let ratio = "load over the exact limit load";
-        add(ratio, load, Kind::AtLeast, body.range.0, body.source);
-        add(ratio, load, Kind::AtMost, body.range.1, body.source);
-        let least = 1.0 - 1e-9;
-        add(
-            "bound over the load",
-            upper / load,
-            Kind::AtLeast,
-            least,
-            ENCLOSED,
-        );
-        let most = 1.0 + 1e-3;
-        add(
-            "bound over the load",
-            upper / load,
-            Kind::AtMost,
-            most,
-            ENCLOSED,
-        );
-        add(
-            "growth of the load while its work doubled",
-            collapse.growth.abs(),
-            Kind::AtMost,
-            body.flat,
-            "a plateau; where the mesh keeps creeping, as far as displacements of its size show it",
-        );
-        rows.push(vec![
+        outcome.checks.extend(checks(&body, &collapse, load, upper));
+        rows.push([
             body.name.into(),
             body.driver.mesh().cell_count().to_string(),
             format!("{load:.6}"),
@@ -198,33 +168,47 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
         let shown = curve[..shown.map_or(curve.len(), |k| k + 1)].to_vec();
         chart = chart.with(body.name, Style::Line, cut(shown));
     }
-    outcome.tables.push(Table {
-        name: "collapse".into(),
-        title: "Loads at collapse over the exact limit loads".into(),
-        header: [
-            "body",
-            "cells",
-            "load",
-            "kinematic bound",
-            "elastic share of the bound",
-            "growth over the last doubling",
-            "increments",
-        ]
-        .map(String::from)
-        .to_vec(),
-        rows,
-    });
+    let header = [
+        "body",
+        "cells",
+        "load",
+        "kinematic bound",
+        "elastic share of the bound",
+        "growth over the last doubling",
+        "increments",
+    ];
+    let title = "Loads at collapse over the exact limit loads";
+    outcome
+        .tables
+        .push(Table::new("collapse", title, header, rows));
     chart = chart.with("exact", Style::Dashed, vec![[0.0, 1.0], [SHOWN, 1.0]]);
-    outcome.figures.push(Figure {
-        name: "collapse-loads".into(),
-        caption:
-            "Loads over displacements to beyond the knee. Increments of the load up to it, along \
-            the plateau increments of the path."
-                .into(),
-        svg: chart.to_svg()?,
-    });
+    outcome.figures.push(Figure::new(
+        "collapse-loads",
+        "Loads over displacements to beyond the knee. Increments of the load up to it, along the \
+            plateau increments of the path.",
+        chart.to_svg()?,
+    ));
     locking(options, &mut outcome)?;
     Ok(outcome)
+}
+
+/// Checks of the load over the exact one, of the bound over the load, and of the plateau.
+fn checks(body: &Overloaded, collapse: &Collapse, load: f64, upper: f64) -> [Check; 5] {
+    let name = |what: &str| format!("{}: {what}", body.name);
+    let ratio = || name("load over the exact limit load");
+    let bound = || name("bound over the load");
+    [
+        Check::at_least(ratio(), (load, "1"), body.range.0, body.source),
+        Check::at_most(ratio(), (load, "1"), body.range.1, body.source),
+        Check::at_least(bound(), (upper / load, "1"), 1.0 - 1e-9, ENCLOSED),
+        Check::at_most(bound(), (upper / load, "1"), 1.0 + 1e-3, ENCLOSED),
+        Check::at_most(
+            name("growth of the load while its work doubled"),
+            (collapse.growth.abs(), "1"),
+            body.flat,
+            "a plateau; where the mesh keeps creeping, as far as displacements of its size show it",
+        ),
+    ]
 }
 
 /// End of the axis of the figure.
@@ -290,7 +274,7 @@ fn locking(options: &Options<'_>, outcome: &mut Outcome) -> Result<(), Box<dyn E
                 add(net, stress, Kind::AtMost, between);
                 add("final slope at the notch", slope, Kind::AtMost, 1e-3);
             }
-            rows.push(vec![
+            rows.push([
                 name.clone(),
                 if default { "default" } else { "on demand" }.into(),
                 if kind.locks(rule) { "locks" } else { "flows" }.into(),
@@ -301,21 +285,18 @@ fn locking(options: &Options<'_>, outcome: &mut Outcome) -> Result<(), Box<dyn E
             ]);
         }
     }
-    outcome.tables.push(Table {
-        name: "collapse-locking".into(),
-        title: "Limit loads over the exact ones by element and rule".into(),
-        header: [
-            "element, quadrature",
-            "rule",
-            "in flow",
-            "cells in half the ligament, half of those in the wall",
-            "pressure of the cylinder",
-            "net stress at the notch",
-            "final slope at the notch over the elastic one",
-        ]
-        .map(String::from)
-        .to_vec(),
-        rows,
-    });
+    let header = [
+        "element, quadrature",
+        "rule",
+        "in flow",
+        "cells in half the ligament, half of those in the wall",
+        "pressure of the cylinder",
+        "net stress at the notch",
+        "final slope at the notch over the elastic one",
+    ];
+    let title = "Limit loads over the exact ones by element and rule";
+    outcome
+        .tables
+        .push(Table::new("collapse-locking", title, header, rows));
     Ok(())
 }

@@ -1,10 +1,13 @@
 //! Recorded runs and how far two of them are apart; not what is expected of them.
 
-use crate::paper::reference;
-use crate::{Check, Kind, Table};
-use moreau::driver::{ContactRecord, Driver, ModelError, Step, StepError, StepReport};
+use crate::paper::{
+    BLOCK_INCREMENTS, BLOCK_TRAVEL, block, block_punch_load, block_step, reference,
+};
+use crate::{Check, Table};
+use moreau::driver::{ContactRecord, Driver, ModelError, Settings, Step, StepError, StepReport};
 use moreau::laws::Status;
-use moreau::mesh::NodeKind;
+use moreau::mesh::Integration;
+use std::error::Error;
 
 /// Source named for numbers of the independent implementation.
 pub(super) const INDEPENDENT: &str = "independent implementation, tests/reference";
@@ -38,10 +41,16 @@ impl History {
 
     /// Largest bipotential gap of an increment over the external work done until then.
     pub fn largest_gap(&self) -> f64 {
-        self.reports
-            .iter()
-            .map(|r| r.relative_gap().abs())
-            .fold(0.0, f64::max)
+        largest_gap(&self.reports)
+    }
+
+    /// Loads over the travel of a punch that is at `travel` in the end, in equal increments and
+    /// from the origin on.
+    pub(super) fn path(&self, travel: f64) -> Vec<[f64; 2]> {
+        let count = self.loads.len() as f64;
+        let points = (1..).zip(&self.loads);
+        let points = points.map(|(i, &load)| [f64::from(i) * travel / count, load]);
+        std::iter::once([0.0, 0.0]).chain(points).collect()
     }
 
     /// Largest penetration of the bodies at a contact point \[mm\], springs of a penalty included.
@@ -99,6 +108,32 @@ pub fn record(
     outcome.map(|_| ())
 }
 
+/// Presses the paper's block over the whole travel of its punch.
+pub(super) fn press_block(
+    cells: [usize; 2],
+    friction: f64,
+    integration: Integration,
+    settings: Settings<2>,
+) -> Result<(Driver<2>, History), Box<dyn Error>> {
+    let mut driver = block(cells, friction, integration, settings)?;
+    let mut history = History::default();
+    let step = block_step(BLOCK_TRAVEL);
+    record(
+        &mut driver,
+        &step,
+        BLOCK_INCREMENTS,
+        block_punch_load,
+        &mut history,
+    )?;
+    Ok((driver, history))
+}
+
+/// Largest bipotential gap of an increment over the external work done until then.
+pub(super) fn largest_gap(reports: &[StepReport]) -> f64 {
+    let gaps = reports.iter().map(|r| r.relative_gap().abs());
+    gaps.fold(0.0, f64::max)
+}
+
 /// Largest relative difference of two columns of numbers; infinite if their lengths differ.
 pub(super) fn largest_difference(computed: &[f64], expected: &[f64]) -> f64 {
     if computed.len() != expected.len() {
@@ -150,44 +185,56 @@ pub(super) fn final_state_checks(what: &str, driver: &Driver<2>, file: &str) -> 
         statuses += usize::from(!same);
     }
     let missing = (rows.len().abs_diff(seen) + driver.contacts().len().abs_diff(seen)) as f64;
-    let at_most = |name: String, value: (f64, &str), bound: f64| {
-        Check::new(name, value, Kind::AtMost, (bound, 0.0), INDEPENDENT)
-    };
     vec![
-        at_most(
+        Check::at_most(
             format!("{what}: nodal reactions, largest difference over the largest force"),
             (force / largest_force, "1"),
             1e-8,
+            INDEPENDENT,
         ),
-        at_most(
+        Check::at_most(
             format!("{what}: displacements and slips of contact nodes, largest difference"),
             (displacement, "mm"),
             1e-9,
+            INDEPENDENT,
         ),
-        at_most(
+        Check::at_most(
             format!("{what}: statuses that differ"),
             (statuses as f64, "nodes"),
             0.0,
+            INDEPENDENT,
         ),
-        at_most(
+        Check::at_most(
             format!("{what}: contact nodes without a partner"),
             (missing, "nodes"),
             0.0,
+            INDEPENDENT,
         ),
     ]
 }
 
-/// Positions \[mm\] and values of the contact points of one kind.
-pub(super) fn along(
-    contacts: &[ContactRecord<2>],
-    kind: NodeKind,
-    value: impl Fn(&ContactRecord<2>) -> f64,
-) -> Vec<[f64; 2]> {
-    contacts
-        .iter()
-        .filter(|c| c.kind == kind)
-        .map(|c| [c.position[0], value(c)])
-        .collect()
+/// Check of a column of numbers against the same of the independent implementation.
+pub(super) fn column_check(name: String, computed: &[f64], expected: &[f64]) -> Check {
+    let largest = largest_difference(computed, expected);
+    Check::at_most(name, (largest, "1"), 1e-8, INDEPENDENT)
+}
+
+/// Check that the contact forces obey the law.
+pub(super) fn gap_check(what: &str, history: &History) -> Check {
+    Check::at_most(
+        format!("{what}: largest bipotential gap over the external work"),
+        (history.largest_gap(), "1"),
+        1e-10,
+        "zero exactly at the law, [39]",
+    )
+}
+
+/// Name of a rule of quadrature in the eight-node cell.
+pub(super) fn quadrature(integration: Integration) -> &'static str {
+    match integration {
+        Integration::Reduced => "2×2",
+        Integration::Full | Integration::BBar => "3×3",
+    }
 }
 
 /// A number with as many digits as a table needs.
@@ -201,13 +248,13 @@ pub(super) fn scientific(value: f64) -> String {
 }
 
 /// A row of [`certificate_table`].
-pub(super) fn certificate_row(method: &str, history: &History) -> Vec<String> {
+pub(super) fn certificate_row(method: &str, history: &History) -> [String; 5] {
     let energies = history
         .reports
         .last()
         .map(|r| r.energies)
         .unwrap_or_default();
-    vec![
+    [
         method.into(),
         history.reports.len().to_string(),
         scientific(history.largest_gap()),
@@ -217,22 +264,15 @@ pub(super) fn certificate_row(method: &str, history: &History) -> Vec<String> {
 }
 
 /// How exact the methods were.
-pub(super) fn certificate_table(name: &str, rows: Vec<Vec<String>>) -> Table {
-    Table {
-        name: name.into(),
-        title:
-            "Certificate: the bipotential gap, taken at the irreversible displacement, and what \
-            it cannot see"
-                .into(),
-        header: [
-            "method",
-            "increments",
-            "largest gap over external work",
-            "largest penetration [mm]",
-            "energy in the penalty springs over external work",
-        ]
-        .map(Into::into)
-        .to_vec(),
-        rows,
-    }
+pub(super) fn certificate_table(name: &str, rows: Vec<[String; 5]>) -> Table {
+    let title = "Certificate: the bipotential gap, taken at the irreversible displacement, and \
+        what it cannot see";
+    let header = [
+        "method",
+        "increments",
+        "largest gap over external work",
+        "largest penetration [mm]",
+        "energy in the penalty springs over external work",
+    ];
+    Table::new(name, title, header, rows)
 }

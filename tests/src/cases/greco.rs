@@ -3,13 +3,14 @@
 //! Source: M. Raous, P. Chabrand and F. Lebon, *Journal de Mécanique Théorique et Appliquée*,
 //! special issue (1988) 111-128; also SSNV128 of Code_Aster's validation manual.
 
+use super::compare::largest_gap;
+use super::pictures::sorted;
 use crate::problems::greco::{block, slip, squeeze};
-use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
-use moreau::driver::Settings;
+use crate::{Case, Chapter, Check, Figure, Options, Outcome, Table};
+use moreau::driver::{ContactRecord, Driver, Settings};
 use moreau::laws::Status;
 use moreau::mesh::CellKind;
 use moreau::plot::{Chart, Style};
-use nalgebra::Vector2;
 use std::error::Error;
 
 /// The case.
@@ -49,45 +50,68 @@ const SLIPS: [(f64, f64); 8] = [
 const ZONES: [f64; 2] = [3.1, 29.5];
 
 fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
-    let mut outcome = Outcome::default();
     let n = if options.quick { 16 } else { 64 };
     (options.progress)(&format!("{n} × {n} cells"));
     let mut driver = block(CellKind::Quad8, n, Settings::default())?;
     let reports = driver.run(&squeeze(), 1, |_, _| {})?;
-    let mut add = |name: String, value: (f64, &str), kind, reference, source: &str| {
-        outcome
-            .checks
-            .push(Check::new(name, value, kind, reference, source));
-    };
-    for (list, source, tolerance) in [(&MEANS[..], PUBLISHED, 5e-2), (&SLIPS[..], CONVERGED, 3e-3)]
-    {
-        for &(x, u) in list {
-            let name = format!("slip: at {x} mm");
-            add(
-                name,
-                (slip(&driver, x), "µm"),
-                Kind::Relative,
-                (u, tolerance),
+    let contacts = sorted(driver.contacts());
+    let mut checks = slips(&driver);
+    checks.extend(forces(driver.contacts()));
+    checks.push(statuses(&contacts, n));
+    checks.push(cone(&contacts));
+    checks.push(Check::at_most(
+        "bipotential gap over external work",
+        (largest_gap(&reports), "1"),
+        1e-10,
+        "exact contact",
+    ));
+    Ok(Outcome {
+        checks,
+        tables: vec![table(&driver, &contacts)],
+        figures: figures(&driver, &contacts, n)?,
+        notes: Vec::new(),
+    })
+}
+
+/// Checks of the slip where it is known.
+fn slips(driver: &Driver<2>) -> Vec<Check> {
+    let check = |source, tolerance| {
+        move |&(x, expected): &(f64, f64)| {
+            Check::relative(
+                format!("slip: at {x} mm"),
+                (slip(driver, x), "µm"),
+                (expected, tolerance),
                 source,
-            );
+            )
         }
-    }
-    let sum: Vector2<f64> = driver.contacts().iter().map(|c| c.t).sum();
-    add(
-        "normal force".into(),
-        (sum[0], "N/mm"),
-        Kind::Relative,
-        (2000.0, 1e-10),
-        "equilibrium",
-    );
-    add(
-        "tangential force".into(),
-        (sum[1], "N/mm"),
-        Kind::Relative,
-        (-1405.4, 3e-3),
-        CONVERGED,
-    );
-    // Statuses beyond half an edge of the borders of the zones.
+    };
+    let published = MEANS.iter().map(check(PUBLISHED, 5e-2));
+    published
+        .chain(SLIPS.iter().map(check(CONVERGED, 3e-3)))
+        .collect()
+}
+
+/// Checks of the resultants on the floor.
+fn forces(contacts: &[ContactRecord<2>]) -> [Check; 2] {
+    let sum = |k: usize| contacts.iter().map(|c| c.t[k]).sum::<f64>();
+    [
+        Check::relative(
+            "normal force",
+            (sum(0), "N/mm"),
+            (2000.0, 1e-10),
+            "equilibrium",
+        ),
+        Check::relative(
+            "tangential force",
+            (sum(1), "N/mm"),
+            (-1405.4, 3e-3),
+            CONVERGED,
+        ),
+    ]
+}
+
+/// Check of the statuses beyond half an edge of the borders of the zones.
+fn statuses(contacts: &[ContactRecord<2>], n: usize) -> Check {
     let half = 20.0 / n as f64;
     let expected = |x: f64| match x {
         x if x < ZONES[0] - half => Some(Status::Open),
@@ -95,111 +119,78 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
         x if x > ZONES[1] + half => Some(Status::Stick),
         _ => None,
     };
-    let mut contacts = driver.contacts().to_vec();
-    contacts.sort_by(|a, b| a.position[0].total_cmp(&b.position[0]));
     let wrong = contacts
         .iter()
         .filter(|c| expected(c.position[0]).is_some_and(|s| s != c.status));
-    add(
-        "points whose status is not that of their zone".into(),
+    Check::at_most(
+        "points whose status is not that of their zone",
         (wrong.count() as f64, "points"),
-        Kind::AtMost,
-        (0.0, 0.0),
+        0.0,
         CONVERGED,
-    );
-    let excess = contacts
-        .iter()
-        .map(|c| c.t[1].abs() - c.t[0])
-        .fold(0.0, f64::max);
-    add(
-        "excess of friction over the cone".into(),
-        (excess, "N/mm"),
-        Kind::AtMost,
-        (1e-9, 0.0),
-        "Coulomb's law",
-    );
-    let gap = reports
-        .iter()
-        .map(|r| r.relative_gap().abs())
-        .fold(0.0, f64::max);
-    add(
-        "bipotential gap over external work".into(),
-        (gap, "1"),
-        Kind::AtMost,
-        (1e-10, 0.0),
-        "exact contact",
-    );
+    )
+}
 
-    let along = |value: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
-        (0..contacts.len())
-            .map(|i| [contacts[i].position[0], value(i)])
-            .collect()
+/// Check that no force is outside of the cone of friction.
+fn cone(contacts: &[ContactRecord<2>]) -> Check {
+    let excess = contacts.iter().map(|c| c.t[1].abs() - c.t[0]);
+    Check::at_most(
+        "excess of friction over the cone",
+        (excess.fold(0.0, f64::max), "N/mm"),
+        1e-9,
+        "Coulomb's law",
+    )
+}
+
+fn figures(
+    driver: &Driver<2>,
+    contacts: &[ContactRecord<2>],
+    n: usize,
+) -> Result<Vec<Figure>, Box<dyn Error>> {
+    let along = |value: &dyn Fn(&ContactRecord<2>) -> f64| -> Vec<[f64; 2]> {
+        let point = |c: &ContactRecord<2>| [c.position[0], value(c)];
+        contacts.iter().map(point).collect()
     };
+    let pressure = along(&|c| c.t[0] / c.area);
+    let friction = along(&|c| c.t[1].abs() / c.area);
     let tractions = Chart::new("Tractions on the floor", "position [mm]", "traction [MPa]")
-        .with(
-            "pressure",
-            Style::Line,
-            along(&|i| contacts[i].t[0] / contacts[i].area),
-        )
-        .with(
-            "friction",
-            Style::Line,
-            along(&|i| contacts[i].t[1].abs() / contacts[i].area),
-        );
+        .with("pressure", Style::Line, pressure)
+        .with("friction", Style::Line, friction);
+    let slip = along(&|c| slip(driver, c.position[0]));
+    let means = MEANS.map(|(x, u)| [x, u]);
     let slips = Chart::new("Slip on the floor", "position [mm]", "slip [µm]")
-        .with(
-            format!("{n} × {n} cells"),
-            Style::Line,
-            along(&|i| slip(&driver, contacts[i].position[0])),
-        )
-        .with(
-            "mean of published codes",
-            Style::Points,
-            MEANS.map(|(x, u)| [x, u]),
-        );
-    for (name, caption, chart) in [
-        (
+        .with(format!("{n} × {n} cells"), Style::Line, slip)
+        .with("mean of published codes", Style::Points, means);
+    Ok(vec![
+        Figure::new(
             "greco-slip",
             "Slip of the block's side that lies on the floor.",
-            slips,
+            slips.to_svg()?,
         ),
-        (
+        Figure::new(
             "greco-tractions",
-            "Pressure and friction: no contact up to 3 mm, slip where the two are equal, stick beyond 29 mm.",
-            tractions,
+            "Pressure and friction: no contact up to 3 mm, slip where the two are equal, stick \
+                beyond 29 mm.",
+            tractions.to_svg()?,
         ),
-    ] {
-        let svg = chart.to_svg()?;
-        outcome.figures.push(Figure {
-            name: name.into(),
-            caption: caption.into(),
-            svg,
-        });
-    }
-    outcome.tables.push(Table {
-        name: "greco".into(),
-        title: "Along the floor".into(),
-        header: [
-            "x [mm]",
-            "slip [µm]",
-            "normal force [N/mm]",
-            "tangential force [N/mm]",
-            "status",
+    ])
+}
+
+fn table(driver: &Driver<2>, contacts: &[ContactRecord<2>]) -> Table {
+    let header = [
+        "x [mm]",
+        "slip [µm]",
+        "normal force [N/mm]",
+        "tangential force [N/mm]",
+        "status",
+    ];
+    let rows = contacts.iter().map(|c| {
+        [
+            format!("{:.3}", c.position[0]),
+            format!("{:.4}", slip(driver, c.position[0])),
+            format!("{:.4}", c.t[0]),
+            format!("{:.4}", c.t[1]),
+            format!("{:?}", c.status).to_lowercase(),
         ]
-        .map(String::from)
-        .to_vec(),
-        rows: contacts
-            .iter()
-            .map(|c| {
-                vec![
-                    format!("{:.3}", c.position[0]),
-                    format!("{:.4}", slip(&driver, c.position[0])),
-                    format!("{:.4}", c.t[0]),
-                    format!("{:.4}", c.t[1]),
-                    format!("{:?}", c.status).to_lowercase(),
-                ]
-            })
-            .collect(),
     });
-    Ok(outcome)
+    Table::new("greco", "Along the floor", header, rows)
 }

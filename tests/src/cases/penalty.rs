@@ -1,8 +1,8 @@
 //! Paper 8.2.1: the range of penalty factors; figures 12 to 14.
 
-use super::compare::{History, along, digits, record, scientific};
-use crate::paper::{BLOCK_INCREMENTS, BLOCK_TRAVEL, block, block_punch_load, block_step};
-use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
+use super::compare::{History, digits, press_block, scientific};
+use super::pictures::along;
+use crate::{Case, Chapter, Check, Figure, Options, Outcome, Table};
 use moreau::contact::{ContactSolver, Penalty, SemismoothNewton};
 use moreau::driver::Settings;
 use moreau::mesh::{Integration, NodeKind};
@@ -37,44 +37,223 @@ const EXPECTED: [(i32, f64, f64); 4] = [
     (10, 2.300837976e-6, 4.499446628e-7),
 ];
 
-/// Displacements of the contact points, and the history.
-type Pressed = (Vec<[f64; 2]>, History);
+/// Factors at which the reactions are drawn.
+const DRAWN: [i32; 5] = [3, 4, 5, 6, 8];
 
-fn press(
-    cells: [usize; 2],
-    friction: f64,
-    contact: Box<dyn ContactSolver<2>>,
-) -> Result<Pressed, Box<dyn Error>> {
-    let settings = Settings {
-        contact,
-        ..Settings::default()
-    };
-    let mut driver = block(cells, friction, Integration::Reduced, settings)?;
-    let mut history = History::default();
-    let step = block_step(BLOCK_TRAVEL);
-    record(
-        &mut driver,
-        &step,
-        BLOCK_INCREMENTS,
-        block_punch_load,
-        &mut history,
-    )?;
-    let slips = driver
-        .contacts()
-        .iter()
-        .map(|c| driver.displacement(c.node).into())
-        .collect();
-    Ok((slips, history))
+/// A pressed block of some rows of ten cells.
+struct Pressed {
+    /// Displacements of the contact points along the foundation \[mm\].
+    slips: Vec<f64>,
+    history: History,
+}
+
+impl Pressed {
+    fn new(
+        rows: usize,
+        friction: f64,
+        contact: Box<dyn ContactSolver<2>>,
+    ) -> Result<Self, Box<dyn Error>> {
+        let settings = Settings {
+            contact,
+            ..Settings::default()
+        };
+        let (driver, history) = press_block([10, rows], friction, Integration::Reduced, settings)?;
+        let contacts = driver.contacts().iter();
+        let slips = contacts.map(|c| driver.displacement(c.node)[0]).collect();
+        Ok(Self { slips, history })
+    }
+
+    /// By the exact method.
+    fn exact(rows: usize) -> Result<Self, Box<dyn Error>> {
+        Self::new(rows, FRICTION, Box::new(SemismoothNewton::default()))
+    }
+
+    /// By a penalty of 10 to some power, normal and tangential.
+    fn penalty(rows: usize, friction: f64, power: i32) -> Result<Self, Box<dyn Error>> {
+        let k = 10f64.powi(power);
+        Self::new(rows, friction, Box::new(Penalty::new(k, k)?))
+    }
+
+    fn reactions(&self) -> Vec<f64> {
+        let contacts = self.history.last_contacts().iter();
+        contacts.map(|c| c.t[0]).collect()
+    }
 }
 
 /// Largest difference over the largest value.
-fn error(computed: impl Iterator<Item = f64>, exact: impl Iterator<Item = f64> + Clone) -> f64 {
-    let largest = exact.clone().map(f64::abs).fold(0.0, f64::max);
-    computed
-        .zip(exact)
-        .map(|(a, b)| (a - b).abs())
-        .fold(0.0, f64::max)
-        / largest
+fn error(computed: &[f64], exact: &[f64]) -> f64 {
+    let largest = exact.iter().map(|v| v.abs()).fold(0.0, f64::max);
+    let pairs = computed.iter().zip(exact);
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
+}
+
+/// The penalty method with one factor, against the exact one.
+struct Trial {
+    power: i32,
+    run: Pressed,
+    /// Error of the normal forces.
+    force: f64,
+    /// Error of the slips.
+    slip: f64,
+}
+
+/// A mesh under all factors.
+struct Sweep {
+    rows: usize,
+    exact: Pressed,
+    /// Those that converged.
+    trials: Vec<Trial>,
+}
+
+impl Sweep {
+    fn run(options: &Options<'_>, rows: usize) -> Result<Self, Box<dyn Error>> {
+        let exact = Pressed::exact(rows)?;
+        let mut trials = Vec::new();
+        for power in POWERS {
+            (options.progress)(&format!("{} cells, k = 1e{power} N/mm", 10 * rows));
+            if let Ok(run) = Pressed::penalty(rows, FRICTION, power) {
+                let force = error(&run.reactions(), &exact.reactions());
+                let slip = error(&run.slips, &exact.slips);
+                trials.push(Trial {
+                    power,
+                    run,
+                    force,
+                    slip,
+                });
+            }
+        }
+        Ok(Self {
+            rows,
+            exact,
+            trials,
+        })
+    }
+
+    fn cells(&self) -> String {
+        format!("{} cells", 10 * self.rows)
+    }
+
+    /// Error of the normal forces over the factor.
+    fn curve(&self) -> Vec<[f64; 2]> {
+        let trials = self.trials.iter();
+        trials.map(|t| [10f64.powi(t.power), t.force]).collect()
+    }
+
+    /// Against the independent implementation, which has the mesh of 20 cells.
+    fn against_values(&self) -> Vec<Check> {
+        let mut checks = Vec::new();
+        for &(power, force, slip) in EXPECTED.iter().filter(|_| self.rows == 2) {
+            let Some(trial) = self.trials.iter().find(|t| t.power == power) else {
+                continue;
+            };
+            for (what, value, expected) in [
+                ("normal force", trial.force, force),
+                ("slip", trial.slip, slip),
+            ] {
+                checks.push(Check::relative(
+                    format!("{}, k = 1e{power}: error of the {what}", self.cells()),
+                    (value, "1"),
+                    (expected, 1e-5),
+                    "independent implementation of the penalty law",
+                ));
+            }
+        }
+        checks
+    }
+
+    /// Every factor converges, and the error falls as 1/k.
+    fn convergence(&self) -> Vec<Check> {
+        let mut checks = vec![all_converge(&self.cells(), self.trials.len())];
+        // Between 1e7 and 1e12 neither the nonlinearity nor rounding disturbs the rate.
+        let at = |power| self.trials.iter().find(|t| t.power == power);
+        if let (Some(low), Some(high)) = (at(7), at(12)) {
+            checks.push(Check::absolute(
+                format!(
+                    "{}: order of the error in 1/k, from 1e7 to 1e12",
+                    self.cells()
+                ),
+                ((low.force / high.force).log10() / 5.0, "1"),
+                (1.0, 0.02),
+                "inf-convolution [82]: the springs are in series with the exact law",
+            ));
+        }
+        checks
+    }
+
+    /// Factors that converge, in the paper and here, and those that are good for anything.
+    fn range(&self, paper: &str) -> [String; 4] {
+        let range = |list: Vec<i32>| match (list.first(), list.last()) {
+            (Some(a), Some(b)) => format!("1e{a} to 1e{b}"),
+            _ => "none".into(),
+        };
+        let good = self.trials.iter().filter(|t| t.force < 1e-2);
+        [
+            self.cells(),
+            paper.into(),
+            range(self.trials.iter().map(|t| t.power).collect()),
+            range(good.map(|t| t.power).collect()),
+        ]
+    }
+
+    /// Rows of the table of all factors.
+    fn table(&self) -> impl Iterator<Item = [String; 8]> {
+        self.trials.iter().map(|trial| {
+            let history = &trial.run.history;
+            let load = history.last_load();
+            [
+                (10 * self.rows).to_string(),
+                format!("1e{}", trial.power),
+                digits(load, 5),
+                scientific(load / self.exact.history.last_load() - 1.0),
+                scientific(trial.force),
+                scientific(trial.slip),
+                scientific(history.largest_penetration()),
+                history.newton_iterations().to_string(),
+            ]
+        })
+    }
+
+    /// Reactions of nodes of one kind under some factors.
+    fn reactions(&self, kind: NodeKind, title: &str) -> Chart {
+        let points = |run: &Pressed| along(run.history.last_contacts(), kind, |c| c.t[0]);
+        let mut chart = Chart::new(
+            title,
+            "position along the foundation [mm]",
+            "normal reaction [N per mm]",
+        );
+        for trial in self.trials.iter().filter(|t| DRAWN.contains(&t.power)) {
+            let name = format!("k = 1e{} N/mm", trial.power);
+            chart = chart.with(name, Style::LinePoints, points(&trial.run));
+        }
+        chart.with("exact", Style::Dashed, points(&self.exact))
+    }
+
+    /// Figures 12 and 13.
+    fn figures(&self) -> Result<Vec<Figure>, Box<dyn Error>> {
+        let mut figures = Vec::new();
+        for (name, kind, figure, nodes) in [
+            ("penalty-corners", NodeKind::Corner, 12, "corner"),
+            ("penalty-midsides", NodeKind::Midside, 13, "mid-side"),
+        ] {
+            let chart = self.reactions(kind, &format!("Normal reactions at {nodes} nodes"));
+            let caption = format!(
+                "Normal reactions at {nodes} nodes for several penalty factors, 20 cells, for the \
+                 paper's figure {figure}. At 10⁶ N/mm the largest error is 2 %, at 10⁸ the curve \
+                 lies on the exact one."
+            );
+            figures.push(Figure::new(name, caption, chart.to_svg()?));
+        }
+        Ok(figures)
+    }
+}
+
+fn all_converge(what: &str, converged: usize) -> Check {
+    Check::at_least(
+        format!("{what}: penalty factors from 1e2 to 1e16 that converge"),
+        (converged as f64, "factors"),
+        POWERS.count() as f64,
+        "the law holds for every k",
+    )
 }
 
 fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
@@ -88,176 +267,64 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
     )
     .log_x()
     .log_y();
-    let mut ranges = Vec::new();
-    let mut sweep = Vec::new();
+    let (mut ranges, mut factors) = (Vec::new(), Vec::new());
     for &(rows, paper) in meshes {
-        let cells = [10, rows];
-        let count = 10 * rows;
-        let (exact_slips, exact) = press(cells, FRICTION, Box::new(SemismoothNewton::default()))?;
-        let mut curve = Vec::new();
-        let mut converged = Vec::new();
-        let mut corners = Chart::new(
-            "Normal reactions at corner nodes",
-            "position along the foundation [mm]",
-            "normal reaction [N per mm]",
-        );
-        let mut midsides = Chart {
-            title: "Normal reactions at mid-side nodes".into(),
-            ..corners.clone()
-        };
-        for power in POWERS {
-            (options.progress)(&format!("{count} cells, k = 1e{power} N/mm"));
-            let k = 10f64.powi(power);
-            let Ok((slips, history)) = press(cells, FRICTION, Box::new(Penalty::new(k, k)?)) else {
-                continue;
-            };
-            converged.push(power);
-            let normal = |h: &History| h.last_contacts().iter().map(|c| c.t[0]).collect::<Vec<_>>();
-            let force = error(normal(&history).into_iter(), normal(&exact).into_iter());
-            let slip = error(slips.iter().map(|u| u[0]), exact_slips.iter().map(|u| u[0]));
-            curve.push([k, force]);
-            sweep.push(vec![
-                count.to_string(),
-                format!("1e{power}"),
-                digits(history.last_load(), 5),
-                scientific(history.last_load() / exact.last_load() - 1.0),
-                scientific(force),
-                scientific(slip),
-                scientific(history.largest_penetration()),
-                history.newton_iterations().to_string(),
-            ]);
-            let expected = EXPECTED.iter().find(|e| e.0 == power && rows == 2);
-            if let Some(&(_, expected_force, expected_slip)) = expected {
-                for (what, value, reference) in [
-                    ("normal force", force, expected_force),
-                    ("slip", slip, expected_slip),
-                ] {
-                    outcome.checks.push(Check::new(
-                        format!("{count} cells, k = 1e{power}: error of the {what}"),
-                        (value, "1"),
-                        Kind::Relative,
-                        (reference, 1e-5),
-                        "independent implementation of the penalty law",
-                    ));
-                }
-            }
-            if [3, 4, 5, 6, 8].contains(&power) {
-                let name = format!("k = 1e{power} N/mm");
-                let of = |kind| along(history.last_contacts(), kind, |c| c.t[0]);
-                corners = corners.with(&name, Style::LinePoints, of(NodeKind::Corner));
-                midsides = midsides.with(&name, Style::LinePoints, of(NodeKind::Midside));
-            }
-        }
+        let sweep = Sweep::run(options, rows)?;
+        outcome.checks.extend(sweep.against_values());
+        outcome.checks.extend(sweep.convergence());
         if rows == 2 {
-            let of = |kind| along(exact.last_contacts(), kind, |c| c.t[0]);
-            corners = corners.with("exact", Style::Dashed, of(NodeKind::Corner));
-            midsides = midsides.with("exact", Style::Dashed, of(NodeKind::Midside));
-            for (name, chart, figure, where_) in [
-                ("penalty-corners", corners, 12, "corner"),
-                ("penalty-midsides", midsides, 13, "mid-side"),
-            ] {
-                outcome.figures.push(Figure {
-                    name: name.into(),
-                    caption: format!(
-                        "Normal reactions at {where_} nodes for several penalty factors, 20 cells, \
-                         for the paper's figure {figure}. At 10⁶ N/mm the \
-                         largest error is 2 %, at 10⁸ the curve lies on the exact one."
-                    ),
-                    svg: chart.to_svg()?,
-                });
-            }
+            outcome.figures.extend(sweep.figures()?);
         }
-        outcome.checks.push(Check::new(
-            format!("{count} cells: penalty factors from 1e2 to 1e16 that converge"),
-            (converged.len() as f64, "factors"),
-            Kind::AtLeast,
-            (POWERS.count() as f64, 0.0),
-            "the law holds for every k",
-        ));
-        // Between 1e7 and 1e12 neither the nonlinearity nor rounding disturbs the rate.
-        let at = |power: i32| {
-            curve
-                .iter()
-                .find(|p| p[0] == 10f64.powi(power))
-                .map(|p| p[1])
-        };
-        if let (Some(low), Some(high)) = (at(7), at(12)) {
-            outcome.checks.push(Check::new(
-                format!("{count} cells: order of the error in 1/k, from 1e7 to 1e12"),
-                ((low / high).log10() / 5.0, "1"),
-                Kind::Absolute,
-                (1.0, 0.02),
-                "inf-convolution [82]: the springs are in series with the exact law",
-            ));
-        }
-        let range = |list: &[i32]| match (list.first(), list.last()) {
-            (Some(a), Some(b)) => format!("1e{a} to 1e{b}"),
-            _ => "none".into(),
-        };
-        let good: Vec<i32> = POWERS
-            .filter(|&p| at(p).is_some_and(|e| e < 1e-2))
-            .collect();
-        ranges.push(vec![
-            format!("{count} cells"),
-            paper.into(),
-            range(&converged),
-            range(&good),
-        ]);
-        errors = errors.with(format!("{count} cells"), Style::LinePoints, curve);
+        errors = errors.with(sweep.cells(), Style::LinePoints, sweep.curve());
+        ranges.push(sweep.range(paper));
+        factors.extend(sweep.table());
     }
-    outcome.figures.push(Figure {
-        name: "penalty-error".into(),
-        caption: "Error of the normal forces against exact contact, at the end of the press: it \
-            falls as 1/k down to rounding, on every mesh."
-            .into(),
-        svg: errors.to_svg()?,
-    });
-    outcome.tables.push(Table {
-        name: "penalty-range".into(),
-        title: "Penalty factors that converge [N/mm], for the paper's figure 14".into(),
-        header: ["mesh", "paper", "here", "here with an error below 1 %"]
-            .map(Into::into)
-            .to_vec(),
-        rows: ranges,
-    });
-    outcome.tables.push(Table {
-        name: "penalty-sweep".into(),
-        title: "Penalty against exact contact, μ = 0.05".into(),
-        header: [
-            "cells",
-            "k [N/mm]",
-            "load [N/mm]",
-            "relative error of the load",
-            "of the normal forces",
-            "of the slips",
-            "largest penetration [mm]",
-            "Newton iterations",
-        ]
-        .map(Into::into)
-        .to_vec(),
-        rows: sweep,
-    });
-    more_friction(options, &mut outcome)?;
+    outcome.figures.push(Figure::new(
+        "penalty-error",
+        "Error of the normal forces against exact contact, at the end of the press: it falls as \
+            1/k down to rounding, on every mesh.",
+        errors.to_svg()?,
+    ));
+    outcome.tables = tables(ranges, factors).into();
+    more_friction(options, &mut outcome);
     Ok(outcome)
 }
 
+fn tables(ranges: Vec<[String; 4]>, factors: Vec<[String; 8]>) -> [Table; 2] {
+    [
+        Table::new(
+            "penalty-range",
+            "Penalty factors that converge [N/mm], for the paper's figure 14",
+            ["mesh", "paper", "here", "here with an error below 1 %"],
+            ranges,
+        ),
+        Table::new(
+            "penalty-sweep",
+            "Penalty against exact contact, μ = 0.05",
+            [
+                "cells",
+                "k [N/mm]",
+                "load [N/mm]",
+                "relative error of the load",
+                "of the normal forces",
+                "of the slips",
+                "largest penetration [mm]",
+                "Newton iterations",
+            ],
+            factors,
+        ),
+    ]
+}
+
 /// A friction of 0.05 flatters a code, because hardly a point sticks: the range again with more.
-fn more_friction(options: &Options<'_>, outcome: &mut Outcome) -> Result<(), Box<dyn Error>> {
+fn more_friction(options: &Options<'_>, outcome: &mut Outcome) {
     for friction in [0.1, 0.3] {
-        let mut converged = 0;
-        for power in POWERS {
-            (options.progress)(&format!("20 cells, μ = {friction}, k = 1e{power} N/mm"));
-            let k = 10f64.powi(power);
-            converged +=
-                usize::from(press([10, 2], friction, Box::new(Penalty::new(k, k)?)).is_ok());
-        }
-        outcome.checks.push(Check::new(
-            format!("20 cells, μ = {friction}: penalty factors from 1e2 to 1e16 that converge"),
-            (converged as f64, "factors"),
-            Kind::AtLeast,
-            (POWERS.count() as f64, 0.0),
-            "the law holds for every k",
-        ));
+        let what = format!("20 cells, μ = {friction}");
+        let converges = |power: &i32| {
+            (options.progress)(&format!("{what}, k = 1e{power} N/mm"));
+            Pressed::penalty(2, friction, *power).is_ok()
+        };
+        let converged = POWERS.filter(converges).count();
+        outcome.checks.push(all_converge(&what, converged));
     }
-    Ok(())
 }

@@ -2,18 +2,19 @@
 //! 6 to 8.
 
 use super::compare::{
-    History, INDEPENDENT, certificate_row, certificate_table, digits, final_state_checks,
-    largest_difference, record, scientific,
+    History, INDEPENDENT, certificate_row, certificate_table, column_check, digits,
+    final_state_checks, gap_check, quadrature, record, scientific,
 };
+use super::pictures::deformed;
 use crate::paper::{
     PRANDTL_INCREMENTS, PRANDTL_TRAVEL, prandtl, prandtl_load, prandtl_punch_load, prandtl_step,
     reference,
 };
-use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
+use crate::{Case, Chapter, Check, Figure, Options, Outcome, Table};
 use moreau::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
 use moreau::driver::{Driver, Settings};
 use moreau::mesh::Integration;
-use moreau::plot::{Chart, MeshPicture, Style, nodal_average};
+use moreau::plot::{Chart, MeshPicture, Style};
 use std::error::Error;
 
 /// The case.
@@ -44,11 +45,8 @@ const LOADS: [(usize, Integration, f64); 8] = [
 ];
 
 fn name(refinement: usize, integration: Integration) -> String {
-    let rule = match integration {
-        Integration::Reduced => "2×2",
-        Integration::Full | Integration::BBar => "3×3",
-    };
-    format!("{} cells, {rule}", 56 * refinement * refinement)
+    let cells = 56 * refinement * refinement;
+    format!("{cells} cells, {}", quadrature(integration))
 }
 
 /// A run over the whole travel.
@@ -74,149 +72,189 @@ fn indent(
     Ok((driver, history))
 }
 
-fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
-    let mut outcome = Outcome::default();
-    let limit = prandtl_load();
-    let travel = |i: usize| (i + 1) as f64 * PRANDTL_TRAVEL / PRANDTL_INCREMENTS as f64;
-    let finest = if options.quick { 2 } else { 8 };
-    let empty = |rule: &str| {
-        Chart::new(
-            format!("Load of the punch, {rule} quadrature"),
-            "travel of the punch [mm]",
-            "load [N per mm of thickness]",
-        )
-    };
-    let mut charts = [empty("2×2"), empty("3×3")];
-    let mut rows = Vec::new();
-    let mut coarser: Option<f64> = None;
-    for (refinement, integration, expected) in LOADS.into_iter().filter(|l| l.0 <= finest) {
-        let name = name(refinement, integration);
-        (options.progress)(&name);
-        let (driver, history) = indent(
+/// One mesh under one rule, pressed over the whole travel.
+struct Indented {
+    refinement: usize,
+    integration: Integration,
+    name: String,
+    driver: Driver<2>,
+    history: History,
+}
+
+impl Indented {
+    /// By the exact method.
+    fn new(refinement: usize, integration: Integration) -> Result<Self, Box<dyn Error>> {
+        let solver = Box::new(SemismoothNewton::default());
+        let (driver, history) = indent(refinement, integration, solver)?;
+        Ok(Self {
             refinement,
             integration,
-            Box::new(SemismoothNewton::default()),
-        )?;
-        let ratio = history.last_load() / limit;
-        outcome.checks.push(Check::new(
-            format!("{name}: P/P_Prandtl at 0.4 mm"),
-            (ratio, "1"),
-            Kind::Relative,
-            (expected, 2e-9),
-            INDEPENDENT,
-        ));
-        outcome.checks.push(Check::new(
-            format!("{name}: P/P_Prandtl at 0.4 mm is not below the limit load"),
-            (ratio, "1"),
-            Kind::AtLeast,
-            (1.0, 0.0),
-            "Prandtl 1921, Hill 1950: displacement methods tend to it from above",
-        ));
-        let file = match (refinement, integration) {
-            (1, Integration::Reduced) => Some("P_mesh56_g2_exact"),
-            (1, Integration::Full) => Some("P_mesh56_g3_exact"),
-            (2, Integration::Reduced) => Some("P_meshx2_g2_exact"),
-            _ => None,
+            name: name(refinement, integration),
+            driver,
+            history,
+        })
+    }
+
+    /// Load over the limit load.
+    fn ratio(&self) -> f64 {
+        self.history.last_load() / prandtl_load()
+    }
+
+    fn error(&self) -> f64 {
+        self.ratio() - 1.0
+    }
+
+    /// Slope of the last fifth of the curve over the elastic slope.
+    fn slope(&self) -> f64 {
+        let path = self.history.path(PRANDTL_TRAVEL);
+        let slope = |a: [f64; 2], b: [f64; 2]| (b[1] - a[1]) / (b[0] - a[0]);
+        let last = PRANDTL_INCREMENTS;
+        slope(path[last - last / 5], path[last]) / slope(path[0], path[1])
+    }
+
+    /// Checks of the load at the end.
+    fn load(&self, expected: f64) -> [Check; 2] {
+        let what = format!("{}: P/P_Prandtl at 0.4 mm", self.name);
+        let ratio = (self.ratio(), "1");
+        [
+            Check::relative(&*what, ratio, (expected, 2e-9), INDEPENDENT),
+            Check::at_least(
+                format!("{what} is not below the limit load"),
+                ratio,
+                1.0,
+                "Prandtl 1921, Hill 1950: displacement methods tend to it from above",
+            ),
+        ]
+    }
+
+    /// Checks against the files of the independent implementation, where it has some.
+    fn against_files(&self) -> Vec<Check> {
+        let file = match (self.refinement, self.integration) {
+            (1, Integration::Reduced) => "P_mesh56_g2_exact",
+            (1, Integration::Full) => "P_mesh56_g3_exact",
+            (2, Integration::Reduced) => "P_meshx2_g2_exact",
+            _ => return Vec::new(),
         };
-        if let Some(file) = file {
-            let expected = reference::column(&format!("{file}_load"), "P_full_N");
-            outcome.checks.push(Check::new(
-                format!("{name}: load after every increment, largest relative difference"),
-                (largest_difference(&history.loads, &expected), "1"),
-                Kind::AtMost,
-                (1e-8, 0.0),
-                INDEPENDENT,
-            ));
-            if refinement == 1 {
-                let checks = final_state_checks(&name, &driver, &format!("{file}_contact_final"));
-                outcome.checks.extend(checks);
-            }
+        let mut checks = vec![column_check(
+            format!(
+                "{}: load after every increment, largest relative difference",
+                self.name
+            ),
+            &self.history.loads,
+            &reference::column(&format!("{file}_load"), "P_full_N"),
+        )];
+        if self.refinement == 1 {
+            let file = format!("{file}_contact_final");
+            checks.extend(final_state_checks(&self.name, &self.driver, &file));
         }
-        let error = ratio - 1.0;
-        let order = match coarser.filter(|_| refinement > 1) {
-            Some(before) => digits((before / error).log2(), 2),
-            None => "—".into(),
-        };
-        if let Some(before) = coarser.filter(|_| refinement > 1) {
-            outcome.checks.push(Check::new(
-                format!("{name}: error over that of the mesh before"),
-                (error / before, "1"),
-                Kind::AtMost,
-                (0.6, 0.0),
+        checks
+    }
+
+    /// Checks of the error against that of the mesh before, if there is one, and on its own.
+    fn convergence(&self, coarser: Option<f64>) -> Vec<Check> {
+        let mut checks = Vec::new();
+        if let Some(coarser) = coarser {
+            checks.push(Check::at_most(
+                format!("{}: error over that of the mesh before", self.name),
+                (self.error() / coarser, "1"),
+                0.6,
                 "first order in the cell size, less what the curve still creeps",
             ));
         }
-        coarser = Some(error);
-        let last = PRANDTL_INCREMENTS - 1;
-        let tail = PRANDTL_INCREMENTS / 5;
-        let slope = (history.loads[last] - history.loads[last - tail])
-            / (travel(last) - travel(last - tail));
-        let elastic = history.loads[0] / travel(0);
-        rows.push(vec![
-            name.clone(),
-            driver.unknowns().to_string(),
-            digits(ratio, 9),
-            digits(100.0 * error, 3),
-            order,
-            scientific(slope / elastic),
-            history.newton_iterations().to_string(),
-        ]);
-        if refinement == 8 && integration == Integration::Reduced {
-            outcome.checks.push(Check::new(
+        if self.refinement == 8 && self.integration == Integration::Reduced {
+            checks.push(Check::at_most(
                 "error at 3584 cells, 2×2",
-                (error, "1"),
-                Kind::AtMost,
-                (0.01, 0.0),
+                (self.error(), "1"),
+                0.01,
                 "Prandtl 1921, Hill 1950",
             ));
         }
-        let points = history
-            .loads
-            .iter()
-            .enumerate()
-            .map(|(i, &p)| [travel(i), p]);
-        let curve: Vec<[f64; 2]> = std::iter::once([0.0, 0.0]).chain(points).collect();
+        checks
+    }
+
+    /// Row of the table of convergence.
+    fn row(&self, coarser: Option<f64>) -> [String; 7] {
+        let order = |coarser: f64| digits((coarser / self.error()).log2(), 2);
+        [
+            self.name.clone(),
+            self.driver.unknowns().to_string(),
+            digits(self.ratio(), 9),
+            digits(100.0 * self.error(), 3),
+            coarser.map_or("—".into(), order),
+            scientific(self.slope()),
+            self.history.newton_iterations().to_string(),
+        ]
+    }
+}
+
+fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
+    let mut outcome = Outcome::default();
+    let finest = if options.quick { 2 } else { 8 };
+    let mut charts = [load_chart("2×2"), load_chart("3×3")];
+    let mut rows = Vec::new();
+    let mut coarser: Option<f64> = None;
+    for (refinement, integration, expected) in LOADS.into_iter().filter(|l| l.0 <= finest) {
+        (options.progress)(&name(refinement, integration));
+        let run = Indented::new(refinement, integration)?;
+        coarser = coarser.filter(|_| refinement > 1);
+        outcome.checks.extend(run.load(expected));
+        outcome.checks.extend(run.against_files());
+        outcome.checks.extend(run.convergence(coarser));
+        rows.push(run.row(coarser));
+        coarser = Some(run.error());
         let chart = &mut charts[usize::from(integration == Integration::Full)];
-        *chart = chart.clone().with(&name, Style::Line, curve);
+        let curve = run.history.path(PRANDTL_TRAVEL);
+        *chart = chart.clone().with(&run.name, Style::Line, curve);
         if refinement == 1 && integration == Integration::Reduced {
-            outcome.figures.push(mesh_figure(&driver)?);
+            outcome.figures.push(mesh_figure(&run.driver)?);
         }
         if refinement == finest.min(4) && integration == Integration::Reduced {
-            outcome.figures.push(field_figure(&driver, &name)?);
+            outcome.figures.push(field_figure(&run.driver, &run.name)?);
         }
     }
-    for (chart, (stem, rule)) in charts
-        .into_iter()
-        .zip([("2x2", "reduced"), ("3x3", "full")])
-    {
-        let line = vec![[0.0, limit], [PRANDTL_TRAVEL, limit]];
-        outcome.figures.push(Figure {
-            name: format!("prandtl-load-{stem}"),
-            caption: format!(
-                "Load against travel of the punch with {rule} quadrature, for the paper's figure 8. \
-                 All meshes lie above the limit load and tend to it."
-            ),
-            svg: chart.with("Prandtl, Hill", Style::Dashed, line).to_svg()?,
-        });
-    }
-    outcome.tables.push(Table {
-        name: "prandtl-convergence".into(),
-        title: "Load at 0.4 mm against the limit load".into(),
-        header: [
-            "mesh, quadrature",
-            "unknowns",
-            "P/P_Prandtl",
-            "error [%]",
-            "observed order",
-            "slope of the last fifth over the elastic slope",
-            "Newton iterations",
-        ]
-        .map(Into::into)
-        .to_vec(),
-        rows,
-    });
+    outcome.figures.extend(load_figures(charts)?);
+    let header = [
+        "mesh, quadrature",
+        "unknowns",
+        "P/P_Prandtl",
+        "error [%]",
+        "observed order",
+        "slope of the last fifth over the elastic slope",
+        "Newton iterations",
+    ];
+    let title = "Load at 0.4 mm against the limit load";
+    outcome
+        .tables
+        .push(Table::new("prandtl-convergence", title, header, rows));
     exact_solvers(options, &mut outcome)?;
     Ok(outcome)
+}
+
+fn load_chart(rule: &str) -> Chart {
+    Chart::new(
+        format!("Load of the punch, {rule} quadrature"),
+        "travel of the punch [mm]",
+        "load [N per mm of thickness]",
+    )
+}
+
+/// The charts of both rules, with the limit load.
+fn load_figures([reduced, full]: [Chart; 2]) -> Result<Vec<Figure>, Box<dyn Error>> {
+    let mut figures = Vec::new();
+    for (chart, stem, rule) in [(reduced, "2x2", "reduced"), (full, "3x3", "full")] {
+        let limit = prandtl_load();
+        let line = vec![[0.0, limit], [PRANDTL_TRAVEL, limit]];
+        let caption = format!(
+            "Load against travel of the punch with {rule} quadrature, for the paper's figure 8. \
+             All meshes lie above the limit load and tend to it."
+        );
+        figures.push(Figure::new(
+            &format!("prandtl-load-{stem}"),
+            caption,
+            chart.with("Prandtl, Hill", Style::Dashed, line).to_svg()?,
+        ));
+    }
+    Ok(figures)
 }
 
 /// All exact methods on the paper's mesh.
@@ -232,32 +270,23 @@ fn exact_solvers(options: &Options<'_>, outcome: &mut Outcome) -> Result<(), Box
         (options.progress)(&format!("{}, {method}", name(1, Integration::Reduced)));
         let (_, history) = indent(1, Integration::Reduced, solver)?;
         rows.push(certificate_row(method, &history));
-        outcome.checks.push(Check::new(
-            format!("{method}: largest bipotential gap over the external work"),
-            (history.largest_gap(), "1"),
-            Kind::AtMost,
-            (1e-10, 0.0),
-            "zero exactly at the law, [39]",
+        outcome.checks.push(gap_check(method, &history));
+        let Some(newton) = &first else {
+            first = Some(history);
+            continue;
+        };
+        outcome.checks.push(Check::at_most(
+            format!("{method}: contact forces against semismooth Newton"),
+            (newton.force_difference(&history), "1"),
+            1e-7,
+            "the solution is unique",
         ));
-        match &first {
-            None => first = Some(history),
-            Some(newton) => {
-                outcome.checks.push(Check::new(
-                    format!("{method}: contact forces against semismooth Newton"),
-                    (newton.force_difference(&history), "1"),
-                    Kind::AtMost,
-                    (1e-7, 0.0),
-                    "the solution is unique",
-                ));
-                outcome.checks.push(Check::new(
-                    format!("{method}: statuses that differ"),
-                    (newton.status_differences(&history) as f64, "nodes"),
-                    Kind::AtMost,
-                    (0.0, 0.0),
-                    "the solution is unique",
-                ));
-            }
-        }
+        outcome.checks.push(Check::at_most(
+            format!("{method}: statuses that differ"),
+            (newton.status_differences(&history) as f64, "nodes"),
+            0.0,
+            "the solution is unique",
+        ));
     }
     let penalty = Penalty::new(1e8, 1e8)?;
     let (_, history) = indent(1, Integration::Reduced, Box::new(penalty))?;
@@ -269,30 +298,27 @@ fn exact_solvers(options: &Options<'_>, outcome: &mut Outcome) -> Result<(), Box
 }
 
 fn mesh_figure(driver: &Driver<2>) -> Result<Figure, Box<dyn Error>> {
-    Ok(Figure {
-        name: "prandtl-mesh".into(),
-        caption: "The mesh of 56 eight-node cells, for the paper's figure 7.".into(),
-        svg: MeshPicture::new(driver.mesh(), "56 eight-node cells").to_svg()?,
-    })
+    let picture = MeshPicture::new(driver.mesh(), "56 eight-node cells");
+    let caption = "The mesh of 56 eight-node cells, for the paper's figure 7.";
+    Ok(Figure::new("prandtl-mesh", caption, picture.to_svg()?))
 }
 
 fn field_figure(driver: &Driver<2>, name: &str) -> Result<Figure, Box<dyn Error>> {
-    let nodes = 0..driver.mesh().nodes().len();
-    let displacement = nodes.map(|a| driver.displacement(a).into()).collect();
     // Around the edge of the punch the strain is singular and would hide all else.
-    let p = nodal_average(driver.mesh(), &driver.points(), |s| {
-        s.plastic_strain.min(0.02)
-    });
-    let picture = MeshPicture::new(driver.mesh(), format!("Equivalent plastic strain, {name}"))
-        .deformed(displacement, 10.0)
-        .field("equivalent plastic strain p, cut at 0.02 [–]", p)
-        .outline();
-    Ok(Figure {
-        name: "prandtl-plastic-strain".into(),
-        caption: format!(
-            "Deformed mesh ({name}, displacements ten times enlarged) with the equivalent plastic \
-             strain at 0.4 mm: Prandtl's wedge and fan."
-        ),
-        svg: picture.to_svg()?,
-    })
+    let picture = deformed(
+        driver,
+        format!("Equivalent plastic strain, {name}"),
+        10.0,
+        "equivalent plastic strain p, cut at 0.02 [–]",
+        |s| s.plastic_strain.min(0.02),
+    );
+    let caption = format!(
+        "Deformed mesh ({name}, displacements ten times enlarged) with the equivalent plastic \
+         strain at 0.4 mm: Prandtl's wedge and fan."
+    );
+    Ok(Figure::new(
+        "prandtl-plastic-strain",
+        caption,
+        picture.to_svg()?,
+    ))
 }

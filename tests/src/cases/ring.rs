@@ -1,12 +1,13 @@
 //! Compression of a ring between plates of constant friction: the test by which friction is
 //! measured in forming.
 
-use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
+use super::pictures::deformed;
+use crate::{Case, Chapter, Check, Figure, Options, Outcome, Table};
 use moreau::contact::Plane;
 use moreau::driver::{Axis, Driver, Model, Settings, Step};
 use moreau::laws::{Tresca, VonMises};
 use moreau::mesh::{Axisymmetric, CellKind, Integration, block2, uniform};
-use moreau::plot::{Chart, MeshPicture, Style, nodal_average};
+use moreau::plot::{Chart, Style};
 use std::error::Error;
 
 /// The case.
@@ -76,90 +77,40 @@ fn compressed(m: f64, n: usize) -> Result<(Driver<2>, f64, f64), Box<dyn Error>>
     Ok((driver, rate, pressure))
 }
 
+/// Rates of the bore and mean pressures over the friction.
+#[derive(Default)]
+struct Curves {
+    rates: Vec<[f64; 2]>,
+    pressures: Vec<[f64; 2]>,
+}
+
 fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
     let mut outcome = Outcome::default();
     let n = if options.quick { 6 } else { 12 };
+    let mut curves = Curves::default();
     let mut rows = Vec::new();
-    let (mut rates, mut pressures) = (Vec::new(), Vec::new());
-    let mut add = |name: String, value: (f64, &str), kind, reference| {
-        let check = Check::new(name, value, kind, reference, SOURCE);
-        outcome.checks.push(check);
-    };
-    for (m, bound_rate, bound) in BOUND {
+    for bound in BOUND {
+        let m = bound.0;
         (options.progress)(&format!("m = {m}"));
         let (driver, rate, pressure) = compressed(m, n)?;
-        let least = pressures.last().map_or(1.0, |p: &[f64; 2]| p[1]);
-        if m == 0.0 {
-            for (what, value, exact) in [
-                ("rate of the bore", rate, bound_rate),
-                ("mean pressure over yield stress", pressure, bound),
-            ] {
-                let name = format!("m = 0: {what}");
-                add(name, (value, "1"), Kind::Relative, (exact, 1e-10));
-            }
-        } else {
-            let name = format!("m = {m}: mean pressure over yield stress, upper bound");
-            add(name, (pressure, "1"), Kind::AtMost, (bound, 0.0));
-            let name = format!("m = {m}: mean pressure over yield stress, that of less friction");
-            add(name, (pressure, "1"), Kind::AtLeast, (least, 0.0));
-        }
-        if (0.05..=0.15).contains(&m) {
-            let name = format!("m = {m}: rate of the bore");
-            add(name, (rate, "1"), Kind::Relative, (bound_rate, 5e-2));
-        }
-        rows.push(
-            [m, rate, bound_rate, pressure, bound]
-                .map(|v| format!("{v:.4}"))
-                .to_vec(),
-        );
-        rates.push([m, rate]);
-        pressures.push([m, pressure]);
+        let least = curves.pressures.last().map_or(1.0, |p| p[1]);
+        outcome
+            .checks
+            .extend(against_bound(bound, rate, pressure, least));
+        rows.push([m, rate, bound.1, pressure, bound.2].map(|v| format!("{v:.4}")));
+        curves.rates.push([m, rate]);
+        curves.pressures.push([m, pressure]);
         if m == 1.0 {
             outcome.figures.push(field(&driver)?);
         }
     }
-    // Where the bore neither opens nor closes.
-    let neutral = |curve: &[[f64; 2]]| {
-        let ends = curve.windows(2).find(|w| w[0][1] < 0.0 && w[1][1] >= 0.0);
-        ends.map_or(f64::NAN, |w| {
-            w[0][0] + (w[1][0] - w[0][0]) * w[0][1] / (w[0][1] - w[1][1])
-        })
-    };
-    add(
-        "friction at which the bore keeps its diameter".into(),
-        (neutral(&rates), "1"),
-        Kind::Relative,
+    outcome.checks.push(Check::relative(
+        "friction at which the bore keeps its diameter",
+        (root(&curves.rates), "1"),
         (0.2703, 0.1),
-    );
-    let bound =
-        |f: fn(&(f64, f64, f64)) -> f64| BOUND.iter().map(|b| [b.0, f(b)]).collect::<Vec<_>>();
-    for (name, label, computed, bound) in [
-        (
-            "ring-bore",
-            "(dD/D)/(dH/H) of the bore [–]",
-            rates,
-            bound(|b| b.1),
-        ),
-        (
-            "ring-pressure",
-            "mean pressure over yield stress [–]",
-            pressures,
-            bound(|b| b.2),
-        ),
-    ] {
-        let chart = Chart::new("Ring 6:3:2 at collapse", "friction m [–]", label)
-            .with("upper bound without bulging", Style::Line, bound)
-            .with(
-                format!("{n} cells in half the height"),
-                Style::Points,
-                computed,
-            );
-        outcome.figures.push(Figure {
-            name: name.into(),
-            caption: format!("{label}, over the friction of the plates."),
-            svg: chart.to_svg()?,
-        });
-    }
+        SOURCE,
+    ));
+    outcome.figures.extend(charts(curves, n)?);
     let header = [
         "m",
         "rate of the bore",
@@ -167,12 +118,8 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
         "pressure over yield stress",
         "upper bound's",
     ];
-    outcome.tables.push(Table {
-        name: "ring".into(),
-        title: "Ring compression at collapse".into(),
-        header: header.map(String::from).to_vec(),
-        rows,
-    });
+    let title = "Ring compression at collapse";
+    outcome.tables.push(Table::new("ring", title, header, rows));
     outcome.notes.push(
         "Beyond m = 0.2 the wall of the ring bulges and its points at the plates stick: the load \
          stays further below the bound, whose velocity field cannot bulge, and the bore closes \
@@ -182,21 +129,87 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
     Ok(outcome)
 }
 
-fn field(driver: &Driver<2>) -> Result<Figure, Box<dyn Error>> {
-    let nodes = 0..driver.mesh().nodes().len();
-    let displacement = nodes.map(|a| driver.displacement(a).into()).collect();
-    let p = nodal_average(driver.mesh(), &driver.points(), |s| {
-        s.plastic_strain.min(0.06)
-    });
-    let picture = MeshPicture::new(driver.mesh(), "Equivalent plastic strain, m = 1")
-        .deformed(displacement, 5.0)
-        .field("equivalent plastic strain p, cut at 0.06 [–]", p)
-        .outline();
-    Ok(Figure {
-        name: "ring-plastic-strain".into(),
-        caption: "A quarter of the ring's section after 2 % of compression between rough plates, \
-            displacements five times enlarged: it bulges on both sides."
-            .into(),
-        svg: picture.to_svg()?,
+/// Checks of a ring against the upper bound, and against the pressure of the ring with less
+/// friction.
+fn against_bound(bound: (f64, f64, f64), rate: f64, pressure: f64, least: f64) -> Vec<Check> {
+    let (m, bound_rate, bound) = bound;
+    let bore = format!("m = {m}: rate of the bore");
+    let mean = format!("m = {m}: mean pressure over yield stress");
+    if m == 0.0 {
+        // Without friction the velocity field of the bound is exact.
+        return vec![
+            Check::relative(bore, (rate, "1"), (bound_rate, 1e-10), SOURCE),
+            Check::relative(mean, (pressure, "1"), (bound, 1e-10), SOURCE),
+        ];
+    }
+    let (most, more) = (
+        format!("{mean}, upper bound"),
+        format!("{mean}, that of less friction"),
+    );
+    let mut checks = vec![
+        Check::at_most(most, (pressure, "1"), bound, SOURCE),
+        Check::at_least(more, (pressure, "1"), least, SOURCE),
+    ];
+    if (0.05..=0.15).contains(&m) {
+        checks.push(Check::relative(
+            bore,
+            (rate, "1"),
+            (bound_rate, 5e-2),
+            SOURCE,
+        ));
+    }
+    checks
+}
+
+/// Where a curve crosses zero upwards; NaN if it does not.
+fn root(curve: &[[f64; 2]]) -> f64 {
+    let ends = curve.windows(2).find(|w| w[0][1] < 0.0 && w[1][1] >= 0.0);
+    ends.map_or(f64::NAN, |w| {
+        w[0][0] + (w[1][0] - w[0][0]) * w[0][1] / (w[0][1] - w[1][1])
     })
+}
+
+/// Both curves beside those of the upper bound.
+fn charts(computed: Curves, n: usize) -> Result<[Figure; 2], Box<dyn Error>> {
+    let chart = |name, label: &str, bound: [[f64; 2]; 9], computed| -> Result<_, Box<dyn Error>> {
+        let chart = Chart::new("Ring 6:3:2 at collapse", "friction m [–]", label)
+            .with("upper bound without bulging", Style::Line, bound)
+            .with(
+                format!("{n} cells in half the height"),
+                Style::Points,
+                computed,
+            );
+        let caption = format!("{label}, over the friction of the plates.");
+        Ok(Figure::new(name, caption, chart.to_svg()?))
+    };
+    Ok([
+        chart(
+            "ring-bore",
+            "(dD/D)/(dH/H) of the bore [–]",
+            BOUND.map(|(m, rate, _)| [m, rate]),
+            computed.rates,
+        )?,
+        chart(
+            "ring-pressure",
+            "mean pressure over yield stress [–]",
+            BOUND.map(|(m, _, pressure)| [m, pressure]),
+            computed.pressures,
+        )?,
+    ])
+}
+
+fn field(driver: &Driver<2>) -> Result<Figure, Box<dyn Error>> {
+    let picture = deformed(
+        driver,
+        "Equivalent plastic strain, m = 1",
+        5.0,
+        "equivalent plastic strain p, cut at 0.06 [–]",
+        |s| s.plastic_strain.min(0.06),
+    );
+    Ok(Figure::new(
+        "ring-plastic-strain",
+        "A quarter of the ring's section after 2 % of compression between rough plates, \
+            displacements five times enlarged: it bulges on both sides.",
+        picture.to_svg()?,
+    ))
 }

@@ -1,12 +1,14 @@
 //! Two elastic bodies of revolution: a steel punch with a rounded edge on a softer foundation.
 
+use super::compare::largest_gap;
+use super::pictures::{deformed, tractions};
 use crate::problems::shapes::graded;
-use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
-use moreau::driver::{Axis, ContactRecord, Driver, Model, Settings, Step};
+use crate::{Case, Chapter, Check, Figure, Options, Outcome, Table};
+use moreau::driver::{Axis, Driver, Model, Settings, Step};
 use moreau::laws::{Coulomb, Elastic, Status};
 use moreau::mandel::von_mises;
 use moreau::mesh::{Axisymmetric, CellKind, Integration, Mesh, MeshError, block2, uniform};
-use moreau::plot::{Chart, MeshPicture, Style, nodal_average};
+use moreau::plot::{Chart, Style, nodal_average};
 use std::error::Error;
 use std::f64::consts::PI;
 
@@ -73,35 +75,93 @@ fn mesh(kind: CellKind, n: usize) -> Result<Mesh<2>, MeshError> {
     Ok(mesh)
 }
 
-/// The two bodies under full pressure, after five increments.
-fn pressed(
+/// Mesh of the two bodies, and whose side has the multipliers.
+#[derive(Clone, Copy)]
+struct Discretisation {
     kind: CellKind,
+    /// Cells along half of the rounded edge.
     n: usize,
-    friction: f64,
+    /// Multipliers on the foundation instead of the punch.
     swapped: bool,
-) -> Result<(Driver<2>, f64), Box<dyn Error>> {
-    let rule = match kind {
-        CellKind::Quad4 => Integration::Full,
-        _ => Integration::Reduced,
-    };
-    let (own, other) = if swapped {
-        ("seat", "sole")
-    } else {
-        ("sole", "seat")
-    };
-    let model = Model::new(mesh(kind, n)?, Axisymmetric)
-        .material("punch", Elastic::new(210e3, 0.3)?, rule)?
-        .material("foundation", Elastic::new(70e3, 0.3)?, rule)?
-        .contact(own, other, Coulomb::new(friction)?)?;
-    let mut driver = Driver::new(model, Settings::default())?;
-    let step = Step::new("press")
-        .fix("punch.left", &[Axis::X])
-        .fix("foundation.left", &[Axis::X])
-        .fix("foundation.bottom", &[Axis::X, Axis::Y])
-        .pressure("punch.top", PRESSURE);
-    let reports = driver.run(&step, 5, |_, _| {})?;
-    let gap = reports.iter().map(|r| r.relative_gap().abs());
-    Ok((driver, gap.fold(0.0, f64::max)))
+}
+
+/// The two bodies under full pressure.
+struct Pressed {
+    what: String,
+    friction: f64,
+    driver: Driver<2>,
+    /// Displacement along the axis \[mm\] and axial stress \[MPa\] of the foundation's surface
+    /// on the axis.
+    displacement: f64,
+    stress: f64,
+    /// Largest bipotential gap over external work.
+    gap: f64,
+}
+
+impl Discretisation {
+    fn new(kind: CellKind, n: usize) -> Self {
+        let swapped = false;
+        Self { kind, n, swapped }
+    }
+
+    fn name(self) -> String {
+        let Self { kind, n, swapped } = self;
+        let side = if swapped { "foundation" } else { "punch" };
+        format!("{kind}, {n} cells along half the edge, multipliers on the {side}")
+    }
+
+    fn model(self, friction: f64) -> Result<Model<2, Axisymmetric>, Box<dyn Error>> {
+        let rule = match self.kind {
+            CellKind::Quad4 => Integration::Full,
+            _ => Integration::Reduced,
+        };
+        let (own, other) = if self.swapped {
+            ("seat", "sole")
+        } else {
+            ("sole", "seat")
+        };
+        Ok(Model::new(mesh(self.kind, self.n)?, Axisymmetric)
+            .material("punch", Elastic::new(210e3, 0.3)?, rule)?
+            .material("foundation", Elastic::new(70e3, 0.3)?, rule)?
+            .contact(own, other, Coulomb::new(friction)?)?)
+    }
+
+    /// The full pressure in five increments.
+    fn pressed(self, options: &Options<'_>, friction: f64) -> Result<Pressed, Box<dyn Error>> {
+        let what = self.name();
+        (options.progress)(&format!("μ = {friction}: {what}"));
+        let mut driver = Driver::new(self.model(friction)?, Settings::default())?;
+        let step = Step::new("press")
+            .fix("punch.left", &[Axis::X])
+            .fix("foundation.left", &[Axis::X])
+            .fix("foundation.bottom", &[Axis::X, Axis::Y])
+            .pressure("punch.top", PRESSURE);
+        let reports = driver.run(&step, 5, |_, _| {})?;
+        let (displacement, stress) = on_the_axis(&driver).ok_or("no node on the axis")?;
+        Ok(Pressed {
+            what,
+            friction,
+            driver,
+            displacement,
+            stress,
+            gap: largest_gap(&reports),
+        })
+    }
+}
+
+impl Pressed {
+    /// Row of the table of all runs.
+    fn row(&self) -> [String; 5] {
+        let contacts = self.driver.contacts().iter();
+        let slipping = contacts.filter(|c| c.status == Status::Slip);
+        [
+            self.friction.to_string(),
+            self.what.clone(),
+            format!("{:.6}", self.displacement),
+            format!("{:.3}", self.stress),
+            slipping.count().to_string(),
+        ]
+    }
 }
 
 /// The node of the foundation's surface on the axis.
@@ -120,15 +180,80 @@ fn on_the_axis(driver: &Driver<2>) -> Option<(f64, f64)> {
     Some((driver.displacement(node)[1], stress[node]))
 }
 
-/// Normal traction over the radius.
-fn pressures(driver: &Driver<2>) -> Vec<[f64; 2]> {
-    let mut points: Vec<[f64; 2]> = driver
-        .contacts()
-        .iter()
-        .map(|c| [c.position[0], c.t[0] / c.area])
-        .collect();
-    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    points
+/// One coefficient of friction on four meshes.
+struct Runs {
+    coarse: Pressed,
+    linear: Pressed,
+    quadratic: Pressed,
+    /// Quadratic cells, multipliers on the other side.
+    swapped: Pressed,
+}
+
+impl Runs {
+    fn new(options: &Options<'_>, friction: f64) -> Result<Self, Box<dyn Error>> {
+        let fine = if options.quick { 8 } else { 16 };
+        let quadratic = Discretisation::new(CellKind::Quad8, fine);
+        let swapped = Discretisation {
+            swapped: true,
+            ..quadratic
+        };
+        let run = |on: Discretisation| on.pressed(options, friction);
+        Ok(Self {
+            coarse: run(Discretisation::new(CellKind::Quad4, 3))?,
+            linear: run(Discretisation::new(CellKind::Quad4, 16))?,
+            quadratic: run(quadratic)?,
+            swapped: run(swapped)?,
+        })
+    }
+
+    fn all(&self) -> [&Pressed; 4] {
+        [&self.coarse, &self.linear, &self.quadratic, &self.swapped]
+    }
+
+    /// Checks against the published displacement and stress, and of the meshes among themselves.
+    fn checks(&self, published: f64, published_stress: f64) -> Result<[Check; 6], Box<dyn Error>> {
+        let fine = &self.quadratic;
+        let name = |what: &str| format!("μ = {}: {what}", fine.friction);
+        let force = -fine.driver.contact_force("seat")?[1];
+        Ok([
+            Check::relative(
+                name("displacement on the axis, coarse linear cells"),
+                (self.coarse.displacement, "mm"),
+                (published, 1e-2),
+                PUBLISHED,
+            ),
+            Check::relative(
+                name("displacement on the axis, fine linear cells"),
+                (self.linear.displacement, "mm"),
+                (fine.displacement, 1e-2),
+                "quadratic cells",
+            ),
+            Check::relative(
+                name("displacement on the axis, multipliers on the foundation"),
+                (self.swapped.displacement, "mm"),
+                (fine.displacement, 1e-3),
+                "multipliers on the punch",
+            ),
+            Check::relative(
+                name("axial stress on the axis"),
+                (fine.stress, "MPa"),
+                (published_stress, 5e-2),
+                PUBLISHED,
+            ),
+            Check::relative(
+                name("force on the foundation"),
+                (force, "N"),
+                (PI * RADIUS * RADIUS * PRESSURE, 1e-9),
+                "equilibrium",
+            ),
+            Check::at_most(
+                name("bipotential gap over external work"),
+                (fine.gap.max(self.swapped.gap), "1"),
+                1e-10,
+                "exact contact",
+            ),
+        ])
+    }
 }
 
 fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
@@ -136,91 +261,25 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
     let mut rows = Vec::new();
     let mut chart =
         Chart::new("Pressure under the punch", "radius [mm]", "pressure [MPa]").x_range(0.0, 45.0);
-    let fine = if options.quick { 8 } else { 16 };
+    let mut fields = Vec::new();
     for (friction, published, published_stress) in VALUES {
-        let mut solve = |kind: CellKind, n: usize, swapped: bool| -> Result<_, Box<dyn Error>> {
-            let side = if swapped { "foundation" } else { "punch" };
-            let what = format!("{kind}, {n} cells along half the edge, multipliers on the {side}");
-            (options.progress)(&format!("μ = {friction}: {what}"));
-            let (driver, gap) = pressed(kind, n, friction, swapped)?;
-            let (u, stress) = on_the_axis(&driver).ok_or("no node on the axis")?;
-            let slip = |c: &&ContactRecord<2>| c.status == Status::Slip;
-            rows.push(vec![
-                friction.to_string(),
-                what,
-                format!("{u:.6}"),
-                format!("{stress:.3}"),
-                driver.contacts().iter().filter(slip).count().to_string(),
-            ]);
-            Ok((driver, gap, u, stress))
-        };
-        let coarse = solve(CellKind::Quad4, 3, false)?;
-        let linear = solve(CellKind::Quad4, 16, false)?;
-        let (driver, gap, u, stress) = solve(CellKind::Quad8, fine, false)?;
-        let other = solve(CellKind::Quad8, fine, true)?;
-        let mut check = |name: &str, value, kind, reference, source: &str| {
-            let name = format!("μ = {friction}: {name}");
-            outcome
-                .checks
-                .push(Check::new(name, value, kind, reference, source));
-        };
-        check(
-            "displacement on the axis, coarse linear cells",
-            (coarse.2, "mm"),
-            Kind::Relative,
-            (published, 1e-2),
-            PUBLISHED,
-        );
-        check(
-            "displacement on the axis, fine linear cells",
-            (linear.2, "mm"),
-            Kind::Relative,
-            (u, 1e-2),
-            "quadratic cells",
-        );
-        check(
-            "displacement on the axis, multipliers on the foundation",
-            (other.2, "mm"),
-            Kind::Relative,
-            (u, 1e-3),
-            "multipliers on the punch",
-        );
-        check(
-            "axial stress on the axis",
-            (stress, "MPa"),
-            Kind::Relative,
-            (published_stress, 5e-2),
-            PUBLISHED,
-        );
-        check(
-            "force on the foundation",
-            (-driver.contact_force("seat")?[1], "N"),
-            Kind::Relative,
-            (PI * RADIUS * RADIUS * PRESSURE, 1e-9),
-            "equilibrium",
-        );
-        check(
-            "bipotential gap over external work",
-            (gap.max(other.1), "1"),
-            Kind::AtMost,
-            (1e-10, 0.0),
-            "exact contact",
-        );
-        chart = chart.with(format!("μ = {friction}"), Style::Line, pressures(&driver));
+        let runs = Runs::new(options, friction)?;
+        let checks = runs.checks(published, published_stress)?;
+        outcome.checks.extend(checks);
+        rows.extend(runs.all().map(Pressed::row));
+        let driver = &runs.quadratic.driver;
+        let pressures = tractions(driver, |c| c.t[0]);
+        chart = chart.with(format!("μ = {friction}"), Style::Line, pressures);
         if friction > 0.0 {
-            outcome.figures.push(field(&driver)?);
+            fields.push(field(driver)?);
         }
     }
-    outcome.figures.insert(
-        0,
-        Figure {
-            name: "rounded-punch-pressure".into(),
-            caption: "Pressure between punch and foundation: it peaks where the rounded edge \
-                begins, at 40 mm."
-                .into(),
-            svg: chart.to_svg()?,
-        },
-    );
+    outcome.figures.push(Figure::new(
+        "rounded-punch-pressure",
+        "Pressure between punch and foundation: it peaks where the rounded edge begins, at 40 mm.",
+        chart.to_svg()?,
+    ));
+    outcome.figures.extend(fields);
     let header = [
         "μ",
         "mesh",
@@ -228,30 +287,24 @@ fn run(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
         "axial stress [MPa]",
         "points that slip",
     ];
-    outcome.tables.push(Table {
-        name: "rounded-punch".into(),
-        title: "The foundation's surface on the axis".into(),
-        header: header.map(String::from).to_vec(),
-        rows,
-    });
+    let title = "The foundation's surface on the axis";
+    outcome
+        .tables
+        .push(Table::new("rounded-punch", title, header, rows));
     Ok(outcome)
 }
 
 fn field(driver: &Driver<2>) -> Result<Figure, Box<dyn Error>> {
-    let nodes = 0..driver.mesh().nodes().len();
-    let displacement = nodes.map(|a| driver.displacement(a).into()).collect();
-    let stress = nodal_average(driver.mesh(), &driver.points(), |s| {
-        von_mises(&s.stress).min(300.0)
-    });
-    let picture = MeshPicture::new(driver.mesh(), "Von Mises stress, μ = 0.1")
-        .deformed(displacement, 50.0)
-        .field("von Mises stress, cut at 300 MPa [MPa]", stress)
-        .outline();
-    Ok(Figure {
-        name: "rounded-punch-stress".into(),
-        caption:
-            "Half-section of the punch and the foundation, displacements fifty times enlarged."
-                .into(),
-        svg: picture.to_svg()?,
-    })
+    let picture = deformed(
+        driver,
+        "Von Mises stress, μ = 0.1",
+        50.0,
+        "von Mises stress, cut at 300 MPa [MPa]",
+        |s| von_mises(&s.stress).min(300.0),
+    );
+    Ok(Figure::new(
+        "rounded-punch-stress",
+        "Half-section of the punch and the foundation, displacements fifty times enlarged.",
+        picture.to_svg()?,
+    ))
 }
