@@ -1,5 +1,6 @@
 //! Matrices of all kinds, sparse and dense, for the tests of this crate.
-#![allow(dead_code)]
+// Not every test uses all of them.
+#![allow(dead_code, unreachable_pub, missing_docs)]
 
 use moreau_algebra::{Pattern, nested_dissection};
 use nalgebra::{DMatrix, DVector};
@@ -16,16 +17,11 @@ pub struct Sample {
 impl Sample {
     /// The entries of a dense symmetric matrix that are not zero, and its diagonal.
     pub fn new(dense: DMatrix<f64>) -> Self {
-        Self::where_(dense, |_, _| false)
-    }
-
-    /// The same, with zeros that are entries.
-    pub fn where_(dense: DMatrix<f64>, entry: impl Fn(usize, usize) -> bool) -> Self {
         let n = dense.nrows();
         let (mut start, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
         for j in 0..n {
             for i in j..n {
-                if i == j || dense[(i, j)] != 0.0 || entry(i, j) {
+                if i == j || dense[(i, j)] != 0.0 {
                     rows.push(i as u32);
                     values.push(dense[(i, j)]);
                 }
@@ -171,11 +167,6 @@ pub fn laplacian(n: usize, held: f64) -> (Pattern, Vec<f64>) {
         start.push(rows.len() as u32);
     }
     (Pattern::new(start, rows).expect("ascending"), values)
-}
-
-/// The columns of a matrix one after the other.
-pub fn columns(x: &DMatrix<f64>) -> Vec<f64> {
-    x.as_slice().to_vec()
 }
 
 /// Size of a vector.
