@@ -45,7 +45,8 @@ impl fmt::Debug for Cholesky {
 }
 
 impl Cholesky {
-    fn analyse_for(
+    /// On threads of another number than the operations ask for, if one is given.
+    pub(crate) fn analyse_for(
         pattern: &Pattern,
         memory: Option<u64>,
         threads: Option<Par>,

@@ -181,3 +181,55 @@ pub(crate) fn check_columns(x: &[f64], size: usize) -> Result<(), EngineError> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::common::laplacian;
+    use crate::{Cholesky, Ldlt};
+    use faer::Par;
+
+    /// What the factor makes of numbers, on threads of their own.
+    fn on_threads<E: Engine>(
+        mut engine: E,
+        values: &[f64],
+        threads: usize,
+    ) -> (Vec<f64>, DMatrix<f64>) {
+        assert!(engine.cost().operations > 1e8);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let pool = pool.build().expect("threads");
+        pool.install(|| {
+            engine.factorise(values).expect("regular");
+            let mut x: Vec<f64> = (0..engine.size()).map(|i| (i as f64).sin()).collect();
+            engine.solve(&mut x).expect("regular");
+            (x, engine.schur().expect("factorised"))
+        })
+    }
+
+    #[test]
+    fn a_factor_is_the_same_to_the_bit_on_any_number_of_threads() {
+        for held in [0.2, -3.3] {
+            let (pattern, values) = laplacian(22, held);
+            let pattern = pattern.keeping(10).expect("so many");
+            let ldlt = |par| Ldlt::analyse_for(&pattern, None, Some(par)).expect("small");
+            let cholesky = |par| Cholesky::analyse_for(&pattern, None, Some(par)).expect("small");
+            let one = on_threads(ldlt(Par::Seq), &values, 1);
+            for threads in [1, 2, 3] {
+                assert!(
+                    one == on_threads(ldlt(Par::rayon(0)), &values, threads),
+                    "{threads}"
+                );
+            }
+            if held < 0.0 {
+                continue;
+            }
+            let one = on_threads(cholesky(Par::Seq), &values, 1);
+            for threads in [1, 2, 3] {
+                assert!(
+                    one == on_threads(cholesky(Par::rayon(0)), &values, threads),
+                    "{threads}"
+                );
+            }
+        }
+    }
+}

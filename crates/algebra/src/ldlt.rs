@@ -25,7 +25,9 @@ use front::{Front, Pivots};
 /// that stability asks for.
 ///
 /// The unknowns that are kept are not eliminated but by [`solve`](Engine::solve): A_cc may be anything, and so may S.
-/// The matrix is scaled by powers of two, rows and columns alike, so that its rows are of size 1.
+/// The matrix is scaled by powers of two, rows and columns alike, so that its rows are of size 1. Of rows that
+/// have no diagonal, as those of multipliers, that is not the only scale: where they are 10¹³ times as large as the
+/// rows that they constrain, these are taken for rounding.
 pub struct Ldlt {
     symbolic: Symbolic,
     /// Supernodes that receive what others leave, by the others; the last one beyond them is of the kept
@@ -75,7 +77,8 @@ impl fmt::Debug for Ldlt {
 }
 
 impl Ldlt {
-    fn analyse_for(
+    /// On threads of another number than the operations ask for, if one is given.
+    pub(crate) fn analyse_for(
         pattern: &Pattern,
         memory: Option<u64>,
         threads: Option<Par>,
@@ -111,7 +114,7 @@ impl Ldlt {
     fn eliminate(&mut self, values: &[f64], room: &mut Room) -> Result<Inertia, EngineError> {
         self.scale = scales(&self.symbolic.pattern, values)?;
         self.inner.clear();
-        let mut known = Pivots::default();
+        let mut known = Pivots::of(self.size());
         let mut left: Vec<Vec<Left>> = Vec::new();
         left.resize_with(self.parents.len() + 1, Vec::new);
         for k in 0..self.order.len() {
@@ -214,12 +217,12 @@ impl Ldlt {
             return Ok(());
         }
         let (kept, outer) = (self.kept(), self.first_kept()..self.size());
+        let mut known = Pivots::of(self.size());
         let front = &mut self.room.front;
         front.index.clear();
         front.index.extend(outer.map(|i| i as u32));
         front.begin(kept);
         front.entries.copy_from_slice(self.schur.as_slice());
-        let mut known = Pivots::default();
         front.eliminate(true, &mut known, (self.par, self.arch));
         known.result()?;
         let mut outer = Blocks::default();
@@ -256,29 +259,6 @@ impl Ldlt {
             for (x, s) in x[first..].iter_mut().zip(&self.scale[first..]) {
                 *x /= s;
             }
-        }
-    }
-}
-
-impl Default for Pivots {
-    fn default() -> Self {
-        Self {
-            inertia: Inertia::default(),
-            zero: None,
-            least: f64::INFINITY,
-        }
-    }
-}
-
-impl Pivots {
-    fn result(&self) -> Result<Inertia, EngineError> {
-        let inertia = self.inertia;
-        match self.zero {
-            Some(row) => Err(EngineError::Singular {
-                row: row as usize,
-                inertia,
-            }),
-            None => Ok(inertia),
         }
     }
 }
@@ -347,28 +327,33 @@ fn tree(symbolic: &Symbolic) -> (Vec<u32>, Vec<u32>) {
     (parents, order)
 }
 
-/// Rounds of scaling: each takes the square root of what is not 1 yet.
-const ROUNDS: usize = 4;
+/// Rounds of scaling, each of which takes the square root of what is left: far more than numbers of any size need.
+const ROUNDS: usize = 16;
 
 /// Powers of two by which rows and columns are multiplied, after which the largest entry of a row is about 1
 /// (D. Ruiz, RAL-TR-2001-034). A row of zeros keeps its scale.
 fn scales(pattern: &Pattern, values: &[f64]) -> Result<Vec<f64>, EngineError> {
     let size = pattern.size();
     let mut scale = vec![1.0; size];
-    let mut largest = vec![0.0; size];
     for _ in 0..ROUNDS {
-        largest.fill(0.0);
+        let mut largest = vec![0.0f64; size];
         for j in 0..size {
             let range = pattern.range(j);
             for (&i, v) in pattern.rows()[range.clone()].iter().zip(&values[range]) {
                 if !v.is_finite() {
                     return Err(EngineError::NotFinite { column: j });
                 }
-                let (i, v) = (i as usize, v.abs());
-                let scaled = scale[i] * v * scale[j];
-                largest[i] = scaled.max(largest[i]);
-                largest[j] = scaled.max(largest[j]);
+                let i = i as usize;
+                let scaled = (scale[i] * v * scale[j]).abs();
+                largest[i] = largest[i].max(scaled);
+                largest[j] = largest[j].max(scaled);
             }
+        }
+        if largest
+            .iter()
+            .all(|&v| v == 0.0 || (0.25..=4.0).contains(&v))
+        {
+            break;
         }
         for (scale, largest) in scale.iter_mut().zip(&largest) {
             if *largest > 0.0 {

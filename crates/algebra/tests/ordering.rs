@@ -18,7 +18,7 @@ proptest! {
         let place = |i: usize, axis: usize| match spread {
             0 => 1.0,
             1 => (12.9898 * (i + 7 * axis) as f64).sin(),
-            _ => if i % 5 == 0 { f64::NAN } else { i as f64 },
+            _ => if i.is_multiple_of(5) { f64::NAN } else { i as f64 },
         };
         let nodes: Vec<usize> = (0..n).filter(|i| i % 7 != 3).collect();
         let mut order = if dimension_is_two {

@@ -6,15 +6,16 @@ use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::{Accum, MatMut, MatRef, Par};
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::engine::Inertia;
+use crate::engine::{EngineError, Inertia};
 use crate::panel::add_one;
 
 /// A pivot is at least this part of what is left of its column: the entries of L are below 100. The usual
 /// compromise of sparse solvers between few exchanges and little growth.
 const THRESHOLD: f64 = 0.01;
 
-/// A column that is not larger than this, of a matrix scaled to rows of size 1, is rounding.
-const ZERO: f64 = 1e-14;
+/// What is left of a column of a matrix scaled to rows of size 1 is rounding up to this times √n: some times what
+/// the last pivot of a Laplacian is that nothing holds.
+const ROUNDING: f64 = 10.0 * f64::EPSILON;
 
 /// Pivots after which the other columns are updated, all at once.
 const BLOCK: usize = 32;
@@ -44,6 +45,32 @@ pub(super) struct Pivots {
     pub(super) zero: Option<u32>,
     /// The least that is not.
     pub(super) least: f64,
+    /// Up to where a column is zero.
+    negligible: f64,
+}
+
+impl Pivots {
+    /// Of a matrix of so many rows.
+    pub(super) fn of(size: usize) -> Self {
+        Self {
+            inertia: Inertia::default(),
+            zero: None,
+            least: f64::INFINITY,
+            negligible: ROUNDING * (size as f64).sqrt(),
+        }
+    }
+
+    /// The signs, if none is zero.
+    pub(super) fn result(&self) -> Result<Inertia, EngineError> {
+        let inertia = self.inertia;
+        match self.zero {
+            Some(row) => Err(EngineError::Singular {
+                row: row as usize,
+                inertia,
+            }),
+            None => Ok(inertia),
+        }
+    }
 }
 
 /// Columns of pivots.
@@ -145,7 +172,7 @@ impl Front {
         let (partner, beside) = largest(own, k + 1..complete);
         let all = beside.max(largest(own, complete..end).1);
         let diagonal = own[k];
-        if diagonal.abs().max(all) <= ZERO {
+        if diagonal.abs().max(all) <= known.negligible {
             known.inertia.zero += 1;
             known.zero.get_or_insert(self.index[k]);
             self.accept_zero(first, k);
@@ -159,7 +186,7 @@ impl Front {
             return None;
         }
         self.load(1, (first, k), partner, arch);
-        match self.choose(k, partner, end)? {
+        match self.choose((k, partner), end, known.negligible)? {
             Choice::Two => {
                 self.exchange(first, k + 1, partner);
                 self.accept_two(first, k, known);
@@ -174,7 +201,7 @@ impl Front {
     }
 
     /// Whether columns k and `partner`, or the latter alone, make a pivot.
-    fn choose(&self, k: usize, partner: usize, end: usize) -> Option<Choice> {
+    fn choose(&self, (k, partner): (usize, usize), end: usize, negligible: f64) -> Option<Choice> {
         let [own, other] = &self.columns;
         let (a, b, c) = (own[k], own[partner], other[partner]);
         let apart = |column: &[f64]| {
@@ -193,7 +220,7 @@ impl Front {
         if distinct && grows_little {
             return Some(Choice::Two);
         }
-        let alone = c.abs() >= THRESHOLD * of_other.max(b.abs()) && c.abs() > ZERO;
+        let alone = c.abs() >= THRESHOLD * of_other.max(b.abs()) && c.abs() > negligible;
         alone.then_some(Choice::One)
     }
 

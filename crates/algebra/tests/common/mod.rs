@@ -1,5 +1,6 @@
 //! Matrices of all kinds, sparse and dense, for the tests of this crate.
-#![allow(dead_code)]
+// Not every test uses all of them.
+#![allow(dead_code, unreachable_pub, missing_docs)]
 
 use moreau_algebra::{Pattern, nested_dissection};
 use nalgebra::{DMatrix, DVector};
@@ -7,25 +8,20 @@ use proptest::prelude::*;
 
 /// A symmetric matrix, sparse and dense.
 #[derive(Debug, Clone)]
-pub(crate) struct Sample {
-    pub(crate) pattern: Pattern,
-    pub(crate) values: Vec<f64>,
-    pub(crate) dense: DMatrix<f64>,
+pub struct Sample {
+    pub pattern: Pattern,
+    pub values: Vec<f64>,
+    pub dense: DMatrix<f64>,
 }
 
 impl Sample {
     /// The entries of a dense symmetric matrix that are not zero, and its diagonal.
-    pub(crate) fn new(dense: DMatrix<f64>) -> Self {
-        Self::where_(dense, |_, _| false)
-    }
-
-    /// The same, with zeros that are entries.
-    pub(crate) fn where_(dense: DMatrix<f64>, entry: impl Fn(usize, usize) -> bool) -> Self {
+    pub fn new(dense: DMatrix<f64>) -> Self {
         let n = dense.nrows();
         let (mut start, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
         for j in 0..n {
             for i in j..n {
-                if i == j || dense[(i, j)] != 0.0 || entry(i, j) {
+                if i == j || dense[(i, j)] != 0.0 {
                     rows.push(i as u32);
                     values.push(dense[(i, j)]);
                 }
@@ -40,17 +36,17 @@ impl Sample {
         }
     }
 
-    pub(crate) fn keeping(mut self, kept: usize) -> Self {
+    pub fn keeping(mut self, kept: usize) -> Self {
         self.pattern = self.pattern.keeping(kept).expect("so many");
         self
     }
 
-    pub(crate) fn size(&self) -> usize {
+    pub fn size(&self) -> usize {
         self.dense.nrows()
     }
 
     /// Eigenvalues over the largest, ascending.
-    pub(crate) fn eigenvalues(&self) -> Vec<f64> {
+    pub fn eigenvalues(&self) -> Vec<f64> {
         if self.size() == 0 {
             return Vec::new();
         }
@@ -62,13 +58,13 @@ impl Sample {
     }
 
     /// Numbers in no order, always the same.
-    pub(crate) fn right_hand_sides(&self, columns: usize) -> DMatrix<f64> {
+    pub fn right_hand_sides(&self, columns: usize) -> DMatrix<f64> {
         let n = self.size();
         DMatrix::from_fn(n, columns, |i, j| ((7 * i + 31 * j) as f64).sin() + 0.1)
     }
 
     /// Largest residual over the size of its terms.
-    pub(crate) fn residual(&self, x: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
+    pub fn residual(&self, x: &DMatrix<f64>, b: &DMatrix<f64>) -> f64 {
         if self.size() == 0 {
             return 0.0;
         }
@@ -78,7 +74,7 @@ impl Sample {
 }
 
 /// A graph and numbers for its edges.
-pub(crate) fn graph(sizes: std::ops::Range<usize>) -> impl Strategy<Value = DMatrix<f64>> {
+pub fn graph(sizes: std::ops::Range<usize>) -> impl Strategy<Value = DMatrix<f64>> {
     let entries = |n: usize| {
         let edges = prop::collection::vec((0..n, 0..n, -1.0..1.0f64), 0..=3 * n);
         (Just(n), edges)
@@ -93,7 +89,7 @@ pub(crate) fn graph(sizes: std::ops::Range<usize>) -> impl Strategy<Value = DMat
 }
 
 /// Positive definite: diagonally dominant, on any graph.
-pub(crate) fn definite(sizes: std::ops::Range<usize>) -> impl Strategy<Value = Sample> {
+pub fn definite(sizes: std::ops::Range<usize>) -> impl Strategy<Value = Sample> {
     graph(sizes).prop_map(|mut a| {
         for i in 0..a.nrows() {
             a[(i, i)] = 0.5 + a.row(i).iter().map(|v| v.abs()).sum::<f64>();
@@ -103,13 +99,13 @@ pub(crate) fn definite(sizes: std::ops::Range<usize>) -> impl Strategy<Value = S
 }
 
 /// Anything, on any graph; much of the diagonal is zero.
-pub(crate) fn indefinite(sizes: std::ops::Range<usize>) -> impl Strategy<Value = Sample> {
+pub fn indefinite(sizes: std::ops::Range<usize>) -> impl Strategy<Value = Sample> {
     graph(sizes).prop_map(Sample::new)
 }
 
 /// [A Bᵀ; B −C] with A definite, rows of B that are independent, and C zero but for some of its diagonal, in an
 /// order that mixes them; the number of rows of B.
-pub(crate) fn saddle(sizes: std::ops::Range<usize>) -> impl Strategy<Value = (Sample, usize)> {
+pub fn saddle(sizes: std::ops::Range<usize>) -> impl Strategy<Value = (Sample, usize)> {
     let order = |a: Sample| {
         let n = a.size();
         let rows = prop::collection::vec((0..n, -1.0..1.0f64, 0..2u8), 1..=n.max(2) / 2);
@@ -140,7 +136,7 @@ pub(crate) fn saddle(sizes: std::ops::Range<usize>) -> impl Strategy<Value = (Sa
 }
 
 /// Seven-point Laplacian of a cube of nodes in nested-dissection order, with `held` on every diagonal.
-pub(crate) fn laplacian(n: usize, held: f64) -> (Pattern, Vec<f64>) {
+pub fn laplacian(n: usize, held: f64) -> (Pattern, Vec<f64>) {
     let at = |k: usize| [k % n, k / n % n, k / (n * n)];
     let points: Vec<[f64; 3]> = (0..n * n * n).map(|k| at(k).map(|i| i as f64)).collect();
     let step = [1, n, n * n];
@@ -173,12 +169,7 @@ pub(crate) fn laplacian(n: usize, held: f64) -> (Pattern, Vec<f64>) {
     (Pattern::new(start, rows).expect("ascending"), values)
 }
 
-/// The columns of a matrix one after the other.
-pub(crate) fn columns(x: &DMatrix<f64>) -> Vec<f64> {
-    x.as_slice().to_vec()
-}
-
 /// Size of a vector.
-pub(crate) fn norm(x: &[f64]) -> f64 {
+pub fn norm(x: &[f64]) -> f64 {
     DVector::from_column_slice(x).norm()
 }
