@@ -232,10 +232,18 @@ fn volumes_in_space_and_of_revolution() {
     assert_abs_diff_eq!(volume, 40.0 * PI, epsilon = 1e2 * ROUND_OFF);
 }
 
+/// The deck of this file with lines behind it, and the number of the first of them.
+fn with_tail(tail: &str) -> Result<Mesh<2>, ReadError> {
+    read_abaqus::<2>(&format!("{DECK}{tail}\n"))
+}
+
+fn first_line_of_tail() -> usize {
+    DECK.lines().count() + 1
+}
+
 #[test]
-fn what_is_wrong_is_said_with_its_line() {
-    let tail = |tail: &str| read_abaqus::<2>(&format!("{DECK}{tail}\n"));
-    let line = DECK.lines().count() + 1;
+fn what_is_not_read_is_said_with_its_line_and_a_way_out() {
+    let line = first_line_of_tail();
     for (text, expected) in [
         ("*INCLUDE, INPUT=a.inp", "put the file's text in its place"),
         ("*NGEN", "write all nodes and elements out"),
@@ -244,20 +252,24 @@ fn what_is_wrong_is_said_with_its_line() {
             "write all bodies into one part, in place",
         ),
     ] {
-        let error = tail(text).unwrap_err().to_string();
+        let error = with_tail(text).unwrap_err().to_string();
         assert!(error.starts_with(&format!("line {line}: *")), "{error}");
         assert!(error.ends_with(expected), "{error}");
     }
     assert_eq!(
-        tail("*ELEMENT, TYPE=C3D15").unwrap_err().to_string(),
+        with_tail("*ELEMENT, TYPE=C3D15").unwrap_err().to_string(),
         format!(
             "line {line}: the element type C3D15 is not read here: use CPE3, CPE4, CPE6, CPE8, or \
              CAX or CPS instead of CPE,"
         )
     );
-    let next = Place::Line(line + 1);
+}
+
+#[test]
+fn what_does_not_exist_is_said_with_its_line() {
+    let next = Place::Line(first_line_of_tail() + 1);
     assert_eq!(
-        tail("*ELSET, ELSET=x\nblok"),
+        with_tail("*ELSET, ELSET=x\nblok"),
         Err(ReadError::UnknownSet {
             place: next,
             kind: GroupKind::Cells,
@@ -266,7 +278,7 @@ fn what_is_wrong_is_said_with_its_line() {
         })
     );
     assert_eq!(
-        tail("*NSET, NSET=x\n1, 77"),
+        with_tail("*NSET, NSET=x\n1, 77"),
         Err(ReadError::UnknownMember {
             place: next,
             kind: GroupKind::Nodes,
@@ -274,7 +286,7 @@ fn what_is_wrong_is_said_with_its_line() {
         })
     );
     assert_eq!(
-        tail("*SURFACE, NAME=x\nall, S5"),
+        with_tail("*SURFACE, NAME=x\nall, S5"),
         Err(ReadError::NoSuchSide {
             place: next,
             element: 1,
@@ -282,28 +294,36 @@ fn what_is_wrong_is_said_with_its_line() {
             side: "S5".into()
         })
     );
+}
+
+#[test]
+fn nodes_and_elements_that_do_not_fit_are_said_by_number() {
     assert_eq!(
-        tail("*ELEMENT, TYPE=CPE3\n1, 1, 2, 6"),
+        with_tail("*ELEMENT, TYPE=CPE3\n1, 1, 2, 6"),
         Err(ReadError::DuplicateElement { element: 1 })
     );
     assert_eq!(
-        tail("*NODE\n1, 8, 8"),
+        with_tail("*NODE\n1, 8, 8"),
         Err(ReadError::DuplicateNode { node: 1 })
     );
     assert_eq!(
-        tail("*ELEMENT, TYPE=CPE3\n31, 1, 2, 66"),
+        with_tail("*ELEMENT, TYPE=CPE3\n31, 1, 2, 66"),
         Err(ReadError::UnknownNode {
             element: 31,
             node: 66
         })
     );
     assert!(matches!(
-        tail("*ELEMENT, TYPE=CPE3\n31, 1, 2, 3"),
+        with_tail("*ELEMENT, TYPE=CPE3\n31, 1, 2, 3"),
         Err(ReadError::Mesh {
             element: Some(31),
             source: MeshError::DegenerateCell { .. }
         })
     ));
+}
+
+#[test]
+fn lines_that_are_not_of_the_format_are_refused() {
     for text in [
         "*ELEMENT",
         "*ELEMENT, TYPE=CPE3\n31, 1, 2",
@@ -317,13 +337,13 @@ fn what_is_wrong_is_said_with_its_line() {
         "*NSET, NSET=x, GENERATE\n5, 1",
     ] {
         assert!(
-            matches!(tail(text), Err(ReadError::Unexpected { .. })),
+            matches!(with_tail(text), Err(ReadError::Unexpected { .. })),
             "{text}: {:?}",
-            tail(text)
+            with_tail(text)
         );
     }
     assert!(matches!(
-        tail("*NODE, SYSTEM=C\n31, 1., 0."),
+        with_tail("*NODE, SYSTEM=C\n31, 1., 0."),
         Err(ReadError::Unsupported { .. })
     ));
     assert!(matches!(
@@ -335,5 +355,5 @@ fn what_is_wrong_is_said_with_its_line() {
         Err(ReadError::NoCells { .. })
     ));
     // A range over more numbers than there could ever be nodes.
-    assert!(tail("*NSET, NSET=x, GENERATE\n1, 18000000000000000000").is_ok());
+    assert!(with_tail("*NSET, NSET=x, GENERATE\n1, 18000000000000000000").is_ok());
 }

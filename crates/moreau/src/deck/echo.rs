@@ -2,7 +2,8 @@
 
 use super::build::quadratures;
 use super::entries::{
-    Action, Adjust, ConditionEntry, Deck, Grid, Hardening, Method, Part, Shape, Vtu,
+    Action, Adjust, BlockEntry, ConditionEntry, ContactEntry, Deck, Grid, GroupEntry, Hardening,
+    MaterialEntry, Method, Part, Shape, StepEntry, ToolEntry, Vtu,
 };
 use crate::driver::Increments;
 use crate::mesh::Integration;
@@ -23,7 +24,7 @@ impl Deck {
 
     /// The quadrature of a material, chosen by the deck or by its elements: `"by element"` where
     /// these differ, or are not known because the mesh is not.
-    pub fn quadrature(&self, material: &super::MaterialEntry) -> &'static str {
+    pub fn quadrature(&self, material: &MaterialEntry) -> &'static str {
         match quadratures(material)[..] {
             [(Integration::Reduced, _)] => "reduced",
             [(Integration::Full, _)] => "full",
@@ -38,6 +39,29 @@ fn text(value: &str) -> String {
 }
 
 fn write(deck: &Deck, out: &mut String) -> fmt::Result {
+    head(deck, out)?;
+    for entry in &deck.blocks {
+        block(entry, out)?;
+    }
+    for entry in &deck.groups {
+        group(entry, out)?;
+    }
+    for entry in &deck.materials {
+        material(deck, entry, out)?;
+    }
+    for entry in &deck.tools {
+        tool(entry, out)?;
+    }
+    for entry in &deck.contacts {
+        contact(entry, out)?;
+    }
+    for entry in &deck.steps {
+        step(entry, out)?;
+    }
+    tail(deck, out)
+}
+
+fn head(deck: &Deck, out: &mut String) -> fmt::Result {
     writeln!(out, "title = {}", text(&deck.title))?;
     writeln!(out, "units = \"{}\"", deck.units.name())?;
     writeln!(out, "analysis = \"{}\"", deck.analysis.name())?;
@@ -49,116 +73,128 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
         let path = std::path::absolute(&file.value).unwrap_or_else(|_| file.value.clone());
         writeln!(out, "\n[mesh]\nfile = {}", text(&path.to_string_lossy()))?;
     }
-    for block in &deck.blocks {
-        writeln!(out, "\n[[mesh.block]]\nname = {}", text(&block.name.value))?;
-        writeln!(out, "element = \"{}\"", block.element.value)?;
-        for (axis, grid) in AXES.iter().zip(&block.grid) {
-            match &grid.value {
-                Grid::Range(ends, _) => writeln!(out, "{axis} = {ends:?}")?,
-                Grid::Lines(lines) => writeln!(out, "{axis} = {{ lines = {lines:?} }}")?,
-            }
+    Ok(())
+}
+
+fn block(block: &BlockEntry, out: &mut String) -> fmt::Result {
+    writeln!(out, "\n[[mesh.block]]\nname = {}", text(&block.name.value))?;
+    writeln!(out, "element = \"{}\"", block.element.value)?;
+    for (axis, grid) in AXES.iter().zip(&block.grid) {
+        match &grid.value {
+            Grid::Range(ends, _) => writeln!(out, "{axis} = {ends:?}")?,
+            Grid::Lines(lines) => writeln!(out, "{axis} = {{ lines = {lines:?} }}")?,
         }
-        let cells: Vec<usize> = block.grid.iter().map(|g| g.value.cells()).collect();
-        writeln!(out, "cells = {cells:?}")?;
     }
-    for group in &deck.groups {
-        writeln!(out, "\n[[mesh.group]]\nname = {}", text(&group.name.value))?;
-        writeln!(out, "on = {}", text(&group.on.value))?;
-        match &group.part.value {
-            Part::Nearest(point) => writeln!(out, "nearest = {point:?}")?,
-            Part::Box(limits) => {
-                for (axis, limit) in AXES.iter().zip(limits) {
-                    if let Some(ends) = limit {
-                        writeln!(out, "{axis} = {ends:?}")?;
-                    }
+    let cells: Vec<usize> = block.grid.iter().map(|g| g.value.cells()).collect();
+    writeln!(out, "cells = {cells:?}")?;
+    Ok(())
+}
+
+fn group(group: &GroupEntry, out: &mut String) -> fmt::Result {
+    writeln!(out, "\n[[mesh.group]]\nname = {}", text(&group.name.value))?;
+    writeln!(out, "on = {}", text(&group.on.value))?;
+    match &group.part.value {
+        Part::Nearest(point) => writeln!(out, "nearest = {point:?}")?,
+        Part::Box(limits) => {
+            for (axis, limit) in AXES.iter().zip(limits) {
+                if let Some(ends) = limit {
+                    writeln!(out, "{axis} = {ends:?}")?;
                 }
             }
         }
     }
-    for material in &deck.materials {
-        writeln!(out, "\n[[material]]\non = {}", text(&material.on.value))?;
-        writeln!(out, "young = {:?}", material.young.value)?;
-        writeln!(out, "poisson = {:?}", material.poisson.value)?;
-        if let Some(yield_stress) = &material.yield_stress {
-            writeln!(out, "yield-stress = {:?}", yield_stress.value)?;
-            let none = Hardening::Linear(0.0);
-            let hardening = material.isotropic.as_ref().map_or(&none, |h| &h.value);
-            writeln!(out, "hardening = {hardening}")?;
-            let terms = material.kinematic.iter().map(|[modulus, recall]| {
-                let (modulus, recall) = (modulus.value, recall.value);
-                format!("{{ modulus = {modulus:?}, recall = {recall:?} }}")
-            });
-            let terms: Vec<String> = terms.collect();
-            writeln!(out, "kinematic = [{}]", terms.join(", "))?;
-        }
-        if let Some(soil) = &material.soil {
-            writeln!(out, "cohesion = {:?}", soil.cohesion.value)?;
-            writeln!(out, "friction-angle = {:?}", soil.friction_angle.value)?;
-            writeln!(out, "dilatancy-angle = {:?}", soil.dilatancy_angle.value)?;
-        }
-        let quadrature = deck.quadrature(material);
-        if quadrature != BY_ELEMENT {
-            writeln!(out, "quadrature = \"{quadrature}\"")?;
-        }
+    Ok(())
+}
+
+fn material(deck: &Deck, material: &MaterialEntry, out: &mut String) -> fmt::Result {
+    writeln!(out, "\n[[material]]\non = {}", text(&material.on.value))?;
+    writeln!(out, "young = {:?}", material.young.value)?;
+    writeln!(out, "poisson = {:?}", material.poisson.value)?;
+    if let Some(yield_stress) = &material.yield_stress {
+        writeln!(out, "yield-stress = {:?}", yield_stress.value)?;
+        let none = Hardening::Linear(0.0);
+        let hardening = material.isotropic.as_ref().map_or(&none, |h| &h.value);
+        writeln!(out, "hardening = {hardening}")?;
+        let terms = material.kinematic.iter().map(|[modulus, recall]| {
+            let (modulus, recall) = (modulus.value, recall.value);
+            format!("{{ modulus = {modulus:?}, recall = {recall:?} }}")
+        });
+        let terms: Vec<String> = terms.collect();
+        writeln!(out, "kinematic = [{}]", terms.join(", "))?;
     }
-    for tool in &deck.tools {
-        writeln!(out, "\n[[tool]]\nname = {}", text(&tool.name.value))?;
-        match &tool.shape.value {
-            Shape::Plane(point, normal) => {
-                writeln!(out, "plane = {{ point = {point:?}, normal = {normal:?} }}")?;
-            }
-            Shape::Ball(center, radius, hollow, key) => {
-                writeln!(
-                    out,
-                    "{key} = {{ center = {center:?}, radius = {radius:?} }}"
-                )?;
-                writeln!(out, "inside = {hollow}")?;
-            }
-            Shape::Cylinder(center, axis, radius, hollow) => {
-                writeln!(
-                    out,
-                    "cylinder = {{ center = {center:?}, axis = {axis:?}, radius = {radius:?} }}"
-                )?;
-                writeln!(out, "inside = {hollow}")?;
-            }
-            Shape::Polyline(points) => writeln!(out, "polyline = {points:?}")?,
-        }
+    if let Some(soil) = &material.soil {
+        writeln!(out, "cohesion = {:?}", soil.cohesion.value)?;
+        writeln!(out, "friction-angle = {:?}", soil.friction_angle.value)?;
+        writeln!(out, "dilatancy-angle = {:?}", soil.dilatancy_angle.value)?;
     }
-    for contact in &deck.contacts {
-        writeln!(
-            out,
-            "\n[[contact]]\nsurface = {}",
-            text(&contact.surface.value)
-        )?;
-        writeln!(out, "against = {}", text(&contact.against.value))?;
-        writeln!(out, "friction = {}", contact.friction)?;
-        if let Some(offset) = &contact.gap_offset {
-            writeln!(out, "gap-offset = {:?}", offset.value)?;
-        }
-        match contact.adjust.as_ref().map(|a| a.value) {
-            None => {}
-            Some(Adjust::Near) => writeln!(out, "adjust = true")?,
-            Some(Adjust::Within(distance)) => writeln!(out, "adjust = {distance:?}")?,
-        }
+    let quadrature = deck.quadrature(material);
+    if quadrature != BY_ELEMENT {
+        writeln!(out, "quadrature = \"{quadrature}\"")?;
     }
-    for step in &deck.steps {
-        writeln!(out, "\n[[step]]\nname = {}", text(&step.name.value))?;
-        if step.until_collapse {
-            writeln!(out, "until = \"collapse\"")?;
+    Ok(())
+}
+
+fn tool(tool: &ToolEntry, out: &mut String) -> fmt::Result {
+    writeln!(out, "\n[[tool]]\nname = {}", text(&tool.name.value))?;
+    match &tool.shape.value {
+        Shape::Plane(point, normal) => {
+            writeln!(out, "plane = {{ point = {point:?}, normal = {normal:?} }}")?;
         }
-        let Increments { start, min, max } = step.increments;
-        match min {
-            None => writeln!(out, "increments = {}", step.increments.count())?,
-            Some(min) => writeln!(
+        Shape::Ball(center, radius, hollow, key) => {
+            writeln!(
                 out,
-                "increments = {{ start = {start:?}, min = {min:?}, max = {max:?} }}"
-            )?,
+                "{key} = {{ center = {center:?}, radius = {radius:?} }}"
+            )?;
+            writeln!(out, "inside = {hollow}")?;
         }
-        for (key, list) in lists(&step.conditions) {
-            writeln!(out, "{key} = [{}]", list.join(", "))?;
+        Shape::Cylinder(center, axis, radius, hollow) => {
+            writeln!(
+                out,
+                "cylinder = {{ center = {center:?}, axis = {axis:?}, radius = {radius:?} }}"
+            )?;
+            writeln!(out, "inside = {hollow}")?;
         }
+        Shape::Polyline(points) => writeln!(out, "polyline = {points:?}")?,
     }
-    tail(deck, out)
+    Ok(())
+}
+
+fn contact(contact: &ContactEntry, out: &mut String) -> fmt::Result {
+    writeln!(
+        out,
+        "\n[[contact]]\nsurface = {}",
+        text(&contact.surface.value)
+    )?;
+    writeln!(out, "against = {}", text(&contact.against.value))?;
+    writeln!(out, "friction = {}", contact.friction)?;
+    if let Some(offset) = &contact.gap_offset {
+        writeln!(out, "gap-offset = {:?}", offset.value)?;
+    }
+    match contact.adjust.as_ref().map(|a| a.value) {
+        None => {}
+        Some(Adjust::Near) => writeln!(out, "adjust = true")?,
+        Some(Adjust::Within(distance)) => writeln!(out, "adjust = {distance:?}")?,
+    }
+    Ok(())
+}
+
+fn step(step: &StepEntry, out: &mut String) -> fmt::Result {
+    writeln!(out, "\n[[step]]\nname = {}", text(&step.name.value))?;
+    if step.until_collapse {
+        writeln!(out, "until = \"collapse\"")?;
+    }
+    let Increments { start, min, max } = step.increments;
+    match min {
+        None => writeln!(out, "increments = {}", step.increments.count())?,
+        Some(min) => writeln!(
+            out,
+            "increments = {{ start = {start:?}, min = {min:?}, max = {max:?} }}"
+        )?,
+    }
+    for (key, list) in lists(&step.conditions) {
+        writeln!(out, "{key} = [{}]", list.join(", "))?;
+    }
+    Ok(())
 }
 
 /// The conditions of a step, by key.

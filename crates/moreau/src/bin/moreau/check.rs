@@ -1,7 +1,9 @@
 //! `moreau check`: what a deck was understood to say; nothing is solved.
 
 use super::{INPUT_ERROR, folder, read, report, say};
-use moreau::deck::{Action, Deck, Method, Problem, Setup, Shape, open_in};
+use moreau::deck::{
+    Action, Deck, MaterialEntry, Method, Problem, Setup, Shape, SoilEntry, open_in,
+};
 use moreau::driver::{Axis, RigidMotion, Stopper};
 use moreau::numbers::{place, shown};
 use std::path::Path;
@@ -48,7 +50,23 @@ fn head(deck: &Deck) {
 }
 
 fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
-    let length = deck.units.length();
+    mesh(deck, setup);
+    bodies(deck, setup);
+    groups(deck, setup);
+    for entry in &deck.materials {
+        material(deck, entry);
+    }
+    for tool in &deck.tools {
+        let shape = shape(&tool.shape.value, deck.units.length());
+        say!("tool       {}: {shape}", tool.name.value);
+    }
+    for index in 0..deck.contacts.len() {
+        contact(deck, setup, index);
+    }
+    say!("solver     {}", method(deck));
+}
+
+fn mesh<const D: usize>(deck: &Deck, setup: &Setup<D>) {
     let mesh = setup.driver.mesh();
     say!(
         "mesh       {} nodes, {} cells, {} degrees of freedom",
@@ -59,6 +77,10 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
     if let Some(file) = &deck.mesh_file {
         say!("           from {}", file.value.display());
     }
+}
+
+fn bodies<const D: usize>(deck: &Deck, setup: &Setup<D>) {
+    let length = deck.units.length();
     for body in &setup.bodies {
         let cells: Vec<String> = body.cells.iter().map(|(k, n)| format!("{n} {k}")).collect();
         say!(
@@ -69,6 +91,10 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
         );
         motions(deck, &body.motions);
     }
+}
+
+fn groups<const D: usize>(deck: &Deck, setup: &Setup<D>) {
+    let length = deck.units.length();
     for group in &setup.groups {
         let unit = if group.kind == "cells" { "³" } else { "²" };
         let measure = group.measure.map_or(String::new(), |m| {
@@ -82,94 +108,100 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
             group.nodes
         );
     }
+}
+
+fn material(deck: &Deck, material: &MaterialEntry) {
     let stress = deck.units.stress();
-    for m in &deck.materials {
-        let plastic = match (&m.yield_stress, &m.soil) {
-            (None, None) => "elastic".to_owned(),
-            (None, Some(soil)) => format!(
-                "cohesion {} {stress}, friction angle {}°, dilatancy angle {}°",
-                soil.cohesion.value, soil.friction_angle.value, soil.dilatancy_angle.value
-            ),
-            (Some(y), _) => {
-                let hardening = match &m.isotropic {
-                    Some(h) => h.value.to_string(),
-                    None => "none".to_owned(),
-                };
-                let kinematic = match m.kinematic.len() {
-                    0 => "none".to_owned(),
-                    1 => "of 1 term".to_owned(),
-                    n => format!("of {n} terms"),
-                };
-                format!(
-                    "yield stress {} {stress}, isotropic hardening {hardening}, kinematic {kinematic}",
-                    y.value
-                )
-            }
-        };
-        say!(
-            "material   {}: E {} {stress}, ν {}, {plastic}; {} quadrature",
-            m.on.value,
-            m.young.value,
-            m.poisson.value,
-            deck.quadrature(m)
-        );
-    }
-    for tool in &deck.tools {
-        let shape = match &tool.shape.value {
-            Shape::Plane(point, normal) => format!("plane through {point:?}, normal {normal:?}"),
-            Shape::Ball(center, radius, hollow, key) => {
-                let inside = if *hollow { ", hollow" } else { "" };
-                format!("{key} around {center:?}, radius {radius} {length}{inside}")
-            }
-            Shape::Cylinder(center, axis, radius, hollow) => {
-                let inside = if *hollow { ", hollow" } else { "" };
-                format!(
-                    "cylinder around {center:?} along {axis:?}, radius {radius} {length}{inside}"
-                )
-            }
-            Shape::Polyline(points) => format!("polyline {points:?}"),
-        };
-        say!("tool       {}: {shape}", tool.name.value);
-    }
-    for (k, contact) in deck.contacts.iter().enumerate() {
-        let points = setup.driver.contacts().iter().filter(|c| c.contact == k);
-        say!(
-            "contact    {} against {}, friction {}, {} points{}{}",
-            contact.surface.value,
-            contact.against.value,
-            contact.friction,
-            points.count(),
-            contact
-                .gap_offset
-                .as_ref()
-                .map_or(String::new(), |o| format!(
-                    ", touching at {} {length}",
-                    o.value
-                )),
-            if contact.adjust.is_some() {
-                ", adjusted"
-            } else {
-                ""
-            }
-        );
-        if let Some(gap) = setup.gaps.iter().find(|g| g.contact == k) {
-            say!(
-                "           least gap {} {length}, at node {} at {}",
-                shown(gap.gap, DIGITS),
-                gap.node,
-                place(&gap.position, DIGITS)
-            );
+    say!(
+        "material   {}: E {} {stress}, ν {}, {}; {} quadrature",
+        material.on.value,
+        material.young.value,
+        material.poisson.value,
+        strength(material, stress),
+        deck.quadrature(material)
+    );
+}
+
+/// What the material bears, and how it hardens.
+fn strength(material: &MaterialEntry, unit: &str) -> String {
+    let soil = |soil: &SoilEntry| {
+        format!(
+            "cohesion {} {unit}, friction angle {}°, dilatancy angle {}°",
+            soil.cohesion.value, soil.friction_angle.value, soil.dilatancy_angle.value
+        )
+    };
+    let Some(yield_stress) = &material.yield_stress else {
+        return material.soil.as_ref().map_or("elastic".to_owned(), soil);
+    };
+    let hardening = match &material.isotropic {
+        Some(h) => h.value.to_string(),
+        None => "none".to_owned(),
+    };
+    let kinematic = match material.kinematic.len() {
+        0 => "none".to_owned(),
+        1 => "of 1 term".to_owned(),
+        n => format!("of {n} terms"),
+    };
+    format!(
+        "yield stress {} {unit}, isotropic hardening {hardening}, kinematic {kinematic}",
+        yield_stress.value
+    )
+}
+
+fn shape(shape: &Shape, length: &str) -> String {
+    let inside = |hollow: bool| if hollow { ", hollow" } else { "" };
+    match shape {
+        Shape::Plane(point, normal) => format!("plane through {point:?}, normal {normal:?}"),
+        Shape::Ball(center, radius, hollow, key) => {
+            let inside = inside(*hollow);
+            format!("{key} around {center:?}, radius {radius} {length}{inside}")
         }
+        Shape::Cylinder(center, axis, radius, hollow) => {
+            let inside = inside(*hollow);
+            format!("cylinder around {center:?} along {axis:?}, radius {radius} {length}{inside}")
+        }
+        Shape::Polyline(points) => format!("polyline {points:?}"),
     }
-    let method = match &deck.solver.method {
+}
+
+fn contact<const D: usize>(deck: &Deck, setup: &Setup<D>, index: usize) {
+    let (contact, length) = (&deck.contacts[index], deck.units.length());
+    let points = setup.driver.contacts().iter();
+    let points = points.filter(|c| c.contact == index).count();
+    let offset = contact.gap_offset.as_ref();
+    let offset = offset.map_or(String::new(), |o| {
+        format!(", touching at {} {length}", o.value)
+    });
+    let adjusted = if contact.adjust.is_some() {
+        ", adjusted"
+    } else {
+        ""
+    };
+    say!(
+        "contact    {} against {}, friction {}, {points} points{offset}{adjusted}",
+        contact.surface.value,
+        contact.against.value,
+        contact.friction
+    );
+    if let Some(gap) = setup.gaps.iter().find(|g| g.contact == index) {
+        say!(
+            "           least gap {} {length}, at node {} at {}",
+            shown(gap.gap, DIGITS),
+            gap.node,
+            place(&gap.position, DIGITS)
+        );
+    }
+}
+
+fn method(deck: &Deck) -> String {
+    match &deck.solver.method {
         _ if deck.solver.outside => "Uzawa around the nonlinear solve".to_owned(),
         Method::Exact => "exact, semismooth Newton".to_owned(),
         Method::Uzawa => "exact, Uzawa".to_owned(),
         Method::GaussSeidel => "exact, Gauss-Seidel".to_owned(),
         Method::Penalty(n, t) => format!("penalty, {} and {}", n.value, t.value),
         Method::Penetration(part) => format!("penalty, penetration {} of a cell", part.value),
-    };
-    say!("solver     {method}");
+    }
 }
 
 /// What stops the rigid motions of a body; steps that are as the one before are not repeated.
