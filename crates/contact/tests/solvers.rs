@@ -243,6 +243,7 @@ fn plane_bound(law: &Friction) -> (f64, f64) {
         Friction::Tresca(law) => (f64::INFINITY, law.limit()),
         Friction::Limited(law) => (law.friction(), law.limit()),
         Friction::Anisotropic(law) => (law.friction()[0], f64::INFINITY),
+        Friction::Bounded(law) => panic!("{law:?} has no straight edges"),
     }
 }
 
