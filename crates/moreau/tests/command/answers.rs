@@ -116,6 +116,11 @@ fn a_soil_has_its_strength_in_compression() {
     let (sine, cosine) = 30f64.to_radians().sin_cos();
     let force = -2.0 * 0.02 * cosine / (1.0 - sine) * 4.0 * std::f64::consts::PI;
     for dilatancy in [30, 15] {
+        // The axial plastic strain ε less the elastic one, and e_v = k_t √(3/2) (ε + e_v/3).
+        let axial = 0.02 + force / (4.0 * std::f64::consts::PI) / 20.0;
+        let sine = f64::from(dilatancy).to_radians().sin();
+        let slope = 1.5f64.sqrt() * 2.0 * 6f64.sqrt() * sine / (3.0 - sine);
+        let dilation = slope * axial / (1.0 - slope / 3.0);
         let deck = format!(
             r#"
 units = "mm-N-MPa"
@@ -135,6 +140,7 @@ fix = [{{ on = "b.bottom", u = ["y"] }}, {{ on = "b.left", u = ["x"] }}]
 move = [{{ on = "b.top", u = {{ y = -0.08 }} }}]
 [expect]
 "force.b.top.y" = {{ value = {force}, relative = 1e-7 }}
+"largest.plastic_dilation" = {{ value = {dilation}, relative = 1e-6 }}
 "#
         );
         let (status, out, err, results) = run("soil", &deck, &["--verify"]);
