@@ -6,9 +6,14 @@
 //! it, without fusing products into sums: the same bits on any processor.
 
 use pulp::{Simd, WithSimd};
+use std::ops::Range;
 
 /// Right-hand sides that are solved for at once: what is gathered of them stays near the processor.
 pub(crate) const SIDES: usize = 8;
+
+/// Rows that are gone through at once: those of four columns and of all right-hand sides are then next to the
+/// processor.
+const ROWS: usize = 256;
 
 /// Columns of a factor that are read at once: what they are added to, or multiplied by, is read once for
 /// all.
@@ -62,33 +67,45 @@ impl WithSimd for Forward<'_> {
                 }
             }
         }
-        let rows = height - width;
-        if rows == 0 {
-            return;
-        }
         below.fill(0.0);
-        let mut rest = panel.values;
-        for first in (0..width).step_by(TOGETHER) {
-            let (columns, others) = rest.split_at(rest.len().min(TOGETHER * height));
-            rest = others;
-            let mut sides = own.chunks_exact(width).zip(below.chunks_exact_mut(rows));
-            if first + TOGETHER > width {
-                for (x, sum) in sides {
-                    for (column, x) in columns.chunks_exact(height).zip(&x[first..]) {
-                        for (sum, l) in sum.iter_mut().zip(&column[width..]) {
-                            *sum += l * x;
-                        }
+        let rows = height - width;
+        for from in (0..rows).step_by(ROWS) {
+            let part = from..rows.min(from + ROWS);
+            multiply(panel, own, below, part);
+        }
+    }
+}
+
+/// Adds to some rows of `below` their part of L₂ `own`.
+#[inline(always)]
+fn multiply(panel: Panel<'_>, own: &[f64], below: &mut [f64], part: Range<usize>) {
+    let (width, height) = (panel.width, panel.height);
+    let mut rest = panel.values;
+    for first in (0..width).step_by(TOGETHER) {
+        let (columns, others) = rest.split_at(rest.len().min(TOGETHER * height));
+        rest = others;
+        let own = own.chunks_exact(width);
+        let mut sides = own.zip(below.chunks_exact_mut(height - width));
+        if first + TOGETHER > width {
+            for (x, sum) in sides {
+                for (column, x) in columns.chunks_exact(height).zip(&x[first..]) {
+                    let l = &column[width..][part.clone()];
+                    for (sum, l) in sum[part.clone()].iter_mut().zip(l) {
+                        *sum += l * x;
                     }
                 }
-                return;
             }
-            let columns = lower_parts(columns, width, height);
-            while let Some((x, sum)) = sides.next() {
-                let x = four(&x[first..]);
-                match sides.next() {
-                    Some((y, other)) => add_two(columns, [x, four(&y[first..])], sum, other),
-                    None => add_one(columns, x, sum),
+            return;
+        }
+        let columns = lower_parts(columns, (width, height), part.clone());
+        while let Some((x, sum)) = sides.next() {
+            let (x, sum) = (four(&x[first..]), &mut sum[part.clone()]);
+            match sides.next() {
+                Some((y, other)) => {
+                    let y = four(&y[first..]);
+                    add_two(columns, [x, y], sum, &mut other[part.clone()]);
                 }
+                None => add_one(columns, x, sum),
             }
         }
     }
@@ -102,38 +119,9 @@ impl WithSimd for Backward<'_> {
         let Self { panel, own, below } = self;
         let (width, height) = (panel.width, panel.height);
         let rows = height - width;
-        let mut rest = panel.values;
-        for first in (0..width).step_by(TOGETHER) {
-            let (columns, others) = rest.split_at(rest.len().min(TOGETHER * height));
-            rest = others;
-            if rows == 0 {
-                break;
-            }
-            let mut sides = own.chunks_exact_mut(width).zip(below.chunks_exact(rows));
-            if first + TOGETHER > width {
-                for (x, known) in sides {
-                    for (column, x) in columns.chunks_exact(height).zip(&mut x[first..]) {
-                        *x -= dot(&column[width..], known);
-                    }
-                }
-                break;
-            }
-            let columns = lower_parts(columns, width, height);
-            let subtract = |x: &mut [f64], sums: [f64; TOGETHER]| {
-                for (x, sum) in x[first..first + TOGETHER].iter_mut().zip(sums) {
-                    *x -= sum;
-                }
-            };
-            while let Some((x, known)) = sides.next() {
-                match sides.next() {
-                    Some((y, other)) => {
-                        let [of_x, of_y] = dots_two(columns, known, other);
-                        subtract(x, of_x);
-                        subtract(y, of_y);
-                    }
-                    None => subtract(x, dots_one(columns, known)),
-                }
-            }
+        for from in (0..rows).step_by(ROWS) {
+            let part = from..rows.min(from + ROWS);
+            subtract_transposed(panel, own, below, part);
         }
         for (j, column) in panel.values.chunks_exact(height).enumerate().rev() {
             for own in own.chunks_exact_mut(width) {
@@ -144,10 +132,52 @@ impl WithSimd for Backward<'_> {
     }
 }
 
-/// What is below the first `width` entries of four columns.
+/// Subtracts from `own` what some rows of `below` are to L₂ᵀ `below`.
 #[inline(always)]
-fn lower_parts(columns: &[f64], width: usize, height: usize) -> [&[f64]; TOGETHER] {
-    std::array::from_fn(|k| &columns[k * height + width..(k + 1) * height])
+fn subtract_transposed(panel: Panel<'_>, own: &mut [f64], below: &[f64], part: Range<usize>) {
+    let (width, height) = (panel.width, panel.height);
+    let mut rest = panel.values;
+    for first in (0..width).step_by(TOGETHER) {
+        let (columns, others) = rest.split_at(rest.len().min(TOGETHER * height));
+        rest = others;
+        let own = own.chunks_exact_mut(width);
+        let mut sides = own.zip(below.chunks_exact(height - width));
+        if first + TOGETHER > width {
+            for (x, known) in sides {
+                for (column, x) in columns.chunks_exact(height).zip(&mut x[first..]) {
+                    *x -= dot(&column[width..][part.clone()], &known[part.clone()]);
+                }
+            }
+            return;
+        }
+        let columns = lower_parts(columns, (width, height), part.clone());
+        let subtract = |x: &mut [f64], sums: [f64; TOGETHER]| {
+            for (x, sum) in x[first..first + TOGETHER].iter_mut().zip(sums) {
+                *x -= sum;
+            }
+        };
+        while let Some((x, known)) = sides.next() {
+            let known = &known[part.clone()];
+            match sides.next() {
+                Some((y, other)) => {
+                    let [of_x, of_y] = dots_two(columns, known, &other[part.clone()]);
+                    subtract(x, of_x);
+                    subtract(y, of_y);
+                }
+                None => subtract(x, dots_one(columns, known)),
+            }
+        }
+    }
+}
+
+/// Some rows below the triangle of four columns.
+#[inline(always)]
+fn lower_parts(
+    columns: &[f64],
+    (width, height): (usize, usize),
+    part: Range<usize>,
+) -> [&[f64]; TOGETHER] {
+    std::array::from_fn(|k| &columns[k * height + width..(k + 1) * height][part.clone()])
 }
 
 /// The first four numbers.

@@ -507,3 +507,26 @@ fn the_least_pivot_tells_what_hardly_resists() {
     tells_what_hardly_resists::<Cholesky>();
     tells_what_hardly_resists::<Ldlt>();
 }
+
+/// Fronts of more rows than are gone through at once.
+fn solves_with_large_fronts<E: Engine>() {
+    let (pattern, values) = laplacian(18, 0.5);
+    let mut engine = E::analyse(&pattern, None).expect("small");
+    engine.factorise(&values).expect("definite");
+    let mut matrix = Matrix::new(pattern);
+    matrix.values_mut().1.copy_from_slice(&values);
+    let n = engine.size();
+    let b: Vec<f64> = (0..3 * n).map(|i| (i as f64).sin()).collect();
+    let mut x = b.clone();
+    engine.solve(&mut x).expect("definite");
+    for (x, b) in x.chunks(n).zip(b.chunks(n)) {
+        let left = norm(&matrix.residual(x, b));
+        assert!(left < 1e-14 * norm(b), "{:e}", left / norm(b));
+    }
+}
+
+#[test]
+fn large_fronts_are_solved_with_in_parts() {
+    solves_with_large_fronts::<Cholesky>();
+    solves_with_large_fronts::<Ldlt>();
+}
