@@ -4,6 +4,7 @@ mod benchmarks;
 mod tidy;
 mod verify;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
@@ -13,7 +14,8 @@ use clap::{Parser, Subcommand};
 #[command(
     name = "xtask",
     bin_name = "cargo xtask",
-    about = "Tasks of the moreau workspace"
+    about = "Tasks of the moreau workspace",
+    after_help = benchmarks::HELP
 )]
 struct Cli {
     #[command(subcommand)]
@@ -25,23 +27,18 @@ struct Cli {
 enum Task {
     /// Run the verification cases and write a report
     Verify(verify::Args),
-    /// Time the punched block on meshes of growing size
-    Bench(benchmarks::Args),
-    /// Run all contact solvers over a folder of discrete frictional contact problems
-    ContactBench(benchmarks::Args),
-    /// Time the punched block by other systems that are installed, beside ours
-    Peers(benchmarks::Args),
     /// Check the architecture of the workspace from its manifests and sources
     Tidy,
+    /// A benchmark and its arguments
+    #[command(external_subcommand)]
+    Benchmark(Vec<OsString>),
 }
 
 fn main() -> ExitCode {
     let done = match Cli::parse().task {
         Task::Verify(args) => verify::run(&args),
-        Task::Bench(args) => benchmarks::run("bench", &args),
-        Task::ContactBench(args) => benchmarks::run("contact-bench", &args),
-        Task::Peers(args) => benchmarks::run("peers", &args),
         Task::Tidy => tidy::run(),
+        Task::Benchmark(arguments) => benchmarks::run(&arguments),
     };
     match done {
         Ok(true) => ExitCode::SUCCESS,

@@ -3,7 +3,7 @@
 use crate::paper::{prandtl, prandtl_load, prandtl_step};
 use crate::problems::Fallible;
 use crate::problems::collapsing::{cylinder, notch, sphere, strip};
-use crate::problems::shapes::Hole;
+use crate::problems::shapes::{Hole, PLANE_ELEMENTS};
 use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
 use moreau::driver::{Axis, Collapse, Driver, Settings, Step, StepError};
 use moreau::laws::VonMises;
@@ -227,25 +227,15 @@ fn cut(mut curve: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 
 /// Limit loads of the cylinder and the notch by every plane element, with the displacement given.
 fn locking(options: &Options<'_>, outcome: &mut Outcome) -> Result<(), Box<dyn Error>> {
-    use CellKind::{Quad4, Quad8, Quad9, Tri3, Tri6};
+    use CellKind::{Quad4, Quad8};
     use Integration::{BBar, Full, Reduced};
-    let all = [
-        (Tri3, Full),
-        (Tri6, Reduced),
-        (Tri6, Full),
-        (Quad4, Full),
-        (Quad4, BBar),
-        (Quad8, Reduced),
-        (Quad8, Full),
-        (Quad9, Full),
-    ];
     // The tests compare all of them on coarse meshes.
     let brief = |(kind, rule): &(CellKind, Integration)| {
         !options.quick || matches!((kind, rule), (Quad4, _) | (Quad8, Reduced))
     };
     let cells: &[usize] = if options.quick { &[2] } else { &[2, 4, 8] };
     let mut rows = Vec::new();
-    for (kind, rule) in all.into_iter().filter(brief) {
+    for (kind, rule) in PLANE_ELEMENTS.into_iter().filter(brief) {
         let rule_name = match rule {
             Reduced => "reduced",
             Full => "full",

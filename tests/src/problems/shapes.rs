@@ -1,7 +1,19 @@
 //! Blocks mapped to the shapes of the benchmarks; not their loads.
 
-use moreau::mesh::{CellKind, Mesh, MeshError, block2, block3, geometric, uniform};
+use moreau::mesh::{CellKind, Integration, Mesh, MeshError, block2, block3, geometric, uniform};
 use std::f64::consts::FRAC_PI_2;
+
+/// All pairs of a plane kind and a rule without spurious modes that the outline leaves free.
+pub const PLANE_ELEMENTS: [(CellKind, Integration); 8] = [
+    (CellKind::Tri3, Integration::Full),
+    (CellKind::Tri6, Integration::Reduced),
+    (CellKind::Tri6, Integration::Full),
+    (CellKind::Quad4, Integration::Full),
+    (CellKind::Quad4, Integration::BBar),
+    (CellKind::Quad8, Integration::Reduced),
+    (CellKind::Quad8, Integration::Full),
+    (CellKind::Quad9, Integration::Full),
+];
 
 /// From radius and angle.
 fn polar([r, angle]: [f64; 2]) -> [f64; 2] {

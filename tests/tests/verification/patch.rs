@@ -11,29 +11,14 @@ use nalgebra::SMatrix;
 use verification::problems::Fallible;
 use verification::problems::fields::{Field, prescribed};
 use verification::problems::patches::{plane_patch, solid_patch};
+use verification::problems::shapes::PLANE_ELEMENTS;
 
 const E: f64 = 210e3;
 const NU: f64 = 0.3;
 /// Round-off of an elastic solution.
 const ROUND_OFF: f64 = 1e-12;
 
-/// All pairs of a plane kind and a rule without spurious modes that the outline leaves free.
-fn plane_kinds() -> Vec<(CellKind, Integration)> {
-    use CellKind::{Quad4, Quad8, Quad9, Tri3, Tri6};
-    use Integration::{BBar, Full, Reduced};
-    vec![
-        (Tri3, Full),
-        (Tri6, Reduced),
-        (Tri6, Full),
-        (Quad4, Full),
-        (Quad4, BBar),
-        (Quad8, Reduced),
-        (Quad8, Full),
-        (Quad9, Full),
-    ]
-}
-
-/// The same in space.
+/// As [`PLANE_ELEMENTS`], in space.
 fn solid_kinds() -> [(CellKind, Integration); 8] {
     use CellKind::{Hex8, Hex20, Hex27, Tet4, Tet10};
     use Integration::{BBar, Full, Reduced};
@@ -84,7 +69,7 @@ fn macneal_harder_patch_is_exact_in_plane_strain() -> Fallible {
     let g = SMatrix::<f64, 2, 2>::new(1e-3, 0.7e-3, 0.2e-3, -0.4e-3);
     let law = Elastic::new(E, NU)?;
     let exact = law.stress(&mandel(g));
-    for (kind, rule) in plane_kinds() {
+    for (kind, rule) in PLANE_ELEMENTS {
         let model =
             Model::new(plane_patch(kind)?, PlaneStrain::default()).material("patch", law, rule)?;
         let mut driver = Driver::new(model, Settings::default())?;
@@ -115,7 +100,7 @@ fn macneal_harder_patch_is_exact_in_axial_symmetry() -> Fallible {
     let law = Elastic::new(E, NU)?;
     let (a, b) = (1e-3, -0.3e-3);
     let exact = law.stress(&Sym2::from_column_slice(&[a, b, a, 0.0, 0.0, 0.0]));
-    for (kind, rule) in plane_kinds() {
+    for (kind, rule) in PLANE_ELEMENTS {
         for inner in [0.0, 0.5] {
             let mesh = plane_patch(kind)?.map(|[r, z]| [r + inner, z])?;
             let model = Model::new(mesh, Axisymmetric).material("patch", law, rule)?;
@@ -164,7 +149,7 @@ fn patch_stays_uniform_in_plastic_flow() -> Fallible {
     const STRAIN: f64 = 0.005;
     let law = VonMises::new(E, NU, 300.0)?;
     let p = 2.0 / 3.0 * STRAIN - 300.0 / (3.0 * law.elastic().shear_modulus());
-    for (kind, rule) in plane_kinds() {
+    for (kind, rule) in PLANE_ELEMENTS {
         for steps in [1, 10] {
             let model = Model::new(plane_patch(kind)?, PlaneStrain::default()).material(
                 "patch",

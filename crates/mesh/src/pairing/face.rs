@@ -5,8 +5,8 @@ use crate::geometry::{basis, bounds, cofactors, diagonal, dot, interpolate};
 use crate::mesh::{Change, NodeKind};
 use crate::{Element, FacetKind, Line2, Line3, Quad4, Quad8, Quad9, Tri3, Tri6};
 
-/// A box, by its least and greatest corner.
-pub(super) type Box<const D: usize> = ([f64; D], [f64; D]);
+/// A box along the axes, by its least and greatest corner.
+pub(super) type Aabb<const D: usize> = ([f64; D], [f64; D]);
 
 /// Most nodes of a facet.
 const NODES: usize = 9;
@@ -124,7 +124,7 @@ impl<const D: usize> Face<D> {
         diagonal(&self.x)
     }
 
-    pub(super) fn bounds(&self) -> Box<D> {
+    pub(super) fn bounds(&self) -> Aabb<D> {
         bounds(&self.x)
     }
 
@@ -291,7 +291,7 @@ pub(super) fn along<const D: usize>(a: &[f64; D], b: &[f64; D], n: &[f64; D]) ->
 }
 
 /// The box around points, wider by a margin.
-pub(super) fn hull<const D: usize>(points: impl Iterator<Item = [f64; D]>, margin: f64) -> Box<D> {
+pub(super) fn hull<const D: usize>(points: impl Iterator<Item = [f64; D]>, margin: f64) -> Aabb<D> {
     let (low, high) = bounds(&points.collect::<Vec<_>>());
     (low.map(|v| v - margin), high.map(|v| v + margin))
 }

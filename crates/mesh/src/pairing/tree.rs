@@ -1,10 +1,10 @@
 //! Search of boxes that overlap a box, by a binary tree of bounding boxes; not of what is in them.
 
-use super::face::Box;
+use super::face::Aabb;
 
 /// A tree of boxes, halved at the median along the longest side.
 pub(super) struct Tree<const D: usize> {
-    boxes: Vec<Box<D>>,
+    boxes: Vec<Aabb<D>>,
     /// The boxes in the order of the tree.
     order: Vec<usize>,
     branches: Vec<Branch<D>>,
@@ -12,7 +12,7 @@ pub(super) struct Tree<const D: usize> {
 
 /// The boxes `order[first..last]` and the box around them; the first half is the next branch.
 struct Branch<const D: usize> {
-    around: Box<D>,
+    around: Aabb<D>,
     first: usize,
     last: usize,
     /// Branch of the second half; `None` at a leaf.
@@ -23,7 +23,7 @@ struct Branch<const D: usize> {
 const LEAF: usize = 4;
 
 impl<const D: usize> Tree<D> {
-    pub(super) fn new(boxes: Vec<Box<D>>) -> Self {
+    pub(super) fn new(boxes: Vec<Aabb<D>>) -> Self {
         let mut tree = Self {
             order: (0..boxes.len()).collect(),
             branches: Vec::new(),
@@ -35,7 +35,7 @@ impl<const D: usize> Tree<D> {
 
     /// Adds the branch of a range, and those of its halves.
     fn halve(&mut self, first: usize, last: usize) {
-        let join = |(low, high): Box<D>, &k: &usize| {
+        let join = |(low, high): Aabb<D>, &k: &usize| {
             let (l, h) = self.boxes[k];
             (
                 std::array::from_fn(|i| f64::min(low[i], l[i])),
@@ -67,7 +67,7 @@ impl<const D: usize> Tree<D> {
     }
 
     /// The boxes that overlap one, ascending.
-    pub(super) fn within(&self, target: &Box<D>) -> Vec<usize> {
+    pub(super) fn within(&self, target: &Aabb<D>) -> Vec<usize> {
         let mut found = Vec::new();
         let mut open = vec![0];
         while let Some(k) = open.pop() {
@@ -88,7 +88,7 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-fn overlap<const D: usize>(a: &Box<D>, b: &Box<D>) -> bool {
+fn overlap<const D: usize>(a: &Aabb<D>, b: &Aabb<D>) -> bool {
     (0..D).all(|i| a.0[i] <= b.1[i] && b.0[i] <= a.1[i])
 }
 
@@ -104,7 +104,7 @@ mod tests {
             low in prop::array::uniform2(0.0..10.0f64),
             size in 0.0..5.0f64,
         ) {
-            let boxes: Vec<Box<2>> = corners.iter().map(|(c, s)| (*c, c.map(|v| v + s))).collect();
+            let boxes: Vec<Aabb<2>> = corners.iter().map(|(c, s)| (*c, c.map(|v| v + s))).collect();
             let target = (low, low.map(|v| v + size));
             let all: Vec<usize> = (0..boxes.len()).filter(|&k| overlap(&boxes[k], &target)).collect();
             prop_assert_eq!(Tree::new(boxes).within(&target), all);

@@ -17,7 +17,7 @@ mod quadrature;
 mod validity;
 mod write;
 
-use moreau_mesh::{CellKind, Mesh};
+use moreau_mesh::{CellKind, Facet, Mesh};
 
 /// Rounding, relative to numbers of the order of 1.
 const ROUND_OFF: f64 = 1e-13;
@@ -46,4 +46,15 @@ fn kinds(dimension: usize) -> impl Iterator<Item = CellKind> {
     CellKind::ALL
         .into_iter()
         .filter(move |kind| kind.dimension() == dimension)
+}
+
+/// Σ w f(a) over weighted nodes.
+fn sum(weights: &[(usize, f64)], f: impl Fn(usize) -> f64) -> f64 {
+    weights.iter().map(|&(a, w)| w * f(a)).sum()
+}
+
+/// The facets of two groups.
+fn facets<const D: usize>(mesh: &Mesh<D>, names: [&str; 2]) -> Vec<Facet> {
+    let groups = names.map(|name| mesh.facet_group(name).expect("named"));
+    groups.concat()
 }

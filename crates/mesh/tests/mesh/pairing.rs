@@ -1,5 +1,6 @@
 //! Pairing of surfaces that do not match, straight and curved, wholly and partly covered.
 
+use super::{facets, sum};
 use moreau_mesh::{
     Axisymmetric, CellKind, Coupling, Hypothesis, Mesh, Pairing, PlaneStrain, block2, uniform,
 };
@@ -37,10 +38,6 @@ fn pair_under(
         pairing,
         hypothesis,
     )
-}
-
-fn sum(weights: &[(usize, f64)], f: impl Fn(usize) -> f64) -> f64 {
-    weights.iter().map(|&(a, w)| w * f(a)).sum()
 }
 
 const KINDS: [[CellKind; 2]; 4] = [
@@ -179,13 +176,9 @@ fn a_ring_meets_the_near_side_of_the_ring_within() {
     let mesh = outer
         .joined(ring("inner", 8, [1.0, 1.99]).expect("valid"))
         .expect("valid");
-    let group = |names: [&str; 2]| {
-        let one = |n: &str| mesh.facet_group(n).expect("named").to_vec();
-        [one(names[0]), one(names[1])].concat()
-    };
     let surfaces = (
-        group(["outer1.left", "outer2.left"]),
-        group(["inner1.right", "inner2.right"]),
+        facets(&mesh, ["outer1.left", "outer2.left"]),
+        facets(&mesh, ["inner1.right", "inner2.right"]),
     );
     for pairing in [Pairing::Mortar, Pairing::NodeToSurface] {
         let couplings = mesh.couplings(

@@ -1,5 +1,6 @@
 //! Pairing of surfaces in space that do not match, wholly and partly covered, flat and curved.
 
+use super::{facets, sum};
 use moreau_mesh::{CellKind, Coupling, Mesh, Pairing, Solid, block3, uniform};
 use std::collections::BTreeMap;
 
@@ -59,10 +60,6 @@ fn pair(mesh: &Mesh<3>, pairing: Pairing) -> Vec<Coupling<3>> {
         pairing,
         &Solid,
     )
-}
-
-fn sum(weights: &[(usize, f64)], f: impl Fn(usize) -> f64) -> f64 {
-    weights.iter().map(|&(a, w)| w * f(a)).sum()
 }
 
 const KINDS: [[CellKind; 2]; 9] = [
@@ -246,13 +243,9 @@ fn a_tube_meets_the_near_side_of_the_tube_within() {
     let mesh = tube("outer", 16, 4, [2.0, 3.0])
         .and_then(|outer| outer.joined(tube("inner", 13, 3, [1.0, 1.98])?))
         .expect("valid");
-    let group = |names: [&str; 2]| {
-        let one = |n: &str| mesh.facet_group(n).expect("named").to_vec();
-        [one(names[0]), one(names[1])].concat()
-    };
     let surfaces = (
-        group(["outer1.left", "outer2.left"]),
-        group(["inner1.right", "inner2.right"]),
+        facets(&mesh, ["outer1.left", "outer2.left"]),
+        facets(&mesh, ["inner1.right", "inner2.right"]),
     );
     for pairing in [Pairing::Mortar, Pairing::NodeToSurface] {
         let couplings = mesh.couplings(mesh.nodes(), (&surfaces.0, &surfaces.1), pairing, &Solid);

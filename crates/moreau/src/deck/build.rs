@@ -13,8 +13,7 @@ use super::entries::{Analysis, Deck, Method};
 use super::finding::{Class, Findings};
 use crate::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
 use crate::driver::{
-    Analysis as Cells, Driver, Increments, LeastGap, ModelError, Nesting, RigidMotion, Settings,
-    Step, Support,
+    self, Driver, Increments, LeastGap, ModelError, Nesting, RigidMotion, Settings, Step, Support,
 };
 use crate::mesh::{Axisymmetric, CellKind, Mesh, PlaneStrain, Solid};
 use groups::Groups;
@@ -128,7 +127,7 @@ pub(super) fn build(deck: &mut Deck, findings: &mut Findings) -> Option<Problem>
     }
 }
 
-fn setup<const D: usize, H: Cells<D>>(
+fn setup<const D: usize, H: driver::Analysis<D>>(
     deck: &mut Deck,
     mesh: Option<Mesh<D>>,
     hypothesis: H,

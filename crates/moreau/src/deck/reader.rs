@@ -53,6 +53,12 @@ impl<'a> Table<'a> {
         self.table.get(key)
     }
 
+    /// The values of those among some keys that are there.
+    pub(super) fn given(&self, keys: &[&'static str]) -> Vec<(&'static str, Value<'a>)> {
+        let value = |&key| Some((key, self.get(key)?));
+        keys.iter().filter_map(value).collect()
+    }
+
     /// The value of a key that must be there.
     pub(super) fn need(&self, key: &'static str, expected: &str) -> Option<Value<'a>> {
         let value = self.get(key);

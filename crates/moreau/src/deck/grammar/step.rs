@@ -127,10 +127,7 @@ fn load(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
     const KINDS: [&str; 4] = ["pressure", "traction", "force", "body-force"];
     let log = table.log();
     let on = table.text("on");
-    let given: Vec<_> = KINDS
-        .iter()
-        .filter_map(|key| Some((*key, table.get(key)?)))
-        .collect();
+    let given = table.given(&KINDS);
     let [(key, value)] = given[..] else {
         log.borrow_mut().error(
             &table.span,

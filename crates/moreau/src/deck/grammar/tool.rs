@@ -31,10 +31,7 @@ fn shape(table: &Table<'_>, analysis: Analysis) -> Option<At<Shape>> {
     let dimension = analysis.dimension();
     let inside = table.boolean_if("inside");
     let hollow = inside.as_ref().is_some_and(|i| i.value);
-    let given: Vec<_> = SHAPES
-        .iter()
-        .filter_map(|key| Some((*key, table.get(key)?)))
-        .collect();
+    let given = table.given(&SHAPES);
     let [(key, value)] = given[..] else {
         log.borrow_mut().error(
             &table.span,
