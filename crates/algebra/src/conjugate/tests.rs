@@ -246,6 +246,42 @@ fn iterations_lead_to_the_direct_solution_and_are_few_on_any_grid() {
     assert!(counts[3] <= counts[1] + 2, "{counts:?}");
 }
 
+/// Without a coarse space sweeps alone precondition, badly: directions that are conjugate need no more steps than the
+/// Chebyshev bound on the spectrum says, those of steepest descent some hundred.
+#[test]
+fn directions_are_conjugate() {
+    let n = 15;
+    let (matrix, _) = grid(n, 0);
+    let none = vec![Vec::<(u32, f64)>::new(); n * n];
+    let space = CoarseSpace::new(&matrix.pattern, 0, none).expect("fits");
+    let mut engine = engine::<Cholesky>(&space);
+    let stop = Stop {
+        part: 1e-10,
+        limit: 400,
+    };
+    let mut iteration = ConjugateGradients {
+        matrix: &matrix,
+        space: &space,
+        engine: &mut engine,
+        interface: Interface::Free,
+        stop,
+    };
+    let mut room = vec![0.0; n * n];
+    let operator = dense(n * n, |r| {
+        let mut z = vec![0.0; n * n];
+        iteration.precondition(r, &mut z, &mut room).expect("fits");
+        z
+    });
+    let root = dense_matrix(&matrix).cholesky().expect("definite").l();
+    let spectrum = (root.transpose() * operator * root).symmetric_eigenvalues();
+    let condition = spectrum.max() / spectrum.min();
+    assert!(condition > 10.0, "{condition}");
+    let bound = 0.5 * condition.sqrt() * (2.0 * condition.sqrt() / stop.part).ln() + 1.0;
+    let f: Vec<f64> = (0..n * n).map(|k| (k as f64).sin() + 0.2).collect();
+    let count = iteration.improve(&f, &mut vec![0.0; n * n]).expect("fits");
+    assert!((count as f64) < bound, "{count} {bound}");
+}
+
 /// An interface that is held, and one on springs to the ground, against dense algebra.
 #[test]
 fn an_interface_stays_or_yields_as_it_is_told() {

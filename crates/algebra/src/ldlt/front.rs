@@ -435,3 +435,32 @@ pub(super) fn inverse(a: f64, b: f64, c: f64) -> [f64; 3] {
     let scale = 1.0 / ((a * c - 1.0) * b);
     [c * scale, -scale, a * scale]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two columns of which the second follows from the first: no pivot together, and one alone.
+    #[test]
+    fn columns_that_cancel_are_no_pivot_together() {
+        let (a, c) = (0.9e-4, 1.0f64);
+        let b = (a * c).sqrt();
+        for by in [1.0 - 1e-16, 1.0, 1.0 + 3e-16] {
+            let mut front = Front {
+                index: vec![0, 1],
+                ..Front::default()
+            };
+            front.begin(2);
+            front.entries.copy_from_slice(&[a, b * by, f64::NAN, c]);
+            let mut known = Pivots::of(2);
+            front.eliminate(false, &mut known, (Par::Seq, Arch::new()));
+            let expected = Inertia {
+                positive: 1,
+                negative: 0,
+                zero: 1,
+            };
+            assert_eq!((known.inertia, known.zero), (expected, Some(0)));
+            assert_eq!(known.least, c);
+        }
+    }
+}
