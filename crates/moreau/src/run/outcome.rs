@@ -384,10 +384,30 @@ impl Outcome {
 
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let units = self.units;
         if !self.title.is_empty() {
             writeln!(f, "{}", self.title)?;
         }
+        self.write_status(f)?;
+        self.write_effort(f)?;
+        if self.increments > 0 {
+            self.write_mechanics(f)?;
+        }
+        if let Some((step, collapse)) = &self.collapse {
+            writeln!(f, "  limit load    step \"{step}\": {collapse}")?;
+        }
+        self.write_values(f)?;
+        if let Some(diagnosis) = &self.diagnosis {
+            write!(f, "{diagnosis}")?;
+        }
+        for warning in &self.warnings {
+            writeln!(f, "  warning: {warning}")?;
+        }
+        Ok(())
+    }
+}
+
+impl Outcome {
+    fn write_status(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let status = match &self.status {
             RunStatus::Done => "done".to_owned(),
             RunStatus::Refused(error) => format!("refused: {error}"),
@@ -400,7 +420,10 @@ impl fmt::Display for Outcome {
             1 => ", with a warning below",
             _ => ", with warnings below",
         };
-        writeln!(f, "  status        {status}{warned}")?;
+        writeln!(f, "  status        {status}{warned}")
+    }
+
+    fn write_effort(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let counted = |count: usize, what: &str| match count {
             0 => String::new(),
             some => format!(" and {some} {what}"),
@@ -419,42 +442,46 @@ impl fmt::Display for Outcome {
             self.seconds,
             self.threads,
             self.dofs
+        )
+    }
+
+    /// Contacts, energies and the certificate.
+    fn write_mechanics(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (units, e) = (self.units, &self.energies);
+        let [open, stick, slip] = self.contacts;
+        let energy = units.energy();
+        writeln!(f, "  contact       {open} open, {stick} stick, {slip} slip")?;
+        writeln!(
+            f,
+            "  energy        external {} {energy} = stored {} + plastic {} + friction {} + \
+             springs {} + imbalance {}",
+            shown(e.external_work, 7),
+            shown(e.stored, 7),
+            shown(e.plastic_dissipation, 7),
+            shown(e.friction_dissipation, 7),
+            shown(e.penalty, 4),
+            shown(e.imbalance(), 4)
         )?;
-        if self.increments > 0 {
-            let e = &self.energies;
-            let [open, stick, slip] = self.contacts;
-            let energy = units.energy();
-            writeln!(f, "  contact       {open} open, {stick} stick, {slip} slip")?;
-            writeln!(
-                f,
-                "  energy        external {} {energy} = stored {} + plastic {} + friction {} + \
-                 springs {} + imbalance {}",
-                shown(e.external_work, 7),
-                shown(e.stored, 7),
-                shown(e.plastic_dissipation, 7),
-                shown(e.friction_dissipation, 7),
-                shown(e.penalty, 4),
-                shown(e.imbalance(), 4)
-            )?;
-            writeln!(
-                f,
-                "  certificate   bipotential gap {:.2e} {energy} ({:.1e} of the work), penetration \
-                 {:.1e} {}, force outside the cone {:.1e} {}",
-                self.certificate.bipotential_gap,
-                self.relative_gap,
-                self.certificate.penetration,
-                units.length(),
-                self.certificate.excess_force,
-                units.force()
-            )?;
-        }
-        if let Some((step, collapse)) = &self.collapse {
-            writeln!(f, "  limit load    step \"{step}\": {collapse}")?;
-        }
+        writeln!(
+            f,
+            "  certificate   bipotential gap {:.2e} {energy} ({:.1e} of the work), penetration \
+             {:.1e} {}, force outside the cone {:.1e} {}",
+            self.certificate.bipotential_gap,
+            self.relative_gap,
+            self.certificate.penetration,
+            units.length(),
+            self.certificate.excess_force,
+            units.force()
+        )
+    }
+
+    /// Values at the end, and those that were expected.
+    fn write_values(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (name, value) in &self.values {
-            let unit = match name.starts_with("force.") {
-                true => units.force(),
-                false => units.length(),
+            let unit = if name.starts_with("force.") {
+                self.units.force()
+            } else {
+                self.units.length()
             };
             writeln!(f, "  {name:<24} {:>16} {unit}", shown(*value, 9))?;
         }
@@ -468,12 +495,6 @@ impl fmt::Display for Outcome {
                 shown(v.tolerance, 3),
                 shown(v.found, 9)
             )?;
-        }
-        if let Some(diagnosis) = &self.diagnosis {
-            write!(f, "{diagnosis}")?;
-        }
-        for warning in &self.warnings {
-            writeln!(f, "  warning: {warning}")?;
         }
         Ok(())
     }

@@ -61,7 +61,7 @@ fn laws_of_every_kind_are_built_and_echoed() {
 }
 
 #[test]
-fn laws_that_are_none_are_pointed_at() {
+fn hardening_that_is_none_is_pointed_at() {
     let hardening = [
         (
             "{ voce = [150.0] }",
@@ -98,6 +98,10 @@ fn laws_that_are_none_are_pointed_at() {
         let to = format!("300.0\nhardening = {law}");
         says("300.0", &to, "hardening =", &[message]);
     }
+}
+
+#[test]
+fn kinematic_hardening_that_is_none_is_pointed_at() {
     let term = "{ modulus = 1.0, recall = 2.0 }";
     let terms = [
         (
@@ -118,6 +122,16 @@ fn laws_that_are_none_are_pointed_at() {
         let to = format!("300.0\nkinematic = [ {terms} ]");
         says("300.0", &to, "kinematic =", &[message]);
     }
+    says(
+        "yield-stress = 300.0",
+        "kinematic = [ { modulus = 1.0 } ]",
+        "kinematic =",
+        &["given without a yield-stress"],
+    );
+}
+
+#[test]
+fn friction_that_is_none_is_pointed_at() {
     for (law, message) in [
         ("{ tresca = -5.0 }", "friction limit must be non-negative"),
         (
@@ -138,12 +152,6 @@ fn laws_that_are_none_are_pointed_at() {
         let to = format!("friction = {law}");
         says("friction = 0.1", &to, "friction =", &[message]);
     }
-    says(
-        "yield-stress = 300.0",
-        "kinematic = [ { modulus = 1.0 } ]",
-        "kinematic =",
-        &["given without a yield-stress"],
-    );
 }
 
 /// A soil has a cohesion and angles, which belong together and have ranges.

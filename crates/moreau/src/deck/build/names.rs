@@ -18,69 +18,7 @@ pub(super) fn check<const D: usize>(
     groups: Option<&Groups<D>>,
     findings: &mut Findings,
 ) {
-    let mut used = BTreeSet::new();
-    let tools = &deck.tool_names;
-    for material in &deck.materials {
-        group(
-            &material.on,
-            Needed::Cells,
-            tools,
-            groups,
-            &mut used,
-            findings,
-        );
-    }
-    for contact in &deck.contacts {
-        group(
-            &contact.surface,
-            Needed::Facets,
-            tools,
-            groups,
-            &mut used,
-            findings,
-        );
-        opposite(&contact.against, deck, groups, &mut used, findings);
-    }
-    for step in &deck.steps {
-        for condition in &step.conditions {
-            match condition.action {
-                Action::Tool(_) | Action::Push(..) => {
-                    tool(&condition.on, deck, &mut used, findings)
-                }
-                Action::Fix(_) | Action::Move(_) | Action::Force(_) => {
-                    group(
-                        &condition.on,
-                        Needed::Nodes,
-                        tools,
-                        groups,
-                        &mut used,
-                        findings,
-                    );
-                }
-                Action::Pressure(_) | Action::Traction(_) => {
-                    group(
-                        &condition.on,
-                        Needed::Facets,
-                        tools,
-                        groups,
-                        &mut used,
-                        findings,
-                    );
-                }
-                Action::BodyForce(_) => {
-                    group(
-                        &condition.on,
-                        Needed::Cells,
-                        tools,
-                        groups,
-                        &mut used,
-                        findings,
-                    );
-                }
-            }
-        }
-    }
-    used.extend(deck.groups.iter().map(|g| g.on.value.clone()));
+    let used = used(deck, groups, findings);
     for entry in &deck.groups {
         if !used.contains(&entry.name.value) && findings.errors() == 0 {
             let message = format!("no condition uses the group \"{}\"", entry.name.value);
@@ -89,16 +27,53 @@ pub(super) fn check<const D: usize>(
     }
     idle_names(deck, groups, &used, findings);
     for entry in &deck.tools {
-        let touched = deck
-            .contacts
-            .iter()
-            .any(|c| c.against.value == entry.name.value);
+        let mut contacts = deck.contacts.iter();
+        let touched = contacts.any(|c| c.against.value == entry.name.value);
         if !touched && findings.errors() == 0 {
             let message = format!("no [[contact]] uses the tool \"{}\"", entry.name.value);
             findings.warning(&entry.name.span, message, "touches nothing");
         }
     }
     twice(deck, groups, findings);
+}
+
+/// Names that materials, contacts, conditions and groups use; errors for those that are not what is
+/// needed there.
+fn used<const D: usize>(
+    deck: &Deck,
+    groups: Option<&Groups<D>>,
+    findings: &mut Findings,
+) -> BTreeSet<String> {
+    let mut used = BTreeSet::new();
+    let tools = &deck.tool_names;
+    for material in &deck.materials {
+        let on = &material.on;
+        group(on, Needed::Cells, tools, groups, &mut used, findings);
+    }
+    for contact in &deck.contacts {
+        let on = &contact.surface;
+        group(on, Needed::Facets, tools, groups, &mut used, findings);
+        opposite(&contact.against, deck, groups, &mut used, findings);
+    }
+    for condition in deck.steps.iter().flat_map(|step| &step.conditions) {
+        let on = &condition.on;
+        match needed(&condition.action) {
+            Some(needed) => group(on, needed, tools, groups, &mut used, findings),
+            None => tool(on, deck, &mut used, findings),
+        }
+    }
+    used.extend(deck.groups.iter().map(|g| g.on.value.clone()));
+    used
+}
+
+/// What the group of a condition must hold; `None` where the condition is on a tool.
+fn needed(action: &Action) -> Option<Needed> {
+    match action {
+        Action::Tool(_) | Action::Push(..) => None,
+        Action::Fix(_) | Action::Move(_) | Action::Force(_) => Some(Needed::Nodes),
+        Action::Pressure(_) | Action::Traction(_) => Some(Needed::Facets),
+        Action::BodyForce(_) => Some(Needed::Cells),
+    }
 }
 
 /// Groups of the mesh file that nothing uses, in one warning.
