@@ -543,6 +543,20 @@ fn newton_treats_a_body_that_only_contact_holds() {
     for t in &solution.force {
         assert!((t - Local::<2>::new(10.0, -1.0)).norm() < 1e-10);
     }
+    // From above the ground, where nothing holds it, it is started again with all contacts closed.
+    let above = vec![Local::<2>::new(0.01, 0.0); 2];
+    let (s, load) = (
+        problem.stiffness().clone(),
+        DVector::from_row_slice(&[-10.0, 1.0, -10.0, 1.0]),
+    );
+    let law = vec![Coulomb::new(0.3).expect("valid"); 2];
+    let falling = ContactProblem::new(s, load, above, law, vec![Local::zeros(); 2]).expect("valid");
+    let landed = SemismoothNewton::default()
+        .solve(&falling, None)
+        .expect("solvable");
+    for (u, t) in landed.displacement.iter().zip(&landed.force) {
+        assert!(u[0].abs() < 1e-14 && (t - Local::<2>::new(10.0, -1.0)).norm() < 1e-10);
+    }
     let refused = Uzawa::default().solve(&problem, None);
     assert!(matches!(refused, Err(ContactError::Floating { .. })));
 }
@@ -648,12 +662,10 @@ fn a_tolerance_that_cannot_be_met_is_an_error_with_numbers() {
     }
 }
 
-/// A chain of stiff springs on soft ones, far from where it was linearised, all but its ends in the air:
-/// forces there are none only to the rounding of 10¹⁰ N/mm on positions of 10³ mm, and not even that is
-/// to be had at all nodes at once.
-#[test]
-fn forces_far_from_the_origin_are_solved_for_to_their_rounding() {
-    let n = 8;
+/// A chain of stiff springs on soft ones, far from where it was linearised: its nodes over tools at given
+/// heights.
+fn chain(tools: &[f64]) -> ContactProblem<2> {
+    let n = tools.len();
     let normal = |i: usize| 2 * i;
     let mut s = DMatrix::<f64>::identity(2 * n, 2 * n);
     for i in 0..n - 1 {
@@ -667,18 +679,56 @@ fn forces_far_from_the_origin_are_solved_for_to_their_rounding() {
             s[(normal(a), normal(b))] += k;
         }
     }
+    let origin = tools.iter().map(|&g| Local::<2>::new(-g, 0.0)).collect();
+    let law = vec![Coulomb::new(0.3).expect("valid"); n];
+    let zero = vec![Local::zeros(); n];
+    ContactProblem::new(s, DVector::zeros(2 * n), origin, law, zero).expect("valid")
+}
+
+/// One end pressed, all else in the air: methods on W end at the rounding of 10¹⁰ N/mm on positions of
+/// 10³ mm, which is far above their tolerance.
+#[test]
+fn methods_on_the_compliance_end_at_the_rounding_of_positions() {
+    let methods: [Box<dyn ContactSolver<2>>; 3] = [
+        Box::new(GaussSeidel::default()),
+        Box::new(Uzawa::default()),
+        Box::new(Dual(Auto::default())),
+    ];
+    for solver in methods {
+        let mut rounded = 0;
+        for height in (0..20).map(|k| 1000.1 + 0.377 * f64::from(k)) {
+            let problem = chain(&[height, 999.0, 999.0, 999.0]);
+            let solution = solver.solve(&problem, None).expect("solvable");
+            let pressed = solution.force[0][0];
+            assert!(
+                (pressed / (4.0 * height) - 1.0).abs() < 1e-5,
+                "{solver:?}: {pressed}"
+            );
+            rounded += usize::from(solution.residual > 1e-10 * pressed);
+        }
+        assert!(
+            rounded > 0,
+            "{solver:?}: the tolerance was met all the time"
+        );
+    }
+}
+
+/// All but the ends in the air: forces there are none only to the rounding of 10¹⁰ N/mm on positions of
+/// 10³ mm, and not even that is to be had at all nodes at once.
+#[test]
+fn forces_far_from_the_origin_are_solved_for_to_their_rounding() {
+    let n = 8;
+    let normal = |i: usize| 2 * i;
     let tools: Vec<f64> = (0..n)
         .map(|i| match i {
             0 | 7 => 1000.1,
             _ => 999.0,
         })
         .collect();
-    let origin: Vec<_> = tools.iter().map(|&g| Local::<2>::new(-g, 0.0)).collect();
-    let law = vec![Coulomb::new(0.3).expect("valid"); n];
-    let zero = vec![Local::zeros(); n];
-    let problem = ContactProblem::new(s.clone(), DVector::zeros(2 * n), origin, law, zero);
+    let problem = chain(&tools);
+    let s = problem.stiffness();
     let solution = SemismoothNewton::default()
-        .solve(&problem.expect("valid"), None)
+        .solve(&problem, None)
         .expect("solvable");
     assert!(solution.iterations < 10, "{}", solution.iterations);
     let inner = DMatrix::from_fn(n - 2, n - 2, |i, j| s[(normal(i + 1), normal(j + 1))]);

@@ -335,4 +335,22 @@ mod tests {
             assert_eq!(softened.compliance(i), problem.compliance(i));
         }
     }
+
+    /// The quick reading of the residual is the residual, also where forces run away from the load.
+    #[test]
+    fn the_size_of_a_residual_is_read_alike() {
+        let w = BlockMatrix::from_dense(&DMatrix::identity(4, 4));
+        let q = vec![Local::<2>::new(-1.0, 0.2), Local::<2>::new(0.3, -0.4)];
+        let laws = vec![Coulomb::new(0.3).expect("valid"); 2];
+        let problem = LocalProblem::new(w, q, laws).expect("valid");
+        for far in [0.0, 1.0, 1e6, 1e12] {
+            let r = [Local::<2>::new(far, 0.5), Local::<2>::new(2.0, -0.5)];
+            let u = problem.displacement(&r);
+            let residual = problem.residual(&r, &u);
+            assert!((problem.size(&r, &u) / residual.size() - 1.0).abs() < 1e-14);
+            if far > 1e6 {
+                assert!(residual.size() > 1e3 * residual.scaled);
+            }
+        }
+    }
 }
