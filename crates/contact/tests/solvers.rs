@@ -2,8 +2,8 @@
 
 use moreau_contact::{
     Admm, Auto, BlockMatrix, ContactError, ContactProblem, ContactSolution, ContactSolver, Dual,
-    GaussSeidel, LocalProblem, NewtonMap, Penalty, ProximalNewton, SemismoothNewton,
-    TrescaFixedPoint, Uzawa,
+    GaussSeidel, LocalProblem, Newton, NewtonMap, Penalty, ProximalNewton, SemismoothNewton,
+    TrescaFixedPoint, Uzawa, uzawa_steps,
 };
 use moreau_laws::textbook::RegularisedCoulomb;
 use moreau_laws::{
@@ -191,6 +191,17 @@ fn the_critical_friction_of_a_contact_is_that_of_its_compliance() {
         assert!((found - expected).abs() < 1e-14, "{found} {expected}");
         assert_eq!(problem.criticality(&[Status::Open]), None);
     }
+    // Of an anisotropic law between stretched vectors.
+    let m = [1.0, 0.5, 1.0];
+    let w = |k: usize, l: usize| [1.0, 0.2, -0.1, 0.2, 0.8, 0.05, -0.1, 0.05, 0.6][3 * k + l];
+    let stretched = DMatrix::from_fn(3, 3, |k, l| m[k] * w(k, l) * m[l]);
+    let q = [Local::<3>::zeros()];
+    let law = AnisotropicCoulomb::new(0.3, 0.6).expect("valid").into();
+    let anisotropic = under(DMatrix::from_fn(3, 3, w), &q, law).criticality(&[Status::Stick]);
+    let (_, expected) =
+        (problem(stretched, &q, 0.6).criticality(&[Status::Stick])).expect("closed");
+    let (_, found) = anisotropic.expect("closed");
+    assert!((found - expected).abs() < 1e-14, "{found} {expected}");
     check::<2>(&[4.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0, 4.0 / 3.0], 3.0);
     check::<3>(&[1.0, 0.2, -0.1, 0.2, 0.8, 0.05, -0.1, 0.05, 0.6], 0.9);
 }
@@ -549,6 +560,20 @@ fn newton_treats_a_body_that_only_contact_holds() {
     for t in &solution.force {
         assert!((t - Local::<2>::new(10.0, -1.0)).norm() < 1e-10);
     }
+    // From above the ground, where nothing holds it, it is started again with all contacts closed.
+    let above = vec![Local::<2>::new(0.01, 0.0); 2];
+    let (s, load) = (
+        problem.stiffness().clone(),
+        DVector::from_row_slice(&[-10.0, 1.0, -10.0, 1.0]),
+    );
+    let law = vec![Coulomb::new(0.3).expect("valid"); 2];
+    let falling = ContactProblem::new(s, load, above, law, vec![Local::zeros(); 2]).expect("valid");
+    let landed = SemismoothNewton::default()
+        .solve(&falling, None)
+        .expect("solvable");
+    for (u, t) in landed.displacement.iter().zip(&landed.force) {
+        assert!(u[0].abs() < 1e-14 && (t - Local::<2>::new(10.0, -1.0)).norm() < 1e-10);
+    }
     let refused = Uzawa::default().solve(&problem, None);
     assert!(matches!(refused, Err(ContactError::Floating { .. })));
 }
@@ -580,6 +605,27 @@ fn a_solution_is_as_good_as_was_asked() {
             "{solver:?}: {saved}"
         );
     }
+}
+
+/// Newton's method in space, where slip turns, has steps to save, and is as good in the common measure
+/// whatever α it iterates with.
+#[test]
+fn newton_in_space_stops_where_it_is_enough() {
+    let entries: Vec<f64> = (0..997).map(|k| ((k * k) as f64 * 0.37).sin()).collect();
+    let newton = SemismoothNewton::default();
+    let (mut whole, mut part) = (0, 0);
+    for case in 0..20 {
+        let free = |i: usize| Local::<3>::new(-0.5, entries[case + i], entries[2 * case + 5 * i]);
+        let q: Vec<_> = (0..4).map(free).collect();
+        let problem = problem(definite(12, &entries[17 * case..]), &q, 0.3);
+        whole += newton.solve(&problem, None).expect("solvable").iterations;
+        for enough in [1e-2, 1e-1] {
+            let early = newton.approach(&problem, None, enough).expect("solvable");
+            assert!(early.residual <= enough, "{case}: {}", early.residual);
+            part += early.iterations;
+        }
+    }
+    assert!(4 * part < 7 * whole, "{part} of {whole}");
 }
 
 /// The same of the methods for the local form, which measure residuals otherwise: they are asked again
@@ -633,12 +679,10 @@ fn a_tolerance_that_cannot_be_met_is_an_error_with_numbers() {
     }
 }
 
-/// A chain of stiff springs on soft ones, far from where it was linearised, all but its ends in the air:
-/// forces there are none only to the rounding of 10¹⁰ N/mm on positions of 10³ mm, and not even that is
-/// to be had at all nodes at once.
-#[test]
-fn forces_far_from_the_origin_are_solved_for_to_their_rounding() {
-    let n = 8;
+/// A chain of stiff springs on soft ones, far from where it was linearised: its nodes over tools at given
+/// heights.
+fn chain(tools: &[f64]) -> ContactProblem<2> {
+    let n = tools.len();
     let normal = |i: usize| 2 * i;
     let mut s = DMatrix::<f64>::identity(2 * n, 2 * n);
     for i in 0..n - 1 {
@@ -652,18 +696,56 @@ fn forces_far_from_the_origin_are_solved_for_to_their_rounding() {
             s[(normal(a), normal(b))] += k;
         }
     }
+    let origin = tools.iter().map(|&g| Local::<2>::new(-g, 0.0)).collect();
+    let law = vec![Coulomb::new(0.3).expect("valid"); n];
+    let zero = vec![Local::zeros(); n];
+    ContactProblem::new(s, DVector::zeros(2 * n), origin, law, zero).expect("valid")
+}
+
+/// One end pressed, all else in the air: methods on W end at the rounding of 10¹⁰ N/mm on positions of
+/// 10³ mm, which is far above their tolerance.
+#[test]
+fn methods_on_the_compliance_end_at_the_rounding_of_positions() {
+    let methods: [Box<dyn ContactSolver<2>>; 3] = [
+        Box::new(GaussSeidel::default()),
+        Box::new(Uzawa::default()),
+        Box::new(Dual(Auto::default())),
+    ];
+    for solver in methods {
+        let mut rounded = 0;
+        for height in (0..20).map(|k| 1000.1 + 0.377 * f64::from(k)) {
+            let problem = chain(&[height, 999.0, 999.0, 999.0]);
+            let solution = solver.solve(&problem, None).expect("solvable");
+            let pressed = solution.force[0][0];
+            assert!(
+                (pressed / (4.0 * height) - 1.0).abs() < 1e-5,
+                "{solver:?}: {pressed}"
+            );
+            rounded += usize::from(solution.residual > 1e-10 * pressed);
+        }
+        assert!(
+            rounded > 0,
+            "{solver:?}: the tolerance was met all the time"
+        );
+    }
+}
+
+/// All but the ends in the air: forces there are none only to the rounding of 10¹⁰ N/mm on positions of
+/// 10³ mm, and not even that is to be had at all nodes at once.
+#[test]
+fn forces_far_from_the_origin_are_solved_for_to_their_rounding() {
+    let n = 8;
+    let normal = |i: usize| 2 * i;
     let tools: Vec<f64> = (0..n)
         .map(|i| match i {
             0 | 7 => 1000.1,
             _ => 999.0,
         })
         .collect();
-    let origin: Vec<_> = tools.iter().map(|&g| Local::<2>::new(-g, 0.0)).collect();
-    let law = vec![Coulomb::new(0.3).expect("valid"); n];
-    let zero = vec![Local::zeros(); n];
-    let problem = ContactProblem::new(s.clone(), DVector::zeros(2 * n), origin, law, zero);
+    let problem = chain(&tools);
+    let s = problem.stiffness();
     let solution = SemismoothNewton::default()
-        .solve(&problem.expect("valid"), None)
+        .solve(&problem, None)
         .expect("solvable");
     assert!(solution.iterations < 10, "{}", solution.iterations);
     let inner = DMatrix::from_fn(n - 2, n - 2, |i, j| s[(normal(i + 1), normal(j + 1))]);
@@ -707,6 +789,74 @@ fn springs_of_any_stiffness_take_a_handful_of_iterations() {
         let soft = solution.displacement.iter().zip(&solution.force);
         for (u, t) in soft.filter(|_| k <= 1.0) {
             assert!((t[0] - pressed(u)).abs() <= 1e-6 * k, "{k:e}: {u} {t}");
+        }
+        for (normal, tangent) in [(k, 1.0), (1.0, k), (k, 1e6), (1e6, k)] {
+            let unlike = Penalty::new(normal, tangent).expect("valid");
+            let iterations = unlike.solve(&problem, None).expect("converges").iterations;
+            assert!(iterations <= 12, "{normal:e}, {tangent:e}: {iterations}");
+        }
+    }
+}
+
+/// Contacts in units of their own, powers of two, which round nothing: line searches on an energy weigh stiff
+/// and soft contacts alike, so that Newton's methods take the same steps.
+#[test]
+fn contacts_of_unlike_stiffness_weigh_alike() {
+    let entries: Vec<f64> = (0..997).map(|k| ((k * k) as f64 * 0.37).sin()).collect();
+    let n = 12;
+    let (mut steps, mut off) = (0, [0; 2]);
+    for case in 0..40 {
+        let w = definite(n, &entries[13 * case..]);
+        let unit = |i: usize| 2f64.powi([5, -4, 0, 3][i]);
+        let scaled = DMatrix::from_fn(n, n, |k, l| w[(k, l)] * unit(k / 3) * unit(l / 3));
+        let free = |i: usize| {
+            let q = |k: usize| entries[500 + 3 * case + 7 * i + k];
+            Local::<3>::new(q(0) - 0.4, q(1), q(2))
+        };
+        let q: Vec<_> = (0..4).map(free).collect();
+        let own: Vec<_> = (0..4).map(|i| free(i) * unit(i)).collect();
+        let (plain, scaled) = (problem(w, &q, 1.0), problem(scaled, &own, 1.0));
+        for (solver, off) in newton_methods().iter().zip(&mut off) {
+            let taken = |problem| solver.solve(problem, None).map(|s| s.iterations).ok();
+            let (a, b) = (taken(&plain), taken(&scaled));
+            steps += a.unwrap_or(0);
+            *off += a.unwrap_or(50).abs_diff(b.unwrap_or(50));
+        }
+    }
+    // Few differ, by what the last step leaves: 16 and 7 steps of 405. With squares of forces it is 95 and 139.
+    assert!(steps > 300, "hardly anything was nonlinear: {steps}");
+    assert!(off.iter().all(|off| *off <= 40), "{off:?} of {steps}");
+}
+
+fn newton_methods() -> [Box<dyn ContactSolver<3>>; 2] {
+    [
+        Box::new(SemismoothNewton::default()),
+        Box::new(Dual(Newton::default())),
+    ]
+}
+
+/// Uzawa's steps against the eigenvalues that they bound: α W contracts with every contact in its own scale.
+#[test]
+fn uzawa_steps_follow_the_largest_eigenvalue_and_the_slope() {
+    let entries: Vec<f64> = (0..229).map(|k| ((k * k) as f64 * 0.37).sin()).collect();
+    for (n, mu) in [(3, 0.0), (3, 0.8), (12, 0.0), (12, 0.8)] {
+        let unit = |k: usize| 10f64.powi((k / 3) as i32);
+        let w = definite(n, &entries);
+        let w = DMatrix::from_fn(n, n, |k, l| w[(k, l)] * unit(k) * unit(l));
+        let q = vec![Local::<3>::zeros(); n / 3];
+        let steps = uzawa_steps(&problem(w.clone(), &q, mu)).expect("definite");
+        let root = |k: usize| steps[k / 3].sqrt();
+        let scaled = DMatrix::from_fn(n, n, |k, l| root(k) * w[(k, l)] * root(l));
+        let largest = scaled.symmetric_eigenvalues().max();
+        let expected = 1.0 / (1.05 * 1f64.hypot(mu));
+        assert!(
+            (largest / expected - 1.0).abs() < 1e-2,
+            "{largest} {expected}"
+        );
+        // The mean of the diagonal block is 1/α of a contact up to a factor that all share.
+        let mean = |i: usize| (0..3).map(|k| w[(3 * i + k, 3 * i + k)]).sum::<f64>() * steps[i];
+        for i in 0..n / 3 {
+            assert!((mean(i) / mean(0) - 1.0).abs() < 1e-9);
         }
     }
 }

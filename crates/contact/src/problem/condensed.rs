@@ -265,6 +265,25 @@ mod tests {
         assert!((back[0] - t).norm() < 1e-14);
     }
 
+    /// What is measured in newtons, by its definition.
+    #[test]
+    fn the_measures_are_mean_stiffness_and_largest_force() {
+        let s = DMatrix::from_diagonal(&DVector::from_row_slice(&[3.0, 1.0, 8.0, 2.0]));
+        let f = DVector::from_row_slice(&[0.5, -7.0, 0.0, 0.1]);
+        let zero = vec![Local::<2>::zeros(); 2];
+        let before = vec![Local::<2>::new(3.0, 4.0), Local::zeros()];
+        let problem = ContactProblem::new(s, f, zero.clone(), vec![coulomb(0.3); 2], before);
+        let problem = problem.expect("valid");
+        assert_eq!((problem.alpha(0), problem.alpha(1)), (2.0, 5.0));
+        assert_eq!(problem.force_scale(&zero), 7.0);
+        let now = [Local::<2>::new(0.0, 0.0), Local::<2>::new(6.0, 8.0)];
+        assert_eq!(problem.force_scale(&now), 10.0);
+        // A gap of 0.1 mm beside a force is α times that, as long as the force is larger.
+        let (u, t) = (Local::<2>::new(0.1, 0.0), Local::<2>::new(4.0, 0.0));
+        let residual = problem.residual(&[u, zero[0]], &[t, zero[0]]);
+        assert!((residual - 0.2).abs() < 1e-15, "{residual}");
+    }
+
     #[test]
     fn bad_data_is_refused() {
         let s = DMatrix::identity(2, 2);

@@ -300,3 +300,57 @@ fn spectral_norm<const D: usize>(block: &SMatrix<f64, D, D>) -> f64 {
     let entry = |i, j| if i < D && j < D { block[(i, j)] } else { 0.0 };
     Matrix3::from_fn(entry).singular_values().max()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moreau_laws::Coulomb;
+
+    #[test]
+    fn springs_in_series_are_part_of_the_compliance() {
+        let w = DMatrix::from_row_slice(
+            4,
+            4,
+            &[
+                2.0, 0.1, 0.5, 0.0, 0.1, 3.0, 0.0, 0.2, 0.5, 0.0, 2.5, 0.3, 0.0, 0.2, 0.3, 1.5,
+            ],
+        );
+        let q = vec![Local::<2>::new(-1.0, 0.2), Local::<2>::new(0.3, -0.4)];
+        let laws = vec![Coulomb::new(0.3).expect("valid"); 2];
+        let problem =
+            LocalProblem::new(BlockMatrix::from_dense(&w), q.clone(), laws).expect("valid");
+        let springs = [0.5, 2.0].map(|c| Springs {
+            compliance: Local::<2>::new(c, 0.1),
+            force: Local::<2>::new(1.0, -2.0 * c),
+        });
+        let softened = problem.in_series(|i| springs[i]);
+        let t = [Local::<2>::new(1.0, 0.5), Local::<2>::new(2.0, -0.5)];
+        let (u, v) = (problem.displacement(&t), softened.displacement(&t));
+        for i in 0..2 {
+            let stretched = springs[i]
+                .compliance
+                .component_mul(&(t[i] - springs[i].force));
+            assert!((v[i] - u[i] - stretched).norm() < 1e-15);
+            assert_eq!(*softened.own(i), softened.operator().diagonal(i));
+            assert_eq!(softened.compliance(i), problem.compliance(i));
+        }
+    }
+
+    /// The quick reading of the residual is the residual, also where forces run away from the load.
+    #[test]
+    fn the_size_of_a_residual_is_read_alike() {
+        let w = BlockMatrix::from_dense(&DMatrix::identity(4, 4));
+        let q = vec![Local::<2>::new(-1.0, 0.2), Local::<2>::new(0.3, -0.4)];
+        let laws = vec![Coulomb::new(0.3).expect("valid"); 2];
+        let problem = LocalProblem::new(w, q, laws).expect("valid");
+        for far in [0.0, 1.0, 1e6, 1e12] {
+            let r = [Local::<2>::new(far, 0.5), Local::<2>::new(2.0, -0.5)];
+            let u = problem.displacement(&r);
+            let residual = problem.residual(&r, &u);
+            assert!((problem.size(&r, &u) / residual.size() - 1.0).abs() < 1e-14);
+            if far > 1e6 {
+                assert!(residual.size() > 1e3 * residual.scaled);
+            }
+        }
+    }
+}

@@ -293,3 +293,47 @@ fn add<const D: usize>(u: &[Local<D>], step: &DVector<f64>, s: f64) -> Vec<Local
         .map(|(i, u)| Local::from_fn(|k, _| u[k] + s * step[D * i + k]))
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moreau_laws::{AnisotropicCoulomb, Coulomb, LimitedCoulomb, Tresca};
+    use nalgebra::DMatrix;
+
+    /// Where Newton's method stalls, sweeps lead to a displacement at which its map vanishes: under every law,
+    /// with springs in series and without.
+    #[test]
+    fn sweeps_end_where_the_map_vanishes() {
+        let laws: [Friction; 4] = [
+            Coulomb::new(0.3).expect("valid").into(),
+            Tresca::new(0.2).expect("valid").into(),
+            LimitedCoulomb::new(0.3, 0.2).expect("valid").into(),
+            AnisotropicCoulomb::new(0.3, 0.1).expect("valid").into(),
+        ];
+        let n = 12;
+        let a = DMatrix::from_fn(n, n, |i, j| ((7 * i * i + 3 * j * j + i * j) as f64).sin());
+        let w = &a * a.transpose() + DMatrix::identity(n, n) * 0.05;
+        let q = |i: usize| Local::<3>::new(-0.4 + (i as f64 * 1.7).sin(), 0.3, -0.2);
+        let free: Vec<_> = (0..4).map(q).collect();
+        for (law, compliance) in laws.iter().flat_map(|l| [0.0, 0.5, 20.0].map(|c| (*l, c))) {
+            let problem = ContactProblem::from_delassus(w.clone(), &free, vec![law; 4]);
+            let problem = problem.expect("definite");
+            let springs = vec![
+                Springs {
+                    compliance: Local::<3>::new(compliance, 0.3 * compliance, 0.3 * compliance),
+                    force: Local::<3>::new(0.0, 0.1, -0.2),
+                };
+                4
+            ];
+            let newton = Newton {
+                problem: &problem,
+                springs: &springs,
+                part: PARTS[0],
+            };
+            let u = newton.sweep(&[Local::zeros(); 4]).expect("solvable");
+            let at = newton.iterate(problem.relative(&u));
+            assert!(at.t.iter().any(|t| t[0] > 1e-3), "nothing touches");
+            assert!(at.residual < 1e-7, "{law:?}, {compliance}: {}", at.residual);
+        }
+    }
+}
