@@ -28,6 +28,7 @@
 //! ```
 
 mod error;
+mod global;
 mod obstacle;
 mod polyline;
 mod problem;
@@ -35,11 +36,10 @@ mod solvers;
 mod tied;
 
 pub use error::ContactError;
+pub use global::{GlobalProblem, GlobalSolution};
 pub use obstacle::{Ball, Corner, Cylinder, Obstacle, Plane, frame};
 pub use polyline::Polyline;
-pub use problem::{
-    BlockMatrix, Certificate, ContactProblem, GlobalProblem, GlobalSolution, LocalProblem, Residual,
-};
+pub use problem::{BlockMatrix, Certificate, ContactProblem, LocalProblem, Residual};
 pub use solvers::{
     Admm, Anderson, Auto, ContactSolution, ContactSolver, Dual, GaussSeidel, LocalSolution,
     LocalSolver, Newton, NewtonMap, Penalty, ProximalNewton, Reason, SemismoothNewton, Tolerance,

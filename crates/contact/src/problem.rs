@@ -2,13 +2,12 @@
 
 mod blocks;
 mod condensed;
-mod global;
 mod local;
 
 pub use blocks::BlockMatrix;
 pub(crate) use blocks::Factor;
 pub use condensed::ContactProblem;
-pub use global::{GlobalProblem, GlobalSolution};
+pub(crate) use local::over;
 pub use local::{LocalProblem, Residual};
 
 use moreau_laws::{Friction, Local, Status};

@@ -1,9 +1,9 @@
 //! Drucker–Prager plasticity with a dilatancy of its own, as a bipotential; integrated over a
 //! step in `elastic_drucker_prager`.
 
-use crate::coulomb::Coulomb;
 use crate::duality::{Bipotential, at_most, restricted};
 use crate::error::{LawError, Parameter, positive};
+use crate::friction::coulomb::Coulomb;
 use crate::local::Local;
 use moreau_mandel::{Sym2, deviator, trace};
 

@@ -1,14 +1,20 @@
 //! The laws of an interface as one type, and each as an equation; what they say is in the
 //! laws themselves.
 
-use crate::anisotropic::AnisotropicCoulomb;
-use crate::bounded::{Bounded, ShearBound};
-use crate::coulomb::Coulomb;
+pub(crate) mod anisotropic;
+pub(crate) mod bounded;
+pub(crate) mod coulomb;
+pub(crate) mod limited;
+pub(crate) mod tresca;
+
 use crate::duality::Bipotential;
-use crate::limited::LimitedCoulomb;
 use crate::local::{Local, Status, direction, tangential_norm};
-use crate::tresca::{Tresca, clipped};
+use anisotropic::AnisotropicCoulomb;
+use bounded::{Bounded, ShearBound};
+use coulomb::Coulomb;
+use limited::LimitedCoulomb;
 use nalgebra::SMatrix;
+use tresca::{Tresca, clipped};
 
 /// Unilateral contact with friction.
 ///

@@ -52,11 +52,8 @@
 //! return [`LawError`] for data that define no law; past them nothing fails, and data that are not
 //! numbers come out as NaN.
 
-mod anisotropic;
-mod bounded;
 mod bulk;
 pub mod contract;
-mod coulomb;
 mod drucker_prager;
 mod duality;
 mod elastic;
@@ -64,24 +61,22 @@ mod elastic_drucker_prager;
 mod error;
 mod friction;
 mod isotropic;
-mod limited;
 mod local;
 pub mod textbook;
-mod tresca;
 mod von_mises;
 
-pub use anisotropic::AnisotropicCoulomb;
-pub use bounded::{Bounded, ShearBound};
 pub use bulk::{BulkLaw, COMMON_FIELDS, FlowPower, Numbers, ON_SURFACE, Response};
-pub use coulomb::Coulomb;
 pub use drucker_prager::DruckerPrager;
 pub use duality::{Bipotential, Superpotential};
 pub use elastic::Elastic;
 pub use elastic_drucker_prager::{DruckerPragerState, ElasticDruckerPrager};
 pub use error::{LawError, Parameter, non_negative, positive};
 pub use friction::Friction;
+pub use friction::anisotropic::AnisotropicCoulomb;
+pub use friction::bounded::{Bounded, ShearBound};
+pub use friction::coulomb::Coulomb;
+pub use friction::limited::LimitedCoulomb;
+pub use friction::tresca::Tresca;
 pub use isotropic::Isotropic;
-pub use limited::LimitedCoulomb;
 pub use local::{Local, Status};
-pub use tresca::Tresca;
 pub use von_mises::{VonMises, VonMisesState};

@@ -1,10 +1,11 @@
 //! Semismooth Newton method on the local form; not the method on the condensed stiffness, see
 //! `SemismoothNewton`, nor what makes a singular W regular, see `ProximalNewton`.
 
-use super::NewtonMap;
+pub(super) mod map;
+
 use super::elimination::Elimination;
-use super::newton_map::Linearised;
 use crate::problem::{BlockMatrix, Factor, LocalProblem};
+use map::{Linearised, NewtonMap};
 use moreau_laws::Local;
 use nalgebra::SMatrix;
 

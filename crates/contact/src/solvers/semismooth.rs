@@ -1,6 +1,8 @@
 //! Semismooth Newton method on the natural map; not a regularisation: its zeros are the law.
 
-use super::linearised::{self, Row};
+mod linearised;
+
+use self::linearised::Row;
 use super::{
     Auto, ContactSolution, ContactSolver, GaussSeidel, Goal, LocalSolver, Tolerance, Uzawa,
 };

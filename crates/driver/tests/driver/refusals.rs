@@ -153,7 +153,7 @@ fn gauss_seidel_says_that_it_cannot_hold_a_floating_body() {
     assert!(
         error
             .to_string()
-            .contains("Gauss-Seidel needs bodies held without contact"),
+            .contains("needs bodies held without contact; semismooth Newton does not"),
         "{error}"
     );
 }

@@ -1,8 +1,8 @@
 //! Contact with friction regularised by springs, the penalty law of \[81\]-\[82\]; not the exact
 //! law, to which it tends as 1/k.
 
-use crate::coulomb::Coulomb;
 use crate::error::{LawError, positive};
+use crate::friction::coulomb::Coulomb;
 use crate::local::{Local, Status, direction, tangential, tangential_norm};
 use nalgebra::SMatrix;
 

@@ -1,9 +1,8 @@
 //! The discrete frictional contact problem in its global form, reduced to the local one; no solver of
 //! its own.
 
-use super::local::over;
-use super::{BlockMatrix, Factor, LocalProblem, Residual};
 use crate::error::{expect_finite, expect_sizes};
+use crate::problem::{BlockMatrix, Factor, LocalProblem, Residual, over};
 use crate::{ContactError, LocalSolution, LocalSolver, Unsolved};
 use moreau_laws::{Friction, Local};
 

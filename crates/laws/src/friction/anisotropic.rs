@@ -1,9 +1,9 @@
 //! Orthotropic Coulomb friction; not friction with a slip rule of its own: slip is normal to the
 //! elliptic section of the cone.
 
-use crate::coulomb::Coulomb;
 use crate::duality::{Bipotential, at_most, restricted};
 use crate::error::{LawError, Parameter, positive};
+use crate::friction::coulomb::Coulomb;
 use crate::local::{Local, tangential_norm};
 
 /// Unilateral contact with friction of coefficients μ_x, μ_y along the two tangents of the frame;

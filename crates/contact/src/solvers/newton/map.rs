@@ -1,7 +1,7 @@
 //! The equations that Newton's method on u = W r + q solves in place of the contact law, and their
 //! derivatives; not the method.
 
-use super::one_contact::Bound;
+use crate::solvers::one_contact::Bound;
 use moreau_laws::{Friction, Local};
 use nalgebra::SMatrix;
 

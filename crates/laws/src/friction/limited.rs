@@ -1,8 +1,8 @@
 //! Contact with Coulomb friction whose shear is limited, as by the yielding of the softer surface.
 
-use crate::coulomb::Coulomb;
 use crate::duality::{at_most, restricted};
 use crate::error::{LawError, Parameter, non_negative};
+use crate::friction::coulomb::Coulomb;
 use crate::local::{Local, tangential_norm};
 
 /// Unilateral contact with friction ‖t_t‖ ≤ g(t_n) = min(μ t_n, g₀), slip opposed to t_t, \[17\]
