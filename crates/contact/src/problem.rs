@@ -6,7 +6,7 @@ mod local;
 
 pub use blocks::BlockMatrix;
 pub(crate) use blocks::Factor;
-pub use condensed::ContactProblem;
+pub use condensed::CondensedProblem;
 pub(crate) use local::over;
 pub use local::{LocalProblem, Residual};
 

@@ -34,7 +34,7 @@ pub use tied::solve_tied;
 pub use tresca::TrescaFixedPoint;
 pub use uzawa::{Uzawa, uzawa_steps};
 
-use crate::{Certificate, ContactError, ContactProblem, LocalProblem};
+use crate::{Certificate, CondensedProblem, ContactError, LocalProblem};
 use moreau_laws::{Local, Status};
 
 /// When an iterative method stops.
@@ -82,7 +82,7 @@ pub struct ContactSolution<const D: usize> {
 impl<const D: usize> ContactSolution<D> {
     /// Bipotential gap, penetration and excess force of the solution under the exact law, taken
     /// at the irreversible displacement.
-    pub fn certificate(&self, problem: &ContactProblem<D>) -> Certificate {
+    pub fn certificate(&self, problem: &CondensedProblem<D>) -> Certificate {
         Certificate::new(problem.laws(), &self.irreversible, &self.force)
     }
 }
@@ -95,7 +95,7 @@ pub trait ContactSolver<const D: usize>: std::fmt::Debug + Send + Sync {
     /// As [`ContactSolver::approach`].
     fn solve(
         &self,
-        problem: &ContactProblem<D>,
+        problem: &CondensedProblem<D>,
         guess: Option<&ContactSolution<D>>,
     ) -> Result<ContactSolution<D>, ContactError> {
         self.approach(problem, guess, 0.0)
@@ -109,7 +109,7 @@ pub trait ContactSolver<const D: usize>: std::fmt::Debug + Send + Sync {
     /// the method needs an invertible stiffness, [`ContactError::Singular`].
     fn approach(
         &self,
-        problem: &ContactProblem<D>,
+        problem: &CondensedProblem<D>,
         guess: Option<&ContactSolution<D>>,
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError>;
@@ -132,14 +132,14 @@ fn forces<const D: usize>(
 
 /// When a method on the form u = W t + q of a condensed problem has arrived.
 struct Goal<'a, const D: usize> {
-    problem: &'a ContactProblem<D>,
+    problem: &'a CondensedProblem<D>,
     tolerance: Tolerance,
     /// Residual that is enough \[N\].
     enough: f64,
 }
 
 impl<'a, const D: usize> Goal<'a, D> {
-    fn new(problem: &'a ContactProblem<D>, tolerance: Tolerance, enough: f64) -> Self {
+    fn new(problem: &'a CondensedProblem<D>, tolerance: Tolerance, enough: f64) -> Self {
         Self {
             problem,
             tolerance,

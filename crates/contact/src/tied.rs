@@ -58,7 +58,7 @@ impl<const D: usize> Default for Springs<D> {
 /// K Δu = f + Bᵀ t,   u = g + B Δu,   (−u, t) extremal for [38] at every contact.
 /// ```
 ///
-/// It is the one of [`ContactProblem`](crate::ContactProblem), not condensed on the contacts: what it takes does not grow
+/// It is the one of [`CondensedProblem`](crate::CondensedProblem), not condensed on the contacts: what it takes does not grow
 /// with the square of their number.
 pub struct TiedProblem<'a, const D: usize> {
     /// K, f and B.

@@ -1,7 +1,7 @@
 //! Every solver on problems with known answers, and all of them against each other.
 
 use moreau_contact::{
-    Admm, Auto, BlockMatrix, ContactError, ContactProblem, ContactSolution, ContactSolver, Dual,
+    Admm, Auto, BlockMatrix, CondensedProblem, ContactError, ContactSolution, ContactSolver, Dual,
     GaussSeidel, LocalProblem, Newton, NewtonMap, Penalty, ProximalNewton, SemismoothNewton,
     TrescaFixedPoint, Uzawa, uzawa_steps,
 };
@@ -40,12 +40,12 @@ fn dual<const D: usize>() -> Vec<Box<dyn ContactSolver<D>>> {
     ]
 }
 
-fn problem<const D: usize>(w: DMatrix<f64>, q: &[Local<D>], mu: f64) -> ContactProblem<D> {
+fn problem<const D: usize>(w: DMatrix<f64>, q: &[Local<D>], mu: f64) -> CondensedProblem<D> {
     under(w, q, Coulomb::new(mu).expect("valid friction").into())
 }
 
-fn under<const D: usize>(w: DMatrix<f64>, q: &[Local<D>], law: Friction) -> ContactProblem<D> {
-    ContactProblem::from_delassus(w, q, vec![law; q.len()]).expect("valid problem")
+fn under<const D: usize>(w: DMatrix<f64>, q: &[Local<D>], law: Friction) -> CondensedProblem<D> {
+    CondensedProblem::from_delassus(w, q, vec![law; q.len()]).expect("valid problem")
 }
 
 /// A law from outside: g = g₀ tanh(μ t_n/g₀).
@@ -75,7 +75,7 @@ fn other_laws(mu: f64, limit: f64) -> [Friction; 4] {
     ]
 }
 
-fn assert_solves<const D: usize>(problem: &ContactProblem<D>, solution: &ContactSolution<D>) {
+fn assert_solves<const D: usize>(problem: &CondensedProblem<D>, solution: &ContactSolution<D>) {
     let scale = problem.force_scale(&solution.force);
     let residual = problem.residual(&solution.displacement, &solution.force);
     assert!(
@@ -154,8 +154,9 @@ fn klarbring_below_the_critical_friction() {
     ];
     for ((f_t, f_n), (u_t, u_n, r_t, r_n)) in cases {
         let load = DVector::from_row_slice(&[f_n, f_t]);
-        let problem = ContactProblem::new(k.clone(), load, zero.clone(), law.clone(), zero.clone())
-            .expect("valid");
+        let problem =
+            CondensedProblem::new(k.clone(), load, zero.clone(), law.clone(), zero.clone())
+                .expect("valid");
         for solver in exact() {
             let s = solver.solve(&problem, None).expect("solvable");
             assert!(
@@ -185,7 +186,7 @@ fn the_critical_friction_of_a_contact_is_that_of_its_compliance() {
         );
         let local = LocalProblem::new(BlockMatrix::from_dense(&w), q.to_vec(), law.clone());
         let (_, expected) = local.expect("valid").criticality().expect("a contact");
-        let problem = ContactProblem::from_delassus(w, &q, law).expect("definite");
+        let problem = CondensedProblem::from_delassus(w, &q, law).expect("definite");
         let (contact, found) = problem.criticality(&[Status::Stick]).expect("closed");
         assert_eq!(contact, 0);
         assert!((found - expected).abs() < 1e-14, "{found} {expected}");
@@ -431,7 +432,7 @@ proptest! {
 }
 
 /// A fixed problem with open, sticking and slipping contacts.
-fn mixed() -> ContactProblem<2> {
+fn mixed() -> CondensedProblem<2> {
     let n = 12;
     let w = DMatrix::from_fn(n, n, |i, j| {
         let decay = (-((i / 2) as f64 - (j / 2) as f64).abs()).exp();
@@ -545,7 +546,7 @@ fn newton_treats_a_body_that_only_contact_holds() {
     let load = DVector::from_row_slice(&[-10.0, 1.0, -10.0, 1.0]);
     let zero = vec![Local::<2>::zeros(); 2];
     let law = vec![Coulomb::new(0.3).expect("valid"); 2];
-    let problem = ContactProblem::new(s, load, zero.clone(), law, zero.clone()).expect("valid");
+    let problem = CondensedProblem::new(s, load, zero.clone(), law, zero.clone()).expect("valid");
     let touching = ContactSolution {
         displacement: zero.clone(),
         motion: zero.clone(),
@@ -569,7 +570,8 @@ fn newton_treats_a_body_that_only_contact_holds() {
         DVector::from_row_slice(&[-10.0, 1.0, -10.0, 1.0]),
     );
     let law = vec![Coulomb::new(0.3).expect("valid"); 2];
-    let falling = ContactProblem::new(s, load, above, law, vec![Local::zeros(); 2]).expect("valid");
+    let falling =
+        CondensedProblem::new(s, load, above, law, vec![Local::zeros(); 2]).expect("valid");
     let landed = SemismoothNewton::default()
         .solve(&falling, None)
         .expect("solvable");
@@ -683,7 +685,7 @@ fn a_tolerance_that_cannot_be_met_is_an_error_with_numbers() {
 
 /// A chain of stiff springs on soft ones, far from where it was linearised: its nodes over tools at given
 /// heights.
-fn chain(tools: &[f64]) -> ContactProblem<2> {
+fn chain(tools: &[f64]) -> CondensedProblem<2> {
     let n = tools.len();
     let normal = |i: usize| 2 * i;
     let mut s = DMatrix::<f64>::identity(2 * n, 2 * n);
@@ -701,7 +703,7 @@ fn chain(tools: &[f64]) -> ContactProblem<2> {
     let origin = tools.iter().map(|&g| Local::<2>::new(-g, 0.0)).collect();
     let law = vec![Coulomb::new(0.3).expect("valid"); n];
     let zero = vec![Local::zeros(); n];
-    ContactProblem::new(s, DVector::zeros(2 * n), origin, law, zero).expect("valid")
+    CondensedProblem::new(s, DVector::zeros(2 * n), origin, law, zero).expect("valid")
 }
 
 /// One end pressed, all else in the air: methods on W end at the rounding of 10¹⁰ N/mm on positions of

@@ -1,12 +1,12 @@
 //! The driver: the state of a model, and steps applied to it; not the iteration of an increment.
 
 use crate::assembly::block::{Block, PointField, PointState, Stiffness};
-use crate::error::{ModelError, StepError};
+use crate::error::{IncrementError, ModelError};
 use crate::linear::system::{Contacts, System};
 use crate::model::load::Loading;
-use crate::model::points::{ContactPoint, Footing, Tool, tool_index};
+use crate::model::points::{ContactPoint, RelativeMotionRow, Tool, tool_index};
 use crate::model::{Analysis, Contact, Measure, Model};
-use crate::report::{ContactRecord, Energies, Iteration, StepReport};
+use crate::report::{ContactRecord, Energies, IncrementReport, Iteration};
 use crate::settings::{Nesting, Seam, Settings};
 use crate::timings::Timings;
 use crate::vector::SparseVector;
@@ -48,9 +48,9 @@ pub struct Driver<const D: usize> {
     pub(crate) tools: Vec<Tool<D>>,
     pub(crate) points: Vec<ContactPoint<D>>,
     /// Where the contact points stand in the increment at hand.
-    pub(crate) footings: Vec<Footing<D>>,
+    pub(crate) motion_rows: Vec<RelativeMotionRow<D>>,
     /// Contact points whose multipliers their neighbours have in the increment at hand.
-    pub(crate) handed_over: Vec<usize>,
+    pub(crate) redistributed: Vec<usize>,
     pub(crate) settings: Settings<D>,
     pub(crate) state: State<D>,
     pub(crate) system: Option<System>,
@@ -104,8 +104,8 @@ impl<const D: usize> Driver<D> {
             tools: model.tools,
             contacts: model.contacts,
             points: model.points,
-            footings: Vec::new(),
-            handed_over: Vec::new(),
+            motion_rows: Vec::new(),
+            redistributed: Vec::new(),
             settings,
             state,
             system: None,
@@ -133,11 +133,11 @@ impl<const D: usize> Driver<D> {
     /// conditions of a loading.
     pub(crate) fn pair(&mut self, loading: &Loading<D>) -> Result<(), ModelError> {
         let on_tool = |p: &ContactPoint<D>| match p.tool {
-            Some(tool) => Footing::on_tool(p, self.tool_node(tool)),
-            None => Footing::default(),
+            Some(tool) => RelativeMotionRow::on_tool(p, self.tool_node(tool)),
+            None => RelativeMotionRow::default(),
         };
-        let mut footings: Vec<Footing<D>> = self.points.iter().map(on_tool).collect();
-        let mut handed_over = Vec::new();
+        let mut motion_rows: Vec<RelativeMotionRow<D>> = self.points.iter().map(on_tool).collect();
+        let mut redistributed = Vec::new();
         if self.contacts.iter().any(|c| c.pairing.is_some()) {
             let nodes = self.mesh.nodes();
             let position = |a: usize| self.position(a).into();
@@ -150,25 +150,25 @@ impl<const D: usize> Driver<D> {
                     self.mesh.facet_group(&contact.surface)?,
                     self.mesh.facet_group(&contact.opposite)?,
                 );
-                let couplings = self
+                let mortar_rows = self
                     .measure
-                    .couplings(&self.mesh, &positions, surfaces, pairing);
+                    .mortar_rows(&self.mesh, &positions, surfaces, pairing);
                 let index = |p: &ContactPoint<D>| p.contact == k;
                 let own = (0..self.points.len()).filter(|&i| index(&self.points[i]));
                 let at: BTreeMap<usize, usize> = own.map(|i| (self.points[i].node, i)).collect();
-                for coupling in couplings {
-                    if let Some(&point) = at.get(&coupling.node) {
-                        footings[point] = Footing::on_surface(coupling, &positions);
+                for mortar_row in mortar_rows {
+                    if let Some(&point) = at.get(&mortar_row.node) {
+                        motion_rows[point] = RelativeMotionRow::on_surface(mortar_row, &positions);
                     }
                 }
-                let met = at.into_values().filter(|&i| footings[i].area > 0.0);
+                let met = at.into_values().filter(|&i| motion_rows[i].area > 0.0);
                 let met: Vec<usize> = met.collect();
-                self.hand_over(&mut footings, (k, surfaces.0), loading);
-                handed_over.extend(met.into_iter().filter(|&i| footings[i].area <= 0.0));
+                self.redistribute_multipliers(&mut motion_rows, (k, surfaces.0), loading);
+                redistributed.extend(met.into_iter().filter(|&i| motion_rows[i].area <= 0.0));
             }
         }
-        self.footings = footings;
-        self.handed_over = handed_over;
+        self.motion_rows = motion_rows;
+        self.redistributed = redistributed;
         Ok(())
     }
 
@@ -245,8 +245,8 @@ impl<const D: usize> Driver<D> {
 
     /// Contact points, as indices of [`Driver::contacts`], that displacement conditions left no
     /// multiplier of their own in the last increment: what they transmit is with their neighbours.
-    pub fn handed_over(&self) -> &[usize] {
-        &self.handed_over
+    pub fn redistributed(&self) -> &[usize] {
+        &self.redistributed
     }
 
     /// Energies since the virgin state.
@@ -346,8 +346,8 @@ impl<const D: usize> Driver<D> {
     /// Applies one increment, up to the loading `end`: commits it, or fails and changes nothing.
     ///
     /// # Errors
-    /// See [`StepError`].
-    pub fn advance(&mut self, end: &Loading<D>) -> Result<StepReport, StepError> {
+    /// See [`IncrementError`].
+    pub fn advance(&mut self, end: &Loading<D>) -> Result<IncrementReport, IncrementError> {
         self.advance_watched(end, &mut |_| {})
     }
 
@@ -356,7 +356,7 @@ impl<const D: usize> Driver<D> {
         &mut self,
         end: &Loading<D>,
         watch: &mut dyn FnMut(&Iteration<'_>),
-    ) -> Result<StepReport, StepError> {
+    ) -> Result<IncrementReport, IncrementError> {
         end.check(self.mesh.nodes().len(), self.state.displacement.len())?;
         self.pair(end)?;
         self.check_pushes(end)?;
@@ -372,7 +372,7 @@ impl<const D: usize> Driver<D> {
         let small = system.is_tied() && D * self.points.len() <= CONDENSABLE;
         self.system = Some(system);
         match outcome {
-            Err(StepError::Contact { .. }) if small && self.settings.seam == Seam::Cheaper => {
+            Err(IncrementError::Contact { .. }) if small && self.settings.seam == Seam::Cheaper => {
                 // A dense matrix costs more, and its methods find what this one does not.
                 let mut system = self.elastic_system(end, None, Seam::Condensed)?;
                 let watch = &mut |_: &Self, now: &Iteration<'_>| watch(now);
@@ -407,9 +407,9 @@ impl<const D: usize> Driver<D> {
 
     /// The nodes that each contact point between bodies couples.
     fn paired(&self) -> Vec<Vec<usize>> {
-        let points = self.points.iter().zip(&self.footings);
+        let points = self.points.iter().zip(&self.motion_rows);
         let paired = points.filter(|(p, _)| p.tool.is_none());
-        paired.map(|(_, footing)| footing.nodes()).collect()
+        paired.map(|(_, motion_row)| motion_row.nodes()).collect()
     }
 
     /// A new linear system for a loading, with the elastic stiffness assembled.
@@ -444,7 +444,7 @@ impl<const D: usize> Driver<D> {
         system.timings += before;
         system.floats = self.floats(loading);
         system.paired = self.paired();
-        system.learn(&mut self.blocks, self.settings.nesting == Nesting::Inside);
+        system.assemble_elastic(&mut self.blocks, self.settings.nesting == Nesting::Inside);
         Ok(system)
     }
 

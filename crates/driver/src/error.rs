@@ -232,7 +232,7 @@ pub struct Imbalance {
 /// An increment that failed. The state is what it was before.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-pub enum StepError {
+pub enum IncrementError {
     /// The model does not admit this increment.
     #[error(transparent)]
     Model(#[from] ModelError),
@@ -345,7 +345,7 @@ pub enum StepError {
         /// Whether the step moves something that it prescribes.
         moves: bool,
         /// Why the last attempt failed.
-        cause: Box<StepError>,
+        cause: Box<IncrementError>,
     },
 }
 
@@ -358,7 +358,7 @@ pub(crate) struct Inaccurate {
     pub(crate) expected: f64,
 }
 
-impl From<Inaccurate> for StepError {
+impl From<Inaccurate> for IncrementError {
     fn from(Inaccurate { found, expected }: Inaccurate) -> Self {
         Self::Inaccurate { found, expected }
     }
@@ -371,14 +371,14 @@ fn worst_nodes(worst: &[Imbalance]) -> String {
 
 /// What to look for, and a space; nothing where the cause says it.
 fn collapse_hint(
-    cause: &StepError,
+    cause: &IncrementError,
     plastic_fraction: f64,
     limit: Option<f64>,
     moves: bool,
 ) -> String {
     if matches!(
         cause,
-        StepError::Passage { .. } | StepError::NotFinite { .. }
+        IncrementError::Passage { .. } | IncrementError::NotFinite { .. }
     ) {
         return String::new();
     }

@@ -2,6 +2,6 @@
 //! them; not its solution.
 
 pub(crate) mod condensation;
-pub(crate) mod handover;
 pub(crate) mod kinematics;
+pub(crate) mod redistribution;
 pub(crate) mod tied;

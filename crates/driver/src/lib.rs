@@ -2,7 +2,7 @@
 //!
 //! A [`Model`] is a mesh with materials, tools and contacts; a [`Step`] is what acts on it; the
 //! [`Driver`] applies steps increment by increment. Every increment is a transaction: it converges
-//! and is committed with a [`StepReport`], or it fails and nothing has changed.
+//! and is committed with a [`IncrementReport`], or it fails and nothing has changed.
 //!
 //! ```
 //! use moreau_contact::Plane;
@@ -53,7 +53,7 @@ pub use checks::rigid::Stopper;
 pub use checks::smallness::{Deformation, Extent};
 pub use checks::supports::{RigidMotion, Support};
 pub use driver::Driver;
-pub use error::{Imbalance, ModelError, StepError, ToolOutOfContact};
+pub use error::{Imbalance, IncrementError, ModelError, ToolOutOfContact};
 pub use model::load::{Axis, Loading, Step};
 pub use model::{Analysis, Model};
 pub use path::buckling::Buckling;
@@ -61,7 +61,7 @@ pub use path::increments::Increments;
 pub use path::ramp::Ramp;
 pub use recovery::{Recovered, points_by_material, recover};
 pub use report::collapse::{Collapse, UpperBound};
-pub use report::{ContactRecord, Energies, Iteration, StepReport};
+pub use report::{ContactRecord, Energies, IncrementReport, Iteration};
 pub use saved::{Numbers, Saved};
 pub use settings::{Nesting, Seam, Settings};
 pub use timings::Timings;

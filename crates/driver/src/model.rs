@@ -10,8 +10,8 @@ use crate::model::points::{ALONG_NORMAL, ContactPoint, Tool, tool_index};
 use moreau_contact::Obstacle;
 use moreau_laws::{BulkLaw, Friction};
 use moreau_mesh::{
-    Axisymmetric, CellKind, Coupling, Element, Facet, Hex8, Hex20, Hex27, Hypothesis, Integration,
-    Mesh, Pairing, PlaneStrain, PositiveShare, Quad4, Quad8, Quad9, Share, Solid, Tet4, Tet10,
+    Axisymmetric, CellKind, Element, Facet, Hex8, Hex20, Hex27, Hypothesis, Integration, Mesh,
+    MortarRow, Pairing, PlaneStrain, PositiveShare, Quad4, Quad8, Quad9, Share, Solid, Tet4, Tet10,
     Tri3, Tri6, nearest,
 };
 use nalgebra::SVector;
@@ -107,13 +107,13 @@ pub(crate) trait Measure<const D: usize>: Send + Sync {
     fn facet_shares(&self, mesh: &Mesh<D>, facets: &[Facet]) -> Vec<Share<D>>;
     fn volume_shares(&self, mesh: &Mesh<D>, cells: &[usize]) -> Vec<(usize, f64)>;
     fn rigid_modes(&self, x: &[f64; D]) -> Vec<[f64; D]>;
-    fn couplings(
+    fn mortar_rows(
         &self,
         mesh: &Mesh<D>,
         positions: &[[f64; D]],
         surfaces: (&[Facet], &[Facet]),
         pairing: Pairing,
-    ) -> Vec<Coupling<D>>;
+    ) -> Vec<MortarRow<D>>;
 }
 
 impl<const D: usize, H: Hypothesis<D>> Measure<D> for H {
@@ -129,14 +129,14 @@ impl<const D: usize, H: Hypothesis<D>> Measure<D> for H {
         H::rigid_modes(x)
     }
 
-    fn couplings(
+    fn mortar_rows(
         &self,
         mesh: &Mesh<D>,
         positions: &[[f64; D]],
         surfaces: (&[Facet], &[Facet]),
         pairing: Pairing,
-    ) -> Vec<Coupling<D>> {
-        mesh.couplings(positions, surfaces, pairing, self)
+    ) -> Vec<MortarRow<D>> {
+        mesh.mortar_rows(positions, surfaces, pairing, self)
     }
 }
 

@@ -67,7 +67,7 @@ pub struct Iteration<'a> {
 
 /// Report of a converged increment.
 #[derive(Debug, Clone, PartialEq)]
-pub struct StepReport {
+pub struct IncrementReport {
     /// Number of the increment since the virgin state, from 1.
     pub increment: usize,
     /// Part of the step that has been done, in (0, 1].
@@ -105,7 +105,7 @@ pub struct StepReport {
     /// Largest coefficient of friction over its critical value among the contact points that are closed
     /// or were at the start, with its index in [`Driver::contacts`](crate::Driver::contacts): from 1 on there may be other solutions,
     /// and the path may break off, see
-    /// [`ContactProblem::criticality`](moreau_contact::ContactProblem::criticality). Of the stiffness of
+    /// [`CondensedProblem::criticality`](moreau_contact::CondensedProblem::criticality). Of the stiffness of
     /// the last iteration; `None` where nothing touches, where contacts are tied in the factor, on a path of unknown load factor, and under
     /// the paper's nesting.
     pub criticality: Option<(usize, f64)>,
@@ -122,7 +122,7 @@ pub struct StepReport {
     pub residuals: Vec<f64>,
 }
 
-impl StepReport {
+impl IncrementReport {
     /// The bipotential gap in parts of the external work done so far, or of what is stored and dissipated where
     /// that is less: work that an energy balance does not find again makes nothing look smaller.
     pub fn relative_gap(&self) -> f64 {

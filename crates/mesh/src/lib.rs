@@ -7,7 +7,7 @@
 //! | integrate over it, \[78\] | [`Element::rule`], [`Rule`], [`Integration`] |
 //! | strain it, `ε = B U` \[77\] | [`Hypothesis`]: [`PlaneStrain`], [`Axisymmetric`], [`Solid`] |
 //! | hold nodes, cells and named groups | [`Mesh`], always valid once constructed |
-//! | pair two surfaces | [`Mesh::couplings`] |
+//! | pair two surfaces | [`Mesh::mortar_rows`] |
 //! | make one | [`block2`], [`block3`] on the lines of [`uniform`], [`geometric`], [`refine`] |
 //! | read one, from the bytes of a file | [`read_gmsh`], [`read_abaqus`] |
 //! | write one | [`write_gmsh`] |
@@ -69,6 +69,6 @@ pub use gmsh::{read_gmsh, read_gmsh_noting, write_gmsh};
 pub use hypothesis::{Axisymmetric, Entry, Hypothesis, PlaneStrain, Solid};
 pub use mesh::{Facet, Mesh, NodeKind, PositiveShare, Share};
 pub use nearest::nearest;
-pub use pairing::{Coupling, Pairing};
+pub use pairing::{MortarRow, Pairing};
 pub use quadrature::{Integration, Point, Rule, gauss};
 pub use read::{Loss, Place, ReadError};

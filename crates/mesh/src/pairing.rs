@@ -42,7 +42,7 @@ pub enum Pairing {
 /// reproduce positions that are linear along the surface. A contact force goes back with the same
 /// weights, so that action is reaction.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Coupling<const D: usize> {
+pub struct MortarRow<const D: usize> {
     /// The node.
     pub node: usize,
     /// Corner or mid-side.
@@ -61,13 +61,13 @@ pub struct Coupling<const D: usize> {
 impl<const D: usize> Mesh<D> {
     /// Couples the nodes of a surface to the surface opposite, both at the given positions of the
     /// nodes \[mm\]. Nodes that meet nothing are left out; the others are sorted.
-    pub fn couplings<H: Hypothesis<D>>(
+    pub fn mortar_rows<H: Hypothesis<D>>(
         &self,
         positions: &[[f64; D]],
         (surface, opposite): (&[Facet], &[Facet]),
         pairing: Pairing,
         hypothesis: &H,
-    ) -> Vec<Coupling<D>> {
+    ) -> Vec<MortarRow<D>> {
         let faces = |facets: &[Facet]| -> Vec<Face<D>> {
             let face = |&f: &Facet| {
                 let change = self.change(f, hypothesis);
@@ -123,7 +123,7 @@ impl<const D: usize> Sides<'_, D> {
     }
 
     /// The point of the other surface opposite to that of every node along its normal.
-    fn node_to_surface(&self, measure: &dyn Fn(&[f64; D]) -> f64) -> Vec<Coupling<D>> {
+    fn node_to_surface(&self, measure: &dyn Fn(&[f64; D]) -> f64) -> Vec<MortarRow<D>> {
         let mut shares: BTreeMap<usize, (f64, NodeKind, f64)> = BTreeMap::new();
         let mut points: BTreeMap<usize, Vec<(usize, f64)>> = BTreeMap::new();
         for face in self.own {
@@ -148,7 +148,7 @@ impl<const D: usize> Sides<'_, D> {
             .iter()
             .flat_map(|e| e.nodes.iter().copied().zip(e.x.iter().copied()))
             .collect();
-        let mut couplings = Vec::new();
+        let mut mortar_rows = Vec::new();
         for (&node, &(area, kind, size)) in &shares {
             let own = points.remove(&node).unwrap_or_default();
             let place = |i: usize| own.iter().map(|(a, w)| w * position[a][i]).sum();
@@ -165,7 +165,7 @@ impl<const D: usize> Sides<'_, D> {
                 }
             }
             let Some((_, k, n_b)) = nearest else { continue };
-            couplings.push(Coupling {
+            mortar_rows.push(MortarRow {
                 node,
                 kind,
                 area,
@@ -174,7 +174,7 @@ impl<const D: usize> Sides<'_, D> {
                 opposite: self.other[k].nodes.iter().copied().zip(n_b).collect(),
             });
         }
-        couplings
+        mortar_rows
     }
 }
 

@@ -27,7 +27,7 @@ pub use resumable::Resumable;
 pub use vtu::View;
 
 use crate::deck::{Deck, Setup};
-use crate::driver::{Driver, StepReport};
+use crate::driver::{Driver, IncrementReport};
 use crate::laws::Status;
 use files::{read_text, replace_file, write_file};
 use std::path::{Path, PathBuf};
@@ -119,7 +119,7 @@ pub struct Event<'a> {
     /// Seconds left, if the rest goes as what was done since the run was started or resumed.
     pub seconds_left: f64,
     /// The report.
-    pub report: &'a StepReport,
+    pub report: &'a IncrementReport,
 }
 
 /// Who looks on while a problem runs, and may stop it.

@@ -8,7 +8,7 @@ use super::compare::{
 use super::pictures::{along, deformed};
 use crate::paper::{BLOCK_INCREMENTS, BLOCK_TRAVEL, block_punch_load, block_step, reference};
 use crate::{Case, Chapter, Check, Figure, Options, Outcome, Table};
-use moreau::driver::{ContactRecord, Driver, Settings, StepReport};
+use moreau::driver::{ContactRecord, Driver, IncrementReport, Settings};
 use moreau::laws::Status;
 use moreau::mesh::{Integration, NodeKind};
 use moreau::plot::{Chart, MeshPicture, Style};
@@ -113,7 +113,7 @@ impl Press {
         let friction: Vec<f64> = friction
             .map(|c| c.iter().map(|c| c.force[0]).sum())
             .collect();
-        let wrong = |name: &str, count: fn(&StepReport) -> usize| {
+        let wrong = |name: &str, count: fn(&IncrementReport) -> usize| {
             let expected = column(name);
             let pairs = history.reports.iter().zip(&expected);
             pairs.filter(|(r, e)| count(r) as f64 != **e).count()
@@ -271,7 +271,7 @@ fn finer(options: &Options<'_>, outcome: &mut Outcome) -> Result<Vec<[String; 9]
 fn stick(options: &Options<'_>, outcome: &mut Outcome) -> Result<[String; 9], Box<dyn Error>> {
     let press = Press::run(options, COARSE, 0.3, Integration::Reduced, 0)?;
     outcome.checks.push(press.load(12146.47534));
-    let all = |r: &&StepReport| r.open > 0 && r.stick > 0 && r.slip > 0;
+    let all = |r: &&IncrementReport| r.open > 0 && r.stick > 0 && r.slip > 0;
     let seen = press.history.reports.iter().filter(all).count();
     outcome.checks.push(Check::at_least(
         format!(

@@ -5,7 +5,7 @@ use crate::problems::Fallible;
 use crate::problems::collapsing::{cylinder, notch, sphere, strip};
 use crate::problems::shapes::{Hole, PLANE_ELEMENTS};
 use crate::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
-use moreau::driver::{Axis, Collapse, Driver, Settings, Step, StepError};
+use moreau::driver::{Axis, Collapse, Driver, IncrementError, Settings, Step};
 use moreau::laws::VonMises;
 use moreau::mesh::{CellKind, Integration};
 use moreau::plot::{Chart, Style};
@@ -128,7 +128,7 @@ fn loaded(body: &mut Overloaded) -> Fallible<(Collapse, Vec<[f64; 2]>)> {
         curve.push([(body.motion)(driver), body.overload * report.fraction]);
     });
     let collapse = match ended {
-        Err(StepError::Collapse { collapse, .. }) => collapse,
+        Err(IncrementError::Collapse { collapse, .. }) => collapse,
         Err(error) => return Err(error.into()),
         Ok(_) => return Err(format!("{} carried its load", body.name).into()),
     };

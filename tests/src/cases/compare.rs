@@ -4,7 +4,9 @@ use crate::paper::{
     BLOCK_INCREMENTS, BLOCK_TRAVEL, block, block_punch_load, block_step, reference,
 };
 use crate::{Check, Table};
-use moreau::driver::{ContactRecord, Driver, ModelError, Settings, Step, StepError, StepReport};
+use moreau::driver::{
+    ContactRecord, Driver, IncrementError, IncrementReport, ModelError, Settings, Step,
+};
 use moreau::laws::Status;
 use moreau::mesh::Integration;
 use std::error::Error;
@@ -16,7 +18,7 @@ pub(super) const INDEPENDENT: &str = "independent implementation, tests/referenc
 #[derive(Debug, Clone, Default)]
 pub struct History {
     /// Reports.
-    pub reports: Vec<StepReport>,
+    pub reports: Vec<IncrementReport>,
     /// Load after every increment, as the run defines it \[N/mm\].
     pub loads: Vec<f64>,
     /// Contact points after every increment.
@@ -99,7 +101,7 @@ pub fn record(
     increments: usize,
     load: fn(&Driver<2>) -> Result<f64, ModelError>,
     history: &mut History,
-) -> Result<(), StepError> {
+) -> Result<(), IncrementError> {
     let outcome = driver.run(step, increments, |driver, report| {
         history.reports.push(report.clone());
         history.loads.push(load(driver).unwrap_or(f64::NAN));
@@ -129,7 +131,7 @@ pub(super) fn press_block(
 }
 
 /// Largest bipotential gap of an increment over the external work done until then.
-pub(super) fn largest_gap(reports: &[StepReport]) -> f64 {
+pub(super) fn largest_gap(reports: &[IncrementReport]) -> f64 {
     let gaps = reports.iter().map(|r| r.relative_gap().abs());
     gaps.fold(0.0, f64::max)
 }

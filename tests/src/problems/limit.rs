@@ -1,7 +1,7 @@
 //! Load against displacement up to collapse; not the exact limit loads.
 
 use super::Fallible;
-use moreau::driver::{Axis, Collapse, Driver, Step, StepError};
+use moreau::driver::{Axis, Collapse, Driver, IncrementError, Step};
 
 /// Load after every increment of a displacement-controlled step.
 ///
@@ -21,14 +21,14 @@ pub fn load_curve<const D: usize>(
 /// The collapse that a step of growing loads ends in.
 ///
 /// # Errors
-/// Those of [`Driver::run`] but [`StepError::Collapse`], and the end of the step.
+/// Those of [`Driver::run`] but [`IncrementError::Collapse`], and the end of the step.
 pub fn collapse_of<const D: usize>(
     driver: &mut Driver<D>,
     step: &Step<D>,
     increments: usize,
 ) -> Fallible<Collapse> {
     match driver.run(step, increments, |_, _| {}) {
-        Err(StepError::Collapse { collapse, .. }) => Ok(collapse),
+        Err(IncrementError::Collapse { collapse, .. }) => Ok(collapse),
         Err(error) => Err(error.into()),
         Ok(_) => Err(format!("step {:?} was carried", step.name()).into()),
     }

@@ -3,7 +3,7 @@
 
 use crate::close;
 use moreau::contact::{ContactError, GaussSeidel, Plane};
-use moreau::driver::{Axis, Driver, Model, ModelError, Settings, Step, StepError};
+use moreau::driver::{Axis, Driver, IncrementError, Model, ModelError, Settings, Step};
 use moreau::laws::{Coulomb, Elastic, VonMises};
 use moreau::mesh::{CellKind, Integration, Mesh, MeshError, PlaneStrain, block2, uniform};
 use verification::problems::Fallible;
@@ -40,7 +40,7 @@ fn on_floor(friction: f64, settings: Settings<2>) -> Fallible<Driver<2>> {
 
 /// The error of a step, with the assertion that it has changed nothing.
 #[track_caller]
-fn refused(driver: &mut Driver<2>, step: &Step<2>) -> StepError {
+fn refused(driver: &mut Driver<2>, step: &Step<2>) -> IncrementError {
     let bits = |driver: &Driver<2>| -> Vec<u64> {
         let nodes = 0..driver.mesh().nodes().len();
         let u = nodes.flat_map(|n| driver.displacement(n).iter().copied().collect::<Vec<_>>());
@@ -70,7 +70,7 @@ fn free_rigid_motions_are_refused() -> Fallible {
     // Frictionless on a floor, without a support at the side.
     let mut driver = on_floor(0.0, Settings::default())?;
     match refused(&mut driver, &press("slide")) {
-        StepError::Model(ModelError::FreeRigidMotion { cell: 0, motion }) => {
+        IncrementError::Model(ModelError::FreeRigidMotion { cell: 0, motion }) => {
             assert_eq!(motion, "translation along x");
         }
         other => panic!("{other:?}"),
@@ -85,7 +85,10 @@ fn free_rigid_motions_are_refused() -> Fallible {
     let mut floating = Driver::new(model, Settings::default())?;
     let error = refused(&mut floating, &press("fly"));
     assert!(
-        matches!(&error, StepError::Model(ModelError::FreeRigidMotion { .. })),
+        matches!(
+            &error,
+            IncrementError::Model(ModelError::FreeRigidMotion { .. })
+        ),
         "{error:?}"
     );
     // Held at one node: it turns about it.
@@ -94,7 +97,7 @@ fn free_rigid_motions_are_refused() -> Fallible {
     let model = Model::new(pinned, PlaneStrain::default()).material("block", steel()?, RULE)?;
     let mut turning = Driver::new(model, Settings::default())?;
     match refused(&mut turning, &press("turn").fix("pin", &[Axis::X, Axis::Y])) {
-        StepError::Model(ModelError::FreeRigidMotion { motion, .. }) => {
+        IncrementError::Model(ModelError::FreeRigidMotion { motion, .. }) => {
             assert!(motion.contains("rotation"), "{motion}");
         }
         other => panic!("{other:?}"),
@@ -115,7 +118,7 @@ fn free_rigid_motions_are_refused() -> Fallible {
         &mut driver,
         &Step::new("hold").fix("block.left", &[Axis::X, Axis::Y]),
     ) {
-        StepError::Model(ModelError::FreeRigidMotion { cell, .. }) => assert_eq!(cell, 8),
+        IncrementError::Model(ModelError::FreeRigidMotion { cell, .. }) => assert_eq!(cell, 8),
         other => panic!("{other:?}"),
     }
     Ok(())
@@ -132,14 +135,17 @@ fn a_body_pulled_off_its_foundation_is_an_error() -> Fallible {
         },
     )?;
     match refused(&mut driver, &Step::new("lift").pressure("block.top", -10.0)) {
-        StepError::Stopped {
+        IncrementError::Stopped {
             step,
             reached,
             cause,
             ..
         } => {
             assert_eq!((step.as_str(), reached), ("lift", 0.0));
-            assert!(matches!(*cause, StepError::Contact { .. }), "{cause:?}");
+            assert!(
+                matches!(*cause, IncrementError::Contact { .. }),
+                "{cause:?}"
+            );
         }
         other => panic!("{other:?}"),
     }
@@ -166,8 +172,8 @@ fn gauss_seidel_refuses_a_floating_body() -> Fallible {
         },
     )?;
     match refused(&mut driver, &Step::new("press").pressure("block.top", 10.0)) {
-        StepError::Stopped { cause, .. } => match *cause {
-            StepError::Contact {
+        IncrementError::Stopped { cause, .. } => match *cause {
+            IncrementError::Contact {
                 iteration: 1,
                 source: ContactError::Floating { .. },
             } => {}
@@ -189,7 +195,7 @@ fn an_increment_that_cannot_converge_says_by_how_much() -> Fallible {
     let punched = Punched::default();
     let mut driver = punched.driver(punched.half_mesh()?, settings)?;
     match refused(&mut driver, &punched.press(0.2)) {
-        StepError::Stopped {
+        IncrementError::Stopped {
             step,
             reached,
             smallest,
@@ -199,7 +205,7 @@ fn an_increment_that_cannot_converge_says_by_how_much() -> Fallible {
         } => {
             assert_eq!((step.as_str(), reached, smallest), ("press", 0.0, 1.0));
             match *cause {
-                StepError::NotConverged {
+                IncrementError::NotConverged {
                     iterations,
                     out_of_balance,
                     tolerance,
@@ -241,7 +247,7 @@ fn a_stopped_step_keeps_what_converged() -> Fallible {
     let mut driver = punched.driver(punched.half_mesh()?, settings)?;
     let mut seen = 0;
     match driver.run(&punched.press(0.2), 20, |_, _| seen += 1) {
-        Err(StepError::Stopped {
+        Err(IncrementError::Stopped {
             reached, smallest, ..
         }) => {
             assert!(seen > 0);
@@ -298,7 +304,7 @@ fn numbers_that_are_not_finite_are_refused() -> Fallible {
         ];
         for (step, named) in steps {
             match refused(&mut driver, &step) {
-                StepError::Model(ModelError::OutOfRange { what, value, .. }) => {
+                IncrementError::Model(ModelError::OutOfRange { what, value, .. }) => {
                     assert!(
                         what.contains(named) && !value.is_finite(),
                         "{what}: {value}"
@@ -318,7 +324,7 @@ fn unknown_names_are_refused_with_the_nearest() -> Fallible {
         &mut driver,
         &Step::new("press").pressure("block.topp", 10.0),
     ) {
-        StepError::Model(ModelError::Mesh(MeshError::UnknownGroup { name, nearest })) => {
+        IncrementError::Model(ModelError::Mesh(MeshError::UnknownGroup { name, nearest })) => {
             assert_eq!(
                 (name.as_str(), nearest.as_deref()),
                 ("block.topp", Some("block.top"))
@@ -330,20 +336,20 @@ fn unknown_names_are_refused_with_the_nearest() -> Fallible {
         &mut driver,
         &Step::new("press").fix("blok.left", &[Axis::X]),
     ) {
-        StepError::Model(ModelError::Mesh(MeshError::UnknownGroup { nearest, .. })) => {
+        IncrementError::Model(ModelError::Mesh(MeshError::UnknownGroup { nearest, .. })) => {
             assert_eq!(nearest.as_deref(), Some("block.left"));
         }
         other => panic!("{other:?}"),
     }
     match refused(&mut driver, &Step::new("move").tool("flor", [0.0, 0.1])) {
-        StepError::Model(ModelError::UnknownTool { name, nearest }) => {
+        IncrementError::Model(ModelError::UnknownTool { name, nearest }) => {
             assert_eq!((name.as_str(), nearest.as_deref()), ("flor", Some("floor")));
         }
         other => panic!("{other:?}"),
     }
     // Cells where facets are asked for.
     match refused(&mut driver, &Step::new("press").pressure("block", 10.0)) {
-        StepError::Model(ModelError::Mesh(MeshError::WrongGroup { name, .. })) => {
+        IncrementError::Model(ModelError::Mesh(MeshError::WrongGroup { name, .. })) => {
             assert_eq!(name, "block");
         }
         other => panic!("{other:?}"),
@@ -406,7 +412,7 @@ fn contradicting_conditions_are_refused() -> Fallible {
         .displace("block.left", Axis::Y, 0.1)
         .displace("block.top", Axis::Y, 0.2);
     match refused(&mut driver, &step) {
-        StepError::Model(ModelError::TwoDisplacements {
+        IncrementError::Model(ModelError::TwoDisplacements {
             step,
             node,
             axis,
@@ -429,7 +435,7 @@ fn contradicting_conditions_are_refused() -> Fallible {
     // No third direction in the plane.
     let error = refused(&mut driver, &Step::new("out").fix("block.left", &[Axis::Z]));
     assert!(
-        matches!(&error, StepError::Model(ModelError::OutOfRange { .. })),
+        matches!(&error, IncrementError::Model(ModelError::OutOfRange { .. })),
         "{error:?}"
     );
 

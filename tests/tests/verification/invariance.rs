@@ -3,7 +3,7 @@
 
 use crate::close;
 use moreau::contact::{ContactSolver, GaussSeidel, Penalty, Plane, SemismoothNewton, Uzawa};
-use moreau::driver::{Axis, Driver, Model, Settings, Step, StepReport};
+use moreau::driver::{Axis, Driver, IncrementReport, Model, Settings, Step};
 use moreau::laws::{Coulomb, Status, VonMises};
 use moreau::mesh::{CellKind, Integration, Mesh, PlaneStrain, block2, uniform};
 use nalgebra::{Matrix2, Rotation2, Vector2};
@@ -48,7 +48,7 @@ fn assert_same(a: &Driver<2>, b: &Driver<2>, tolerance: f64, what: &str) {
 }
 
 /// Forces, displacements and reports in millimetres and megapascals, computed in other units.
-fn in_units(length: f64, stress: f64) -> Fallible<(Driver<2>, Vec<StepReport>)> {
+fn in_units(length: f64, stress: f64) -> Fallible<(Driver<2>, Vec<IncrementReport>)> {
     let punched = Punched {
         length,
         stress,
@@ -62,8 +62,8 @@ fn in_units(length: f64, stress: f64) -> Fallible<(Driver<2>, Vec<StepReport>)> 
 /// Asserts that a run in other units is the first one, to a tolerance.
 #[track_caller]
 fn assert_converted(
-    (first, expected): &(Driver<2>, Vec<StepReport>),
-    (driver, reports): &(Driver<2>, Vec<StepReport>),
+    (first, expected): &(Driver<2>, Vec<IncrementReport>),
+    (driver, reports): &(Driver<2>, Vec<IncrementReport>),
     (length, stress): (f64, f64),
     tolerance: f64,
 ) {
@@ -79,7 +79,7 @@ fn assert_converted(
         assert_eq!(a.status, b.status, "{what}");
     }
     for (a, b) in reports.iter().zip(expected) {
-        let counts = |r: &StepReport| {
+        let counts = |r: &IncrementReport| {
             (
                 r.newton_iterations,
                 r.factorisations,

@@ -3,10 +3,10 @@
 //! answers themselves are tested elsewhere.
 
 use moreau::contact::{
-    ContactError, ContactProblem, ContactSolution, ContactSolver, GaussSeidel, SemismoothNewton,
+    CondensedProblem, ContactError, ContactSolution, ContactSolver, GaussSeidel, SemismoothNewton,
     Uzawa,
 };
-use moreau::driver::{Driver, Settings, StepReport};
+use moreau::driver::{Driver, IncrementReport, Settings};
 use moreau::mesh::Integration;
 use verification::paper;
 use verification::problems::Fallible;
@@ -71,7 +71,7 @@ struct ToTheEnd<S>(S);
 impl<S: ContactSolver<2>> ContactSolver<2> for ToTheEnd<S> {
     fn approach(
         &self,
-        problem: &ContactProblem<2>,
+        problem: &CondensedProblem<2>,
         guess: Option<&ContactSolution<2>>,
         _enough: f64,
     ) -> Result<ContactSolution<2>, ContactError> {
@@ -84,7 +84,7 @@ fn pressed(
     contact: impl ContactSolver<2> + 'static,
     cells: [usize; 2],
     increments: usize,
-) -> Fallible<(Driver<2>, Vec<StepReport>)> {
+) -> Fallible<(Driver<2>, Vec<IncrementReport>)> {
     let settings = Settings {
         contact: Box::new(contact),
         ..Settings::default()
@@ -123,12 +123,12 @@ where
         assert!(off <= 1e-9, "{contact:?}, node {}: {off:.1e}", a.node);
         assert_eq!(a.status, b.status, "{contact:?}, node {}", a.node);
     }
-    let count = |reports: &[StepReport], of: fn(&StepReport) -> usize| -> usize {
+    let count = |reports: &[IncrementReport], of: fn(&IncrementReport) -> usize| -> usize {
         reports.iter().map(of).sum()
     };
-    let newton = |r: &[StepReport]| count(r, |r| r.newton_iterations);
+    let newton = |r: &[IncrementReport]| count(r, |r| r.newton_iterations);
     assert!(newton(&reports) <= newton(&expected) + 1, "{contact:?}");
-    let iterations = |r: &[StepReport]| count(r, |r| r.contact_iterations) as f64;
+    let iterations = |r: &[IncrementReport]| count(r, |r| r.contact_iterations) as f64;
     let saved = iterations(&reports) / iterations(&expected);
     assert!(saved <= part, "{contact:?}: {saved}");
     for report in &reports {

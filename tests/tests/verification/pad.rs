@@ -7,7 +7,7 @@
 
 use crate::close;
 use moreau::contact::Plane;
-use moreau::driver::{Analysis, Axis, Driver, Model, Settings, Step, StepError};
+use moreau::driver::{Analysis, Axis, Driver, IncrementError, Model, Settings, Step};
 use moreau::laws::{Coulomb, Elastic, Status};
 use moreau::mesh::{CellKind, Mesh, PlaneStrain, Solid, block2, block3, uniform};
 use nalgebra::SVector;
@@ -141,7 +141,7 @@ impl<H: Analysis<D> + Copy, const D: usize> Pad<H, D> {
     fn beyond(&self, limit: f64, factor: f64) -> Fallible<Driver<D>> {
         let mut driver = self.pressed()?;
         match driver.run(&self.drag(factor * limit), 4, |_, _| {}) {
-            Err(StepError::Collapse { collapse, .. }) => {
+            Err(IncrementError::Collapse { collapse, .. }) => {
                 let found = collapse.load_factor * factor;
                 close("shear at the limit", found, 1.0, 1e-6);
             }

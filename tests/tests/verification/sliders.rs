@@ -2,7 +2,7 @@
 //! regularised law and through the condensed contact problem; not a structure.
 
 use crate::close;
-use moreau::contact::{ContactProblem, ContactSolver, SemismoothNewton};
+use moreau::contact::{CondensedProblem, ContactSolver, SemismoothNewton};
 use moreau::laws::textbook::RegularisedCoulomb;
 use moreau::laws::{Coulomb, Local, Status};
 use nalgebra::{DMatrix, DVector, Rotation2, Vector2};
@@ -53,7 +53,7 @@ impl<const D: usize> Slider<D> for Condensed<D> {
         let pull = (drive - self.slider) * SPRING;
         let mut load = DVector::from_column_slice(pull.as_slice());
         load[0] = -pressure;
-        let problem = ContactProblem::new(
+        let problem = CondensedProblem::new(
             stiffness,
             load,
             vec![Local::zeros()],
@@ -284,7 +284,7 @@ fn elastic_bar_on_a_frictional_foundation_follows_masing() -> Fallible {
         for node in 0..ELEMENTS {
             load[2 * node] = -limit(node) / MU;
         }
-        let problem = ContactProblem::new(
+        let problem = CondensedProblem::new(
             stiffness.clone(),
             load,
             vec![Local::zeros(); ELEMENTS],

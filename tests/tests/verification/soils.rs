@@ -3,7 +3,7 @@
 
 use crate::close;
 use moreau::contact::Plane;
-use moreau::driver::{Axis, Driver, Model, Settings, Step, StepReport};
+use moreau::driver::{Axis, Driver, IncrementReport, Model, Settings, Step};
 use moreau::laws::{Coulomb, DruckerPrager, ElasticDruckerPrager};
 use moreau::mesh::{
     Axisymmetric, CellKind, Integration, PlaneStrain, Solid, block2, block3, uniform,
@@ -210,7 +210,7 @@ fn a_soil_that_does_not_dilate_is_crushed_in_space() -> Fallible {
 }
 
 /// The most iterations of an increment, where none was cut.
-fn most(reports: &[StepReport]) -> usize {
+fn most(reports: &[IncrementReport]) -> usize {
     assert!(reports.iter().all(|r| r.cuts == 0), "increments were cut");
     let iterations = reports.iter().map(|r| r.newton_iterations);
     iterations.max().unwrap_or(usize::MAX)

@@ -1,7 +1,7 @@
 //! Increments as transactions, and independence of the number of threads, to the last bit; not
 //! restart from files.
 
-use moreau::driver::{Axis, Driver, Energies, Step, StepError, StepReport};
+use moreau::driver::{Axis, Driver, Energies, IncrementError, IncrementReport, Step};
 use verification::problems::Fallible;
 use verification::problems::punched::Punched;
 
@@ -58,8 +58,8 @@ fn snapshot(driver: &Driver<2>) -> Snapshot {
 }
 
 /// What a report says of the increment itself; factorisations depend on what was at hand.
-fn said(report: &StepReport) -> StepReport {
-    StepReport {
+fn said(report: &IncrementReport) -> IncrementReport {
+    IncrementReport {
         factorisations: 0,
         ..report.clone()
     }
@@ -86,9 +86,9 @@ fn failed_increment_leaves_no_trace() -> Fallible {
         for bad in crushing(&punched, &tried)? {
             match tried.advance(&bad) {
                 Err(
-                    StepError::NotConverged { .. }
-                    | StepError::Mechanism { .. }
-                    | StepError::Contact { .. },
+                    IncrementError::NotConverged { .. }
+                    | IncrementError::Mechanism { .. }
+                    | IncrementError::Contact { .. },
                 ) => {}
                 other => panic!("expected a failure, found {other:?}"),
             }
@@ -112,7 +112,7 @@ fn one_and_two_threads_agree_to_the_bit() -> Fallible {
         cells: (20, 8),
         ..Punched::default()
     };
-    let run = |threads: usize| -> Fallible<(Vec<StepReport>, Snapshot)> {
+    let run = |threads: usize| -> Fallible<(Vec<IncrementReport>, Snapshot)> {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .build()?;

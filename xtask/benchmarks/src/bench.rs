@@ -257,7 +257,8 @@ fn measure(
     let model = memory("VmRSS:");
     let reports = driver.run(&press(increments), increments, |_, _| {})?;
     let seconds = clock.elapsed().as_secs_f64();
-    let sum = |f: fn(&moreau::driver::StepReport) -> usize| reports.iter().map(f).sum::<usize>();
+    let sum =
+        |f: fn(&moreau::driver::IncrementReport) -> usize| reports.iter().map(f).sum::<usize>();
     let timings = driver.timings();
     let (newton, factorisations) = (sum(|r| r.newton_iterations), sum(|r| r.factorisations));
     let one = timings.factorisation.as_secs_f64() / factorisations.max(1) as f64;

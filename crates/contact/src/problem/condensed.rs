@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 /// symmetric positive semi-definite, `D·contacts` square; f the condensed load \[N\] and g the
 /// displacement about which the structure was linearised \[mm\].
 #[derive(Debug, Clone)]
-pub struct ContactProblem<const D: usize> {
+pub struct CondensedProblem<const D: usize> {
     stiffness: DMatrix<f64>,
     load: DVector<f64>,
     origin: Vec<Local<D>>,
@@ -27,7 +27,7 @@ pub struct ContactProblem<const D: usize> {
     held: bool,
 }
 
-impl<const D: usize> ContactProblem<D> {
+impl<const D: usize> CondensedProblem<D> {
     /// A problem from its parts; `previous` are the forces t₀ at the start of the step.
     ///
     /// # Errors
@@ -64,7 +64,7 @@ impl<const D: usize> ContactProblem<D> {
     /// A problem given in the form u = W t + q of discrete frictional contact; t₀ = 0.
     ///
     /// # Errors
-    /// As [`ContactProblem::new`]; [`ContactError::Indefinite`] if W is not positive definite.
+    /// As [`CondensedProblem::new`]; [`ContactError::Indefinite`] if W is not positive definite.
     pub fn from_delassus(
         operator: DMatrix<f64>,
         free: &[Local<D>],
@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn nothing_in_contact_has_a_form_too() {
         let (s, f) = (DMatrix::zeros(0, 0), DVector::zeros(0));
-        let problem = ContactProblem::<2>::new(s, f, vec![], Vec::<Friction>::new(), vec![]);
+        let problem = CondensedProblem::<2>::new(s, f, vec![], Vec::<Friction>::new(), vec![]);
         let form = problem.expect("valid").delassus().expect("empty");
         assert_eq!(form.contacts(), 0);
     }
@@ -258,7 +258,7 @@ mod tests {
         let f = DVector::from_row_slice(&[0.5, -0.25]);
         let g = vec![Local::<2>::new(0.1, 0.2)];
         let zero = vec![Local::zeros()];
-        let problem = ContactProblem::new(s, f, g, vec![coulomb(0.3)], zero).expect("valid");
+        let problem = CondensedProblem::new(s, f, g, vec![coulomb(0.3)], zero).expect("valid");
         let t = Local::<2>::new(0.7, -0.2);
         let form = problem.delassus().expect("definite");
         let back = problem.force(&form.displacement(&[t]));
@@ -272,7 +272,7 @@ mod tests {
         let f = DVector::from_row_slice(&[0.5, -7.0, 0.0, 0.1]);
         let zero = vec![Local::<2>::zeros(); 2];
         let before = vec![Local::<2>::new(3.0, 4.0), Local::zeros()];
-        let problem = ContactProblem::new(s, f, zero.clone(), vec![coulomb(0.3); 2], before);
+        let problem = CondensedProblem::new(s, f, zero.clone(), vec![coulomb(0.3); 2], before);
         let problem = problem.expect("valid");
         assert_eq!((problem.alpha(0), problem.alpha(1)), (2.0, 5.0));
         assert_eq!(problem.force_scale(&zero), 7.0);
@@ -291,7 +291,7 @@ mod tests {
         let zero = vec![Local::<2>::zeros()];
         let f = DVector::zeros(2);
         let nan = DVector::from_element(2, f64::NAN);
-        let new = ContactProblem::new;
+        let new = CondensedProblem::new;
         assert!(matches!(
             new(s.clone(), nan, zero.clone(), one.clone(), zero.clone()),
             Err(ContactError::NotFinite { what: "load" })

@@ -1,20 +1,20 @@
 //! Any method for u = W r + q on a condensed problem; not a method.
 
 use super::{ContactSolution, ContactSolver, Goal, LocalSolver, Tolerance, forces};
-use crate::{ContactError, ContactProblem};
+use crate::{CondensedProblem, ContactError};
 
 /// A method for local problems on the dual form of condensed ones, u = W t + q with W = S⁻¹, whose
 /// unknowns are the forces.
 ///
 /// ```
-/// use moreau_contact::{Admm, ContactProblem, ContactSolver, Dual};
+/// use moreau_contact::{Admm, CondensedProblem, ContactSolver, Dual};
 /// use moreau_laws::{Local, Tresca};
 /// use nalgebra::DMatrix;
 ///
 /// // Pressed by q_n < 0, and dragged by more than the shear that Tresca's law allows.
 /// let w = DMatrix::identity(2, 2);
 /// let laws = vec![Tresca::new(0.1)?];
-/// let problem = ContactProblem::<2>::from_delassus(w, &[Local::<2>::new(-1.0, 0.5)], laws)?;
+/// let problem = CondensedProblem::<2>::from_delassus(w, &[Local::<2>::new(-1.0, 0.5)], laws)?;
 /// let solution = Dual(Admm::default()).solve(&problem, None)?;
 /// assert!((solution.force[0] - Local::<2>::new(1.0, -0.1)).norm() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -34,7 +34,7 @@ const LEAST: f64 = 1e-15;
 impl<const D: usize, S: LocalSolver<D>> ContactSolver<D> for Dual<S> {
     fn approach(
         &self,
-        problem: &ContactProblem<D>,
+        problem: &CondensedProblem<D>,
         guess: Option<&ContactSolution<D>>,
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {

@@ -4,7 +4,7 @@ use super::fixed_point::fixed_point;
 use super::local::{Best, LocalSolver, Reason, Unsolved, start};
 use super::one_contact::{self, Bound};
 use super::{ContactSolution, ContactSolver, Goal, LocalSolution, Tolerance, forces};
-use crate::{ContactError, ContactProblem, LocalProblem};
+use crate::{CondensedProblem, ContactError, LocalProblem};
 use moreau_laws::Local;
 
 const NAME: &str = "Gauss-Seidel";
@@ -29,7 +29,7 @@ impl Default for GaussSeidel {
 impl<const D: usize> ContactSolver<D> for GaussSeidel {
     fn approach(
         &self,
-        problem: &ContactProblem<D>,
+        problem: &CondensedProblem<D>,
         guess: Option<&ContactSolution<D>>,
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {

@@ -1,7 +1,7 @@
 //! The penalty method, \[81\]–\[82\]: Coulomb's law in series with springs; not the exact law.
 
 use super::{ContactSolution, ContactSolver, Tolerance, semismooth};
-use crate::{ContactError, ContactProblem};
+use crate::{CondensedProblem, ContactError};
 use moreau_laws::Local;
 
 /// Contact regularised by springs k_n on the penetration and k_t on the elastic slip.
@@ -51,7 +51,7 @@ impl Penalty {
 impl<const D: usize> ContactSolver<D> for Penalty {
     fn approach(
         &self,
-        problem: &ContactProblem<D>,
+        problem: &CondensedProblem<D>,
         guess: Option<&ContactSolution<D>>,
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {

@@ -7,7 +7,7 @@ use super::{
     Auto, ContactSolution, ContactSolver, GaussSeidel, Goal, LocalSolver, Tolerance, Uzawa,
 };
 use crate::problem::statuses;
-use crate::{ContactError, ContactProblem, Springs};
+use crate::{CondensedProblem, ContactError, Springs};
 use moreau_laws::{Friction, Local};
 use nalgebra::{DVector, SMatrix};
 
@@ -34,7 +34,7 @@ impl Default for SemismoothNewton {
 impl<const D: usize> ContactSolver<D> for SemismoothNewton {
     fn approach(
         &self,
-        problem: &ContactProblem<D>,
+        problem: &CondensedProblem<D>,
         guess: Option<&ContactSolution<D>>,
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
@@ -71,7 +71,7 @@ struct Iterate<const D: usize> {
 /// Newton on the natural map at u + C (t − t₀*), with a diagonal compliance C \[mm/N\] of every contact
 /// (zero: the exact law) and t₀* = (0, t₀ₜ), the penalty of \[81\]–\[82\] as a spring in series.
 pub(super) fn newton<const D: usize>(
-    problem: &ContactProblem<D>,
+    problem: &CondensedProblem<D>,
     compliance: Local<D>,
     guess: Option<&ContactSolution<D>>,
     (tolerance, enough): (Tolerance, f64),
@@ -149,7 +149,7 @@ pub(super) fn newton<const D: usize>(
 }
 
 struct Newton<'a, const D: usize> {
-    problem: &'a ContactProblem<D>,
+    problem: &'a CondensedProblem<D>,
     springs: &'a [Springs<D>],
     part: f64,
 }
@@ -283,7 +283,7 @@ impl<const D: usize> Newton<'_, D> {
 }
 
 /// The same slips at closed gaps.
-fn close<const D: usize>(problem: &ContactProblem<D>, x: &[Local<D>]) -> Vec<Local<D>> {
+fn close<const D: usize>(problem: &CondensedProblem<D>, x: &[Local<D>]) -> Vec<Local<D>> {
     let closed =
         |(x, g): (&Local<D>, &Local<D>)| Local::from_fn(|k, _| if k == 0 { -g[0] } else { x[k] });
     x.iter().zip(problem.origin()).map(closed).collect()
@@ -318,7 +318,7 @@ mod tests {
         let q = |i: usize| Local::<3>::new(-0.4 + (i as f64 * 1.7).sin(), 0.3, -0.2);
         let free: Vec<_> = (0..4).map(q).collect();
         for (law, compliance) in laws.iter().flat_map(|l| [0.0, 0.5, 20.0].map(|c| (*l, c))) {
-            let problem = ContactProblem::from_delassus(w.clone(), &free, vec![law; 4]);
+            let problem = CondensedProblem::from_delassus(w.clone(), &free, vec![law; 4]);
             let problem = problem.expect("definite");
             let springs = vec![
                 Springs {

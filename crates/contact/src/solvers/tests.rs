@@ -83,7 +83,7 @@ fn agree<const D: usize>(
 ) -> Result<(), TestCaseError> {
     let (w, q) = random::<D>(contacts, entries, q);
     let laws = vec![Coulomb::new(mu).expect("valid"); contacts];
-    let condensed = ContactProblem::from_delassus(w.clone(), &q, laws.clone()).expect("regular");
+    let condensed = CondensedProblem::from_delassus(w.clone(), &q, laws.clone()).expect("regular");
     let reference = ContactSolver::solve(&SemismoothNewton::default(), &condensed, None)
         .map_err(|error| TestCaseError::fail(error.to_string()))?;
     let problem = problem(&w, &q, mu);

@@ -4,7 +4,7 @@ use super::fixed_point::fixed_point;
 use super::local::{Best, LocalSolver, Reason, Unsolved, start};
 use super::{ContactSolution, ContactSolver, Goal, LocalSolution, Tolerance, forces};
 use crate::problem::{split, stack};
-use crate::{ContactError, ContactProblem, LocalProblem};
+use crate::{CondensedProblem, ContactError, LocalProblem};
 use moreau_laws::Local;
 use nalgebra::DVector;
 
@@ -33,7 +33,7 @@ impl Default for Uzawa {
 impl<const D: usize> ContactSolver<D> for Uzawa {
     fn approach(
         &self,
-        problem: &ContactProblem<D>,
+        problem: &CondensedProblem<D>,
         guess: Option<&ContactSolution<D>>,
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
@@ -99,7 +99,9 @@ impl<const D: usize> LocalSolver<D> for Uzawa {
 ///
 /// # Errors
 /// [`ContactError::Floating`] if the stiffness is singular.
-pub fn uzawa_steps<const D: usize>(problem: &ContactProblem<D>) -> Result<Vec<f64>, ContactError> {
+pub fn uzawa_steps<const D: usize>(
+    problem: &CondensedProblem<D>,
+) -> Result<Vec<f64>, ContactError> {
     Ok(steps(&problem.delassus()?))
 }
 

@@ -37,16 +37,16 @@ impl<const D: usize> Driver<D> {
     }
 
     fn least_gap(&self, contact: usize) -> Option<LeastGap<D>> {
-        let pairs = self.points.iter().zip(&self.footings);
+        let pairs = self.points.iter().zip(&self.motion_rows);
         let own = pairs.filter(|(p, _)| p.contact == contact);
-        let gaps = own.filter_map(|(p, footing)| {
+        let gaps = own.filter_map(|(p, motion_row)| {
             let gap = match p.tool {
                 Some(tool) => {
                     let at = self.displacement(self.tool_node(tool));
                     let obstacle = self.tools[tool].obstacle.as_ref();
                     p.gap(obstacle, |a| self.position(a) - at)
                 }
-                None => footing.plane(&SVector::zeros())?.1 - p.offset,
+                None => motion_row.plane(&SVector::zeros())?.1 - p.offset,
             };
             Some((gap, p.node))
         });

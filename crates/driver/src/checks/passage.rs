@@ -2,7 +2,7 @@
 //! on the wrong side.
 
 use crate::driver::Driver;
-use crate::error::StepError;
+use crate::error::IncrementError;
 use nalgebra::SVector;
 
 /// How deep a straight way through a tool may be in it, over the length of the way inside: of a cylinder, that
@@ -20,13 +20,13 @@ impl<const D: usize> Driver<D> {
     /// straight way of the displacement increments `d_u` may cut the surface as a chord does.
     ///
     /// # Errors
-    /// [`StepError::Passage`].
-    pub(crate) fn check_passage(&self, d_u: &[f64]) -> Result<(), StepError> {
+    /// [`IncrementError::Passage`].
+    pub(crate) fn check_passage(&self, d_u: &[f64]) -> Result<(), IncrementError> {
         let size = self.mesh.size();
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
-        for (p, footing) in self.points.iter().zip(&self.footings) {
+        for (p, motion_row) in self.points.iter().zip(&self.motion_rows) {
             let Some(tool) = p.tool else { continue };
-            let way = footing.relative(moved);
+            let way = motion_row.relative(moved);
             let length = way.norm();
             if length <= THIN * size {
                 continue;
@@ -36,7 +36,7 @@ impl<const D: usize> Driver<D> {
                 true => self.position(a),
                 false => self.displacement(a),
             };
-            let start = footing.relative(at);
+            let start = motion_row.relative(at);
             let gap = |s: f64| obstacle.distance(&(start + way * (s / length))) - p.offset;
             let surface = gap(0.0).min(gap(length)).min(0.0);
             let piece = (0.25 * THIN * size).max(length / PIECES);
@@ -48,7 +48,7 @@ impl<const D: usize> Driver<D> {
                 depth = depth.max(inside);
                 let out = inside <= 0.0 || ahead >= length;
                 if out && depth > (THIN * size).max(CHORD * (s - entered)) {
-                    return Err(StepError::Passage {
+                    return Err(IncrementError::Passage {
                         tool: self.tools[tool].name.clone(),
                         node: p.node,
                         position: self.mesh.nodes()[p.node].to_vec(),

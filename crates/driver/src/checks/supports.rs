@@ -8,7 +8,7 @@ use crate::checks::rigid::{NOTHING, RigidModes, Rows, Stopper, null_space};
 use crate::driver::Driver;
 use crate::error::ModelError;
 use crate::model::load::{Axis, Condition, Loading, Step};
-use crate::model::points::{ContactPoint, Footing};
+use crate::model::points::{ContactPoint, RelativeMotionRow};
 use moreau_laws::Status;
 use nalgebra::SVector;
 
@@ -185,11 +185,11 @@ impl<const D: usize> Driver<D> {
             let source = (Stopper::Displacement, group, dof % D);
             rows.add(source, &modes.row(&[(dof / D, 1.0)], &axis));
         }
-        for (c, (point, footing)) in self.points.iter().zip(&self.footings).enumerate() {
-            let Some(normal) = self.normal_at(point, footing) else {
+        for (c, (point, motion_row)) in self.points.iter().zip(&self.motion_rows).enumerate() {
+            let Some(normal) = self.normal_at(point, motion_row) else {
                 continue;
             };
-            let weights: Vec<(usize, f64)> = footing.weights().collect();
+            let weights: Vec<(usize, f64)> = motion_row.weights().collect();
             let axes = moreau_contact::frame(&normal);
             for k in 0..components(self, c) {
                 let kind = match k {
@@ -204,16 +204,22 @@ impl<const D: usize> Driver<D> {
     }
 
     /// The normal at a contact point where it stands; `None` between bodies where it meets nothing.
-    fn normal_at(&self, point: &ContactPoint<D>, footing: &Footing<D>) -> Option<SVector<f64, D>> {
+    fn normal_at(
+        &self,
+        point: &ContactPoint<D>,
+        motion_row: &RelativeMotionRow<D>,
+    ) -> Option<SVector<f64, D>> {
         let Some(tool) = point.tool else {
-            return footing.plane(&SVector::zeros()).map(|(normal, _)| normal);
+            return motion_row
+                .plane(&SVector::zeros())
+                .map(|(normal, _)| normal);
         };
         let nodes = self.mesh.nodes().len();
         let at = |a: usize| match a < nodes {
             true => self.position(a),
             false => self.displacement(a),
         };
-        let x = footing.relative(at);
+        let x = motion_row.relative(at);
         Some(self.tools[tool].obstacle.normal(&x))
     }
 }

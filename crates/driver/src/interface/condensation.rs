@@ -3,9 +3,9 @@
 
 use crate::linear::suspension::Suspended;
 use crate::linear::system::System;
-use crate::model::points::{ContactPoint, Footing, Kinematics};
+use crate::model::points::{ContactPoint, Kinematics, RelativeMotionRow};
 use moreau_algebra::DenseCholesky;
-use moreau_contact::{ContactError, ContactProblem};
+use moreau_contact::{CondensedProblem, ContactError};
 use moreau_laws::{Local, Status};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
@@ -17,9 +17,9 @@ use std::collections::BTreeMap;
 /// u − u_now. Contact forces do work on u alone, and y is condensed out of Tᵀ S T. A tool leaves no
 /// y.
 pub(crate) struct Condensation<const D: usize> {
-    pub(crate) problem: ContactProblem<D>,
+    pub(crate) problem: CondensedProblem<D>,
     transformation: Transformation,
-    rest: Rest,
+    rest: InternalUnknowns,
     /// Components that are not switched off.
     active: Vec<bool>,
 }
@@ -34,7 +34,7 @@ impl<const D: usize> Condensation<D> {
     pub(crate) fn new(
         system: &System,
         (stiffness, load): (DMatrix<f64>, &DVector<f64>),
-        (points, footings): (&[ContactPoint<D>], &[Footing<D>]),
+        (points, motion_rows): (&[ContactPoint<D>], &[RelativeMotionRow<D>]),
         kinematics: &[Kinematics<D>],
         (previous, force): (Vec<Local<D>>, &[Local<D>]),
     ) -> Result<Self, ContactError> {
@@ -42,7 +42,7 @@ impl<const D: usize> Condensation<D> {
         let mut suspended = Vec::new();
         for (c, k) in kinematics.iter().enumerate() {
             for j in (0..D).filter(|&j| k.active[j]) {
-                let row = row(&footings[c], k, j, |dof| system.interface_index(dof));
+                let row = row(&motion_rows[c], k, j, |dof| system.interface_index(dof));
                 let own = (0..D).filter_map(|i| system.interface_index(D * points[c].node + i));
                 let own: Vec<usize> = own.collect();
                 if row.is_empty() {
@@ -66,7 +66,8 @@ impl<const D: usize> Condensation<D> {
             let row = transformation.combination(&own.row);
             own.add(spring, &row, (&mut stiffness, &mut load));
         }
-        let (mut stiffness, load, rest) = Rest::condense(stiffness, load, D * points.len())?;
+        let (mut stiffness, load, rest) =
+            InternalUnknowns::condense(stiffness, load, D * points.len())?;
         // Components switched off: alone on their diagonal, of the size of their neighbours.
         let typical = stiffness.diagonal().amax().max(f64::MIN_POSITIVE);
         for (c, k) in kinematics.iter().enumerate() {
@@ -76,7 +77,7 @@ impl<const D: usize> Condensation<D> {
         }
         let now: Vec<Local<D>> = kinematics.iter().map(|k| k.u).collect();
         let laws = kinematics.iter().map(|k| k.law).collect();
-        let problem = ContactProblem::new(stiffness, load, now, laws, previous)?;
+        let problem = CondensedProblem::new(stiffness, load, now, laws, previous)?;
         Ok(Self {
             problem,
             transformation,
@@ -154,13 +155,13 @@ impl<const D: usize> Yielding<'_, D> {
 /// A component of the relative displacement as a combination of unknowns, those that a degree of
 /// freedom is given by.
 pub(crate) fn row<const D: usize>(
-    footing: &Footing<D>,
+    motion_row: &RelativeMotionRow<D>,
     kinematics: &Kinematics<D>,
     component: usize,
     unknown: impl Fn(usize) -> Option<usize>,
 ) -> BTreeMap<usize, f64> {
     let mut row = BTreeMap::new();
-    for (a, w) in footing.weights() {
+    for (a, w) in motion_row.weights() {
         for i in 0..D {
             let coefficient = w * kinematics.axes[(i, component)];
             if let Some(dof) = unknown(D * a + i)
@@ -203,7 +204,7 @@ impl Elimination {
 
     /// Whether a row says something that those solved do not: whether after them a coefficient is left
     /// that is above a part of its largest.
-    pub(crate) fn says(&self, row: &BTreeMap<usize, f64>, part: f64) -> bool {
+    pub(crate) fn is_independent(&self, row: &BTreeMap<usize, f64>, part: f64) -> bool {
         let largest =
             |row: &BTreeMap<usize, f64>| row.values().fold(0.0, |m: f64, c| m.max(c.abs()));
         largest(&self.reduced(row.clone()).1) > part * largest(row)
@@ -351,7 +352,7 @@ impl Transformation {
 }
 
 /// The unknowns y that no contact force acts on: y = S_yy⁻¹ (f_y − S_yu u).
-struct Rest {
+struct InternalUnknowns {
     factor: Option<DenseCholesky>,
     /// L⁻¹ S_yu.
     coupling: DMatrix<f64>,
@@ -359,7 +360,7 @@ struct Rest {
     load: DVector<f64>,
 }
 
-impl Rest {
+impl InternalUnknowns {
     /// Schur complement and load on the first `kept` unknowns, and the way back to the others.
     fn condense(
         s: DMatrix<f64>,
@@ -468,13 +469,14 @@ mod tests {
         });
         let s = &l * l.transpose();
         let f = DVector::from_fn(5, |i, _| (i as f64).cos());
-        let (own, load, rest) = Rest::condense(s.clone(), f.clone(), 2).expect("definite");
+        let (own, load, rest) =
+            InternalUnknowns::condense(s.clone(), f.clone(), 2).expect("definite");
         let x = s.lu().solve(&f).expect("regular");
         let u = own.lu().solve(&load).expect("regular");
         assert!((&u - x.rows(0, 2)).norm() < 1e-10);
         let y = rest.expand(&u, rest.load.clone());
         assert!((y - x.rows(2, 3)).norm() < 1e-10);
         let floating = DMatrix::from_element(3, 3, 1.0);
-        assert!(Rest::condense(floating, DVector::zeros(3), 1).is_err());
+        assert!(InternalUnknowns::condense(floating, DVector::zeros(3), 1).is_err());
     }
 }

@@ -3,7 +3,7 @@
 use crate::driver::Driver;
 use crate::linear::system::System;
 use crate::model::load::Loading;
-use crate::model::points::{ContactPoint, Footing, Kinematics};
+use crate::model::points::{ContactPoint, Kinematics, RelativeMotionRow};
 use crate::vector::SparseVector;
 use moreau_laws::Local;
 use nalgebra::SVector;
@@ -31,16 +31,16 @@ impl<const D: usize> Driver<D> {
     ) -> Vec<Kinematics<D>> {
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
         let size = self.mesh.size();
-        let at = |(p, footing): (&ContactPoint<D>, &Footing<D>)| {
-            let free = footing.free(p.node, |dof| system.is_free(dof));
-            let slip = footing.relative(moved);
+        let at = |(p, motion_row): (&ContactPoint<D>, &RelativeMotionRow<D>)| {
+            let free = motion_row.free(p.node, |dof| system.is_free(dof));
+            let slip = motion_row.relative(moved);
             let Some(tool) = p.tool else {
-                let kinematics = match footing.plane(&slip) {
+                let kinematics = match motion_row.plane(&slip) {
                     Some((n, gap)) => Kinematics::new(p, &n, gap - p.offset, &slip, free),
                     // Opposite to nothing: as far away as anything can be.
                     None => Kinematics::apart(p.law, size),
                 };
-                return kinematics.between_forces(footing.area);
+                return kinematics.between_forces(motion_row.area);
             };
             let obstacle = &self.tools[tool].obstacle;
             let tool = self.tool_position(tool, end, d_u);
@@ -48,11 +48,11 @@ impl<const D: usize> Driver<D> {
                 true => self.position(a) + moved(a),
                 false => tool,
             };
-            let x = footing.relative(now);
+            let x = motion_row.relative(now);
             let Some(corner) = obstacle.corner(&x, AHEAD * size) else {
                 let gap = p.gap(obstacle.as_ref(), |a| now(a) - tool);
                 let kinematics = Kinematics::new(p, &obstacle.normal(&x), gap, &slip, free);
-                return kinematics.between_forces(footing.area);
+                return kinematics.between_forces(motion_row.area);
             };
             // Any normal of the cone: friction about its axis that holds as far as the cone reaches.
             let gap = corner.axis.dot(&(x - corner.position)) - p.offset;
@@ -62,7 +62,7 @@ impl<const D: usize> Driver<D> {
             kinematics.at_corner = true;
             kinematics
         };
-        let mut all: Vec<_> = self.points.iter().zip(&self.footings).map(at).collect();
+        let mut all: Vec<_> = self.points.iter().zip(&self.motion_rows).map(at).collect();
         self.stop_once(|dof| system.is_free(dof), &mut all);
         all
     }
@@ -80,9 +80,9 @@ impl<const D: usize> Driver<D> {
         t: &[Local<D>],
     ) -> SparseVector {
         let mut forces = SparseVector::default();
-        for ((footing, k), t) in self.footings.iter().zip(kinematics).zip(t) {
+        for ((motion_row, k), t) in self.motion_rows.iter().zip(kinematics).zip(t) {
             let f = k.force(t);
-            for (a, w) in footing.weights() {
+            for (a, w) in motion_row.weights() {
                 for i in 0..D {
                     forces.add(D * a + i, w * f[i]);
                 }

@@ -6,7 +6,7 @@ use crate::error::Inaccurate;
 use crate::interface::condensation::{Elimination, row};
 use crate::linear::suspension::STIFFER;
 use crate::linear::system::System;
-use crate::model::points::{Footing, Kinematics};
+use crate::model::points::{Kinematics, RelativeMotionRow};
 use crate::settings::{Nesting, Seam};
 use crate::vector::SparseVector;
 use crate::vector::largest;
@@ -86,8 +86,8 @@ impl<'a, const D: usize> Tied<'a, D> {
     ) -> Self {
         let mut rows = Vec::with_capacity(D * kinematics.len());
         let mut stiffness = Vec::with_capacity(kinematics.len());
-        for (footing, k) in driver.footings.iter().zip(kinematics) {
-            let own = (footing.own.iter()).flat_map(|&(a, _)| (0..D).map(move |i| D * a + i));
+        for (motion_row, k) in driver.motion_rows.iter().zip(kinematics) {
+            let own = (motion_row.own.iter()).flat_map(|&(a, _)| (0..D).map(move |i| D * a + i));
             let own = own.filter_map(|dof| system.unknown(dof));
             let largest = own.map(|p| system.diagonal(p)).fold(0.0, f64::max);
             stiffness.push(if largest > 0.0 {
@@ -99,7 +99,7 @@ impl<'a, const D: usize> Tied<'a, D> {
                 rows.push(match k.active[j] {
                     true => {
                         let unknown = |dof: usize| system.unknown(dof).map(|p| p as usize);
-                        let row = row(footing, k, j, unknown).into_iter();
+                        let row = row(motion_row, k, j, unknown).into_iter();
                         row.map(|(p, c)| (p as u32, c)).collect()
                     }
                     false => Vec::new(),
@@ -401,6 +401,11 @@ impl<const D: usize> Driver<D> {
         let method = self.settings.contact.springs();
         let may =
             self.settings.nesting == Nesting::Inside && seam != Seam::Condensed && method.is_some();
-        may.then(|| self.footings.iter().map(Footing::nodes).collect())
+        may.then(|| {
+            self.motion_rows
+                .iter()
+                .map(RelativeMotionRow::nodes)
+                .collect()
+        })
     }
 }

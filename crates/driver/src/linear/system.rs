@@ -371,7 +371,7 @@ impl System {
 
     /// Assembles the elastic stiffness, to which flow only adds, learns its size, and chooses σ: its
     /// largest diagonal on the interface, or zero if the bodies must be held without it.
-    pub(crate) fn learn<const D: usize>(
+    pub(crate) fn assemble_elastic<const D: usize>(
         &mut self,
         blocks: &mut [Box<dyn Block<D>>],
         shifted: bool,

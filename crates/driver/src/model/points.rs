@@ -3,7 +3,7 @@
 use crate::error::ModelError;
 use moreau_contact::{Obstacle, frame};
 use moreau_laws::{Friction, Local};
-use moreau_mesh::{Coupling, NodeKind, nearest};
+use moreau_mesh::{MortarRow, NodeKind, nearest};
 use nalgebra::{SMatrix, SVector};
 use std::collections::BTreeMap;
 
@@ -82,7 +82,7 @@ impl<const D: usize> ContactPoint<D> {
 /// Whose displacements make the relative displacement of a contact point during an increment:
 /// Σ own·v − Σ opposite·v. Forces go back with the same weights.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Footing<const D: usize> {
+pub(crate) struct RelativeMotionRow<const D: usize> {
     /// The node, and those that share its multiplier at the edge of an overlap or its shape function
     /// in a changed basis.
     pub(crate) own: Vec<(usize, f64)>,
@@ -94,7 +94,7 @@ pub(crate) struct Footing<const D: usize> {
     plane: Option<(SVector<f64, D>, f64)>,
 }
 
-impl<const D: usize> Footing<D> {
+impl<const D: usize> RelativeMotionRow<D> {
     /// On a tool, a body of the one node `tool`.
     pub(crate) fn on_tool(point: &ContactPoint<D>, tool: usize) -> Self {
         Self {
@@ -106,17 +106,17 @@ impl<const D: usize> Footing<D> {
     }
 
     /// On a surface, with nodes at the given positions.
-    pub(crate) fn on_surface(coupling: Coupling<D>, positions: &[[f64; D]]) -> Self {
-        let mut footing = Self {
-            own: coupling.own,
-            opposite: coupling.opposite,
-            area: coupling.area,
+    pub(crate) fn on_surface(mortar_row: MortarRow<D>, positions: &[[f64; D]]) -> Self {
+        let mut motion_row = Self {
+            own: mortar_row.own,
+            opposite: mortar_row.opposite,
+            area: mortar_row.area,
             plane: None,
         };
-        let normal = SVector::from(coupling.normal);
-        let apart = footing.relative(|a| SVector::from(positions[a]));
-        footing.plane = Some((normal, normal.dot(&apart)));
-        footing
+        let normal = SVector::from(mortar_row.normal);
+        let apart = motion_row.relative(|a| SVector::from(positions[a]));
+        motion_row.plane = Some((normal, normal.dot(&apart)));
+        motion_row
     }
 
     /// Σ own·v − Σ opposite·v.
@@ -437,38 +437,41 @@ mod tests {
 
     #[test]
     fn what_moves_together_does_not_slip() {
-        let footing = Footing::<2> {
+        let motion_row = RelativeMotionRow::<2> {
             own: vec![(0, 0.75), (1, 0.25)],
             opposite: vec![(2, 1.5), (3, -0.5)],
-            ..Footing::default()
+            ..RelativeMotionRow::default()
         };
-        let same = footing.relative(|_| SVector::<f64, 2>::new(0.5, 0.1));
+        let same = motion_row.relative(|_| SVector::<f64, 2>::new(0.5, 0.1));
         assert!(same.norm() < 1e-15, "carried along: {same}");
         // A direction is free if the own node is, or all of those opposite are.
-        assert_eq!(footing.free(0, |dof| dof != 0), [true, true]);
-        assert_eq!(footing.free(0, |dof| dof != 0 && dof != 4), [false, true]);
+        assert_eq!(motion_row.free(0, |dof| dof != 0), [true, true]);
+        assert_eq!(
+            motion_row.free(0, |dof| dof != 0 && dof != 4),
+            [false, true]
+        );
     }
 
     #[test]
     fn what_is_taken_over_is_a_mean_by_area() {
         let plane = |y: f64, gap| Some((SVector::<f64, 2>::new(0.0, y), gap));
-        let mut footing = Footing {
+        let mut motion_row = RelativeMotionRow {
             own: vec![(0, 1.0)],
             opposite: vec![(2, 0.5), (3, 0.5)],
             area: 3.0,
             plane: plane(1.0, 0.1),
         };
-        let held = Footing {
+        let held = RelativeMotionRow {
             own: vec![(1, 1.0)],
             opposite: vec![(2, 1.0)],
             area: 2.0,
             plane: plane(1.0, 0.5),
         };
-        footing.take_over(&held, 0.5);
-        assert_eq!(footing.area, 4.0);
-        assert_eq!(footing.own, [(0, 0.75), (1, 0.25)]);
-        assert_eq!(footing.opposite, [(2, 0.625), (3, 0.375)]);
-        let (normal, gap) = footing.plane(&SVector::zeros()).expect("a surface");
+        motion_row.take_over(&held, 0.5);
+        assert_eq!(motion_row.area, 4.0);
+        assert_eq!(motion_row.own, [(0, 0.75), (1, 0.25)]);
+        assert_eq!(motion_row.opposite, [(2, 0.625), (3, 0.375)]);
+        let (normal, gap) = motion_row.plane(&SVector::zeros()).expect("a surface");
         assert_eq!((normal[1], gap), (1.0, 0.2));
     }
 }

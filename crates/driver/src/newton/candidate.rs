@@ -15,12 +15,12 @@ pub(crate) struct Counts {
     pub(crate) factorisations: usize,
     /// Iterations of conjugate gradients, and steps for what a symmetric tangent lacks.
     pub(crate) linear: usize,
-    /// [`StepReport::contact_solves`].
+    /// [`IncrementReport::contact_solves`].
     pub(crate) contact_solves: usize,
     /// Factorisations, and iterations of conjugate gradients, that the system had done before.
     pub(crate) before: (usize, usize),
     pub(crate) residuals: Vec<f64>,
-    /// [`StepReport::criticality`].
+    /// [`IncrementReport::criticality`].
     pub(crate) criticality: Option<(usize, f64)>,
     /// Whether the statuses have left a rigid motion free on the way.
     pub(crate) undetermined: bool,

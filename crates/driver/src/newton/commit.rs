@@ -2,11 +2,11 @@
 //! how it converged.
 
 use crate::driver::{Driver, State};
-use crate::error::StepError;
+use crate::error::IncrementError;
 use crate::model::load::Loading;
 use crate::model::points::Kinematics;
 use crate::newton::candidate::{Candidate, Counts};
-use crate::report::{ContactRecord, Energies, StepReport};
+use crate::report::{ContactRecord, Energies, IncrementReport};
 use crate::vector::SparseVector;
 use crate::vector::largest;
 use moreau_contact::{Certificate, ContactSolution};
@@ -24,13 +24,13 @@ impl<const D: usize> Driver<D> {
     /// Makes a converged increment the state of the driver.
     ///
     /// # Errors
-    /// [`StepError::NotFinite`] for what numbers do not hold; nothing has changed then.
+    /// [`IncrementError::NotFinite`] for what numbers do not hold; nothing has changed then.
     pub(crate) fn commit(
         &mut self,
         start: &Loading<D>,
         end: &Loading<D>,
         candidate: Candidate<D>,
-    ) -> Result<StepReport, StepError> {
+    ) -> Result<IncrementReport, IncrementError> {
         let Candidate {
             d_u,
             internal,
@@ -104,7 +104,7 @@ impl<const D: usize> Driver<D> {
             u,
             t,
             force: kinematics.force(&t),
-            area: self.footings[i].area,
+            area: self.motion_rows[i].area,
             status,
             held,
             spring: solution.irreversible[i] - solution.displacement[i],
@@ -166,14 +166,14 @@ impl<const D: usize> Driver<D> {
         corners: Vec<usize>,
         out_of_balance: f64,
         counts: Counts,
-    ) -> StepReport {
+    ) -> IncrementReport {
         let contacts = &self.state.contacts;
         let of = |status: Status| {
             let counted =
                 |c: &&ContactRecord<D>| c.status == status && (!c.held || status == Status::Open);
             contacts.iter().filter(counted).count()
         };
-        StepReport {
+        IncrementReport {
             increment: self.state.increment,
             fraction: 1.0,
             newton_iterations: counts.newton,
@@ -230,11 +230,11 @@ impl<const D: usize> Driver<D> {
         d_u: &[f64],
     ) -> f64 {
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
-        let points = self.footings.iter().zip(kinematics);
+        let points = self.motion_rows.iter().zip(kinematics);
         let points = points.zip(self.state.contacts.iter().zip(contacts));
-        let work = points.map(|((footing, k), (before, now))| {
+        let work = points.map(|((motion_row, k), (before, now))| {
             let mean = 0.5 * (k.local_force(&before.force)[0] + now.t[0]);
-            let opened = k.axes.column(0).dot(&footing.relative(moved));
+            let opened = k.axes.column(0).dot(&motion_row.relative(moved));
             mean * (opened + now.spring[0] - before.spring[0])
         });
         work.sum()
@@ -246,7 +246,7 @@ fn all_finite(
     energies: &Energies,
     certificate: &Certificate,
     d_u: &[f64],
-) -> Result<(), StepError> {
+) -> Result<(), IncrementError> {
     let motion = largest(d_u.iter().copied());
     let told = [
         ("largest displacement", motion),
@@ -261,7 +261,7 @@ fn all_finite(
     ];
     match told.into_iter().find(|(_, value)| !value.is_finite()) {
         None => Ok(()),
-        Some((what, value)) => Err(StepError::NotFinite { what, value }),
+        Some((what, value)) => Err(IncrementError::NotFinite { what, value }),
     }
 }
 

@@ -1,9 +1,9 @@
 //! Loads in proportion whose factor is an unknown of the increment; not the decision when it is.
 
 use crate::driver::Driver;
-use crate::error::StepError;
+use crate::error::IncrementError;
 use crate::model::load::Loading;
-use crate::report::{Iteration, StepReport};
+use crate::report::{IncrementReport, Iteration};
 use crate::vector::SparseVector;
 use crate::vector::largest;
 
@@ -67,12 +67,12 @@ impl<const D: usize> Driver<D> {
     /// `None` then. Nothing is prescribed to move, and the last increment was one under these loads.
     ///
     /// # Errors
-    /// See [`StepError`].
+    /// See [`IncrementError`].
     pub(crate) fn advance_along(
         &mut self,
         control: &mut Control<'_>,
         watch: &mut dyn FnMut(&Iteration<'_>),
-    ) -> Result<Option<StepReport>, StepError> {
+    ) -> Result<Option<IncrementReport>, IncrementError> {
         let start = self.state.loading.clone();
         let last = self.state.last.as_ref();
         let guess: Vec<f64> = last.map_or_else(Vec::new, |(last, _)| {

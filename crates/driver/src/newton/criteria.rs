@@ -1,7 +1,7 @@
 //! When an increment is in balance, and what is told of one that is not.
 
 use crate::driver::Driver;
-use crate::error::{Imbalance, StepError};
+use crate::error::{Imbalance, IncrementError};
 use crate::linear::system::{Assembly, System};
 use crate::model::load::Loading;
 use crate::model::points::Kinematics;
@@ -110,8 +110,8 @@ impl<const D: usize> Driver<D> {
         residual: &[f64],
         iterations: usize,
         target: f64,
-    ) -> StepError {
-        StepError::NotConverged {
+    ) -> IncrementError {
+        IncrementError::NotConverged {
             iterations,
             out_of_balance: largest(residual.iter().copied()),
             tolerance: target,

@@ -3,7 +3,7 @@
 
 use crate::assembly::block::Stiffness;
 use crate::driver::Driver;
-use crate::error::StepError;
+use crate::error::IncrementError;
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::model::points::Kinematics;
@@ -14,7 +14,7 @@ use crate::newton::criteria::slack;
 use crate::newton::iterate::Iterate;
 use crate::newton::line_search::NewtonStep;
 use crate::newton::linearised::Linearised;
-use crate::report::{Iteration, StepReport};
+use crate::report::{IncrementReport, Iteration};
 use crate::vector::{SparseVector, largest};
 use moreau_contact::{ContactError, ContactSolution};
 use std::borrow::Cow;
@@ -81,7 +81,7 @@ impl<const D: usize> Driver<D> {
         start: &Loading<D>,
         end: &Loading<D>,
         watch: &mut dyn FnMut(&Self, &Iteration<'_>),
-    ) -> Result<StepReport, StepError> {
+    ) -> Result<IncrementReport, IncrementError> {
         let guess = self.predictor(start, end);
         let increment = self.begin_increment(system, (start, end), guess, None);
         let candidate = self.balance(system, increment, watch)?;
@@ -132,7 +132,7 @@ impl<const D: usize> Driver<D> {
         system: &mut System,
         mut increment: Increment<'_, '_, D>,
         watch: &mut dyn FnMut(&Self, &Iteration<'_>),
-    ) -> Result<Candidate<D>, StepError> {
+    ) -> Result<Candidate<D>, IncrementError> {
         loop {
             let balance = self.balance_of(system, &mut increment);
             self.tell(&increment, &balance, watch);
@@ -236,13 +236,13 @@ impl<const D: usize> Driver<D> {
         &self,
         increment: &Increment<'_, '_, D>,
         balance: &Balance<D>,
-    ) -> Result<(), StepError> {
+    ) -> Result<(), IncrementError> {
         let iteration = increment.counts.newton;
         let ends = iteration >= self.settings.iterations;
         if ends && increment.counts.undetermined {
             // The motion that the statuses left free has no end.
             let source = ContactError::Singular;
-            return Err(StepError::Contact { iteration, source });
+            return Err(IncrementError::Contact { iteration, source });
         }
         if ends || !balance.largest.is_finite() {
             return Err(self.not_converged(&balance.residual, iteration, balance.accepted));
@@ -256,7 +256,7 @@ impl<const D: usize> Driver<D> {
         system: &mut System,
         increment: &mut Increment<'_, '_, D>,
         balance: Balance<D>,
-    ) -> Result<NewtonStep, StepError> {
+    ) -> Result<NewtonStep, IncrementError> {
         let arrived = increment.has_arrived();
         let imbalance = match arrived {
             true => balance.largest,
@@ -328,7 +328,7 @@ impl<const D: usize> Driver<D> {
         increment: &mut Increment<'_, '_, D>,
         imbalance: f64,
         accepted: f64,
-    ) -> Result<(), StepError> {
+    ) -> Result<(), IncrementError> {
         let worth = system.steps_per_factorisation();
         // What a symmetric tangent lacks is that of its own iterate.
         let serves = self.is_symmetric()

@@ -2,7 +2,7 @@
 //! the iteration that it is a step of.
 
 use crate::driver::Driver;
-use crate::error::StepError;
+use crate::error::IncrementError;
 use crate::interface::condensation::Condensation;
 use crate::interface::tied::Tied;
 use crate::linear::system::System;
@@ -56,7 +56,7 @@ impl<const D: usize> Driver<D> {
         linearised: &Linearised<'_, D>,
         load: Vec<f64>,
         counts: &mut Counts,
-    ) -> Result<Answer<D>, StepError> {
+    ) -> Result<Answer<D>, IncrementError> {
         let answer = match system.is_tied() {
             true => self.answer_tied(system, linearised, load, counts)?,
             false => self.answer_condensed(system, linearised, load, counts)?,
@@ -72,10 +72,10 @@ impl<const D: usize> Driver<D> {
         linearised: &Linearised<'_, D>,
         load: Vec<f64>,
         counts: &mut Counts,
-    ) -> Result<Answer<D>, StepError> {
+    ) -> Result<Answer<D>, IncrementError> {
         let kinematics = linearised.kinematics;
         let iteration = counts.newton;
-        let contact = |source: ContactError| StepError::Contact { iteration, source };
+        let contact = |source: ContactError| IncrementError::Contact { iteration, source };
         let mut step = vec![0.0; load.len()];
         linearised.missing.add_to(&mut step, 1.0);
         let (stiffest, floats) = (system.shift(), system.floats);
@@ -162,7 +162,7 @@ impl<const D: usize> Driver<D> {
         linearised: &Linearised<'_, D>,
         load: Vec<f64>,
         counts: &mut Counts,
-    ) -> Result<Answer<D>, StepError> {
+    ) -> Result<Answer<D>, IncrementError> {
         let (kinematics, guess) = (linearised.kinematics, linearised.guess);
         let mut step = vec![0.0; load.len()];
         linearised.missing.add_to(&mut step, 1.0);
@@ -171,9 +171,9 @@ impl<const D: usize> Driver<D> {
             system.border(&mut condensed, load, (compliance, missing))
         });
         let iteration = counts.newton;
-        let contact = |source: ContactError| StepError::Contact { iteration, source };
+        let contact = |source: ContactError| IncrementError::Contact { iteration, source };
         let clock = Instant::now();
-        let points = (self.points.as_slice(), self.footings.as_slice());
+        let points = (self.points.as_slice(), self.motion_rows.as_slice());
         let seam = (std::mem::take(&mut condensed.stiffness), &condensed.load);
         let previous = self.previous_forces(kinematics);
         let force = match guess {

@@ -2,7 +2,7 @@
 //! be compared with, not to be used.
 
 use crate::driver::Driver;
-use crate::error::StepError;
+use crate::error::IncrementError;
 use crate::interface::condensation::Condensation;
 use crate::linear::system::System;
 use crate::model::load::Loading;
@@ -11,7 +11,7 @@ use crate::newton::candidate::Candidate;
 use crate::newton::chord::FORCING;
 use crate::newton::increment::Increment;
 use crate::newton::line_search::NewtonStep;
-use crate::report::{Iteration, StepReport};
+use crate::report::{IncrementReport, Iteration};
 use crate::vector::{SparseVector, largest};
 use moreau_contact::{ContactError, ContactSolution, uzawa_steps};
 use moreau_laws::{Local, Status};
@@ -85,7 +85,7 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
         (tolerance, iterations): (f64, usize),
         watch: &mut dyn FnMut(&Iteration<'_>),
-    ) -> Result<StepReport, StepError> {
+    ) -> Result<IncrementReport, IncrementError> {
         let guess = self.predictor(start, end);
         let mut increment = self.begin_increment(system, (start, end), guess, None);
         increment.counts.solves = 0;
@@ -127,7 +127,7 @@ impl<const D: usize> Driver<D> {
             tolerance: tolerance * self.force_scale(&iterate.assembly, end, &iterate.contact),
         };
         let iteration = 0;
-        Err(StepError::Contact { iteration, source })
+        Err(IncrementError::Contact { iteration, source })
     }
 
     /// The committed forces, and α of the tangent at the first iterate.
@@ -136,8 +136,8 @@ impl<const D: usize> Driver<D> {
         system: &mut System,
         end: &Loading<D>,
         increment: &mut Increment<'_, '_, D>,
-    ) -> Result<Uzawa<D>, StepError> {
-        let contact = |source: ContactError| StepError::Contact {
+    ) -> Result<Uzawa<D>, IncrementError> {
+        let contact = |source: ContactError| IncrementError::Contact {
             iteration: 0,
             source,
         };
@@ -145,7 +145,7 @@ impl<const D: usize> Driver<D> {
         let force = self.previous_forces(&kinematics);
         self.factorise(system, &mut increment.iterate, &increment.missing)?;
         let condensed = system.condense(vec![0.0; increment.iterate.d_u.len()]);
-        let points = (self.points.as_slice(), self.footings.as_slice());
+        let points = (self.points.as_slice(), self.motion_rows.as_slice());
         let seam = (condensed.stiffness, &condensed.load);
         let forces = (force.clone(), force.as_slice());
         let condensation =
@@ -192,7 +192,7 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
         force: &[Local<D>],
         increment: &mut Increment<'_, '_, D>,
-    ) -> Result<(), StepError> {
+    ) -> Result<(), IncrementError> {
         let kinematics = self.kinematics(system, end, &increment.iterate.d_u);
         let contact = self.contact_forces(&kinematics, force);
         increment.iterate.contact = contact.clone();

@@ -2,7 +2,7 @@
 
 use crate::assembly::block::Stiffness;
 use crate::driver::Driver;
-use crate::error::{ModelError, StepError};
+use crate::error::{IncrementError, ModelError};
 use crate::linear::system::System;
 use crate::model::load::axis_letter;
 use crate::newton::iterate::Iterate;
@@ -19,7 +19,7 @@ impl<const D: usize> Driver<D> {
         system: &mut System,
         now: &mut Iterate,
         missing: &SparseVector,
-    ) -> Result<(), StepError> {
+    ) -> Result<(), IncrementError> {
         if !system.is_tied() {
             return self.factorise(system, now, missing);
         }
@@ -38,7 +38,7 @@ impl<const D: usize> Driver<D> {
         system: &mut System,
         now: &mut Iterate,
         missing: &SparseVector,
-    ) -> Result<(), StepError> {
+    ) -> Result<(), IncrementError> {
         let elastic = !now.assembly.flows;
         if !(now.assembly.stiffness || elastic && system.holds_elastic_factor()) {
             let tangent = Stiffness::Plastic(1.0);
@@ -60,7 +60,7 @@ impl<const D: usize> Driver<D> {
             let motion = format!("translation along {}", axis_letter(dof % D));
             return Err(ModelError::FreeTool { tool, motion }.into());
         }
-        outcome.map_err(|dof| StepError::Mechanism {
+        outcome.map_err(|dof| IncrementError::Mechanism {
             node: dof / D,
             axis: axis_letter(dof % D),
             position: self.mesh.nodes()[dof / D].to_vec(),

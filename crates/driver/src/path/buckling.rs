@@ -53,9 +53,9 @@ impl<const D: usize> Driver<D> {
     /// K is that of the elastic bodies: flow lowers it, and makes the structure buckle earlier.
     pub fn buckling(&mut self) -> Option<Buckling<D>> {
         let loading = self.state.loading.clone();
-        let kept = (self.footings.clone(), self.handed_over.clone());
+        let kept = (self.motion_rows.clone(), self.redistributed.clone());
         let found = self.instability_under(&loading);
-        (self.footings, self.handed_over) = kept;
+        (self.motion_rows, self.redistributed) = kept;
         found
     }
 
@@ -105,7 +105,7 @@ impl<const D: usize> Driver<D> {
         }
         system.factorise(true).ok()?;
         let condensed = system.condense(rest.clone());
-        let points = (self.points.as_slice(), self.footings.as_slice());
+        let points = (self.points.as_slice(), self.motion_rows.as_slice());
         let seam = (condensed.stiffness, &condensed.load);
         let forces = self.previous_forces(&kinematics);
         let forces = (forces.clone(), forces.as_slice());

@@ -1,13 +1,13 @@
 //! A step under way: increments in sequence, halved where they fail; not the increment itself.
 
 use crate::driver::Driver;
+use crate::error::IncrementError;
 use crate::error::ModelError;
-use crate::error::StepError;
 use crate::model::load::{Loading, Step};
 use crate::newton::control::Control;
 use crate::path::increments::Increments;
 use crate::report::collapse::Collapse;
-use crate::report::{Iteration, StepReport};
+use crate::report::{IncrementReport, Iteration};
 use crate::saved::{Numbers, Saved};
 use crate::settings::Nesting;
 use crate::vector::SparseVector;
@@ -152,7 +152,7 @@ impl<const D: usize> Ramp<D> {
 
     /// Takes note of an increment from λ = `before`, and of the work that the loads of the whole step
     /// did in it.
-    fn converged(&mut self, report: &StepReport, before: f64, work: f64) {
+    fn converged(&mut self, report: &IncrementReport, before: f64, work: f64) {
         let yielded = Yielded::between(before, report.fraction, work);
         self.yielded = [yielded, self.yielded[0]];
         self.cuts = 0;
@@ -171,15 +171,15 @@ impl<const D: usize> Ramp<D> {
     }
 
     /// The error of a step that has been cut as far as allowed.
-    fn stopped(&self, cause: StepError, smallest: f64) -> StepError {
+    fn stopped(&self, cause: IncrementError, smallest: f64) -> IncrementError {
         let last = self.plastic_fraction;
         let plastic_fraction = match &cause {
-            StepError::NotConverged {
+            IncrementError::NotConverged {
                 plastic_fraction, ..
             } => plastic_fraction.max(last),
             _ => last,
         };
-        StepError::Stopped {
+        IncrementError::Stopped {
             step: self.step.clone(),
             reached: self.done,
             smallest,
@@ -225,17 +225,17 @@ impl<const D: usize> Driver<D> {
     ///
     /// Where only loads grow and an increment of theirs fails, their factor becomes an unknown: the
     /// step goes along the path of equilibria, on to its end or to collapse.
-    /// [`StepReport::fraction`] is then that factor.
+    /// [`IncrementReport::fraction`] is then that factor.
     ///
     /// # Errors
-    /// [`StepError::Collapse`] where displacements grow at a constant load;
-    /// [`StepError::Stopped`] when the increment has been halved as often as the settings allow;
-    /// what converged before is kept. [`StepError::Model`] for a step that makes no sense.
+    /// [`IncrementError::Collapse`] where displacements grow at a constant load;
+    /// [`IncrementError::Stopped`] when the increment has been halved as often as the settings allow;
+    /// what converged before is kept. [`IncrementError::Model`] for a step that makes no sense.
     pub fn proceed(
         &mut self,
         ramp: &mut Ramp<D>,
         watch: &mut dyn FnMut(&Iteration<'_>),
-    ) -> Result<StepReport, StepError> {
+    ) -> Result<IncrementReport, IncrementError> {
         // One that was read may be of another model.
         let (nodes, dofs) = (self.mesh.nodes().len(), self.state.displacement.len());
         ramp.start.check(nodes, dofs)?;
@@ -269,7 +269,7 @@ impl<const D: usize> Driver<D> {
                     ramp.converged(&report, before, self.last_work(&ramp.load()));
                     return Ok(report);
                 }
-                Err(error @ StepError::Model(_)) => return Err(error),
+                Err(error @ IncrementError::Model(_)) => return Err(error),
                 Err(cause) => {
                     // Halved exactly, and until it is not what has just failed.
                     ramp.length *= 0.5;
@@ -278,7 +278,7 @@ impl<const D: usize> Driver<D> {
                     }
                     ramp.cuts += 1;
                     // How far contact can follow is known, and shorter increments get there.
-                    let follows = matches!(cause, StepError::Passage { .. });
+                    let follows = matches!(cause, IncrementError::Passage { .. });
                     let cuts = if follows {
                         MOST_CUTS
                     } else {
@@ -327,10 +327,10 @@ impl<const D: usize> Driver<D> {
         ramp: &mut Ramp<D>,
         mut path: Path,
         watch: &mut dyn FnMut(&Iteration<'_>),
-    ) -> Result<StepReport, StepError> {
+    ) -> Result<IncrementReport, IncrementError> {
         let load = ramp.load();
         if path.ended {
-            return Err(StepError::Collapse {
+            return Err(IncrementError::Collapse {
                 step: ramp.step.clone(),
                 collapse: Collapse {
                     load_factor: path.peak,
@@ -382,7 +382,7 @@ impl<const D: usize> Driver<D> {
                     ramp.path = Some(path);
                     return Ok(report);
                 }
-                Err(error @ StepError::Model(_)) => return Err(error),
+                Err(error @ IncrementError::Model(_)) => return Err(error),
                 Ok(None) => {}
                 Err(cause) => {
                     path.length *= 0.5;
@@ -415,8 +415,8 @@ impl<const D: usize> Driver<D> {
         &mut self,
         step: &Step<D>,
         increments: impl Into<Increments>,
-        mut observe: impl FnMut(&Self, &StepReport),
-    ) -> Result<Vec<StepReport>, StepError> {
+        mut observe: impl FnMut(&Self, &IncrementReport),
+    ) -> Result<Vec<IncrementReport>, IncrementError> {
         let mut ramp = self.begin(step, increments)?;
         let mut reports = Vec::new();
         while !ramp.is_done() {

@@ -2,7 +2,7 @@
 
 use crate::collapse::{collapse, cylinder, limit, pressed};
 use moreau_contact::{Penalty, Plane};
-use moreau_driver::{Analysis, Axis, Driver, Model, Nesting, Settings, Step, StepReport};
+use moreau_driver::{Analysis, Axis, Driver, IncrementReport, Model, Nesting, Settings, Step};
 use moreau_laws::{Coulomb, Isotropic, VonMises};
 use moreau_mesh::{CellKind, Mesh, PlaneStrain, Solid, block2, block3, uniform};
 
@@ -18,7 +18,7 @@ fn press<H: Analysis<D>, const D: usize>(
     mesh: Mesh<D>,
     hypothesis: H,
     settings: Settings<D>,
-) -> (Driver<D>, Vec<StepReport>) {
+) -> (Driver<D>, Vec<IncrementReport>) {
     press_by(0.06, mesh, hypothesis, settings)
 }
 
@@ -27,7 +27,7 @@ fn press_by<H: Analysis<D>, const D: usize>(
     mut mesh: Mesh<D>,
     hypothesis: H,
     settings: Settings<D>,
-) -> (Driver<D>, Vec<StepReport>) {
+) -> (Driver<D>, Vec<IncrementReport>) {
     let rule = mesh.kind(0).integration();
     let top = if D == 2 { "body.top" } else { "body.front" };
     let bottom = if D == 2 { "body.bottom" } else { "body.back" };
@@ -75,7 +75,7 @@ fn compare<H: Analysis<D>, const D: usize>(mesh: &Mesh<D>, hypothesis: &H) {
         assert_eq!(a.status, b.status, "{kind}");
     }
     let newton =
-        |reports: &[StepReport]| reports.iter().map(|r| r.newton_iterations).sum::<usize>();
+        |reports: &[IncrementReport]| reports.iter().map(|r| r.newton_iterations).sum::<usize>();
     let [a, b] = [&reports, &others].map(|r| newton(r));
     assert!(4 * b <= 7 * a, "{kind}: {a}, {b}");
     for (a, b) in reports.iter().zip(&others) {
@@ -103,7 +103,7 @@ fn every_quadratic_cell_has_the_answer_of_its_own_factor() {
 }
 
 /// A bar of cubes under a punch that covers a third of it, with room for no factor of its own.
-fn bar(cells: usize) -> (usize, StepReport) {
+fn bar(cells: usize) -> (usize, IncrementReport) {
     let lines = |n| uniform(0.0, 12.0, n);
     let mesh = block3(
         "body",
@@ -155,8 +155,9 @@ fn other_ways_to_treat_contact_go_the_same_way() {
         (0.006, [nested(None), nested(room)]),
     ] {
         let [a, b] = settings.map(|s| press_by(depth, mesh(), PlaneStrain::default(), s));
-        let linear =
-            |reports: &[StepReport]| -> usize { reports.iter().map(|r| r.linear_iterations).sum() };
+        let linear = |reports: &[IncrementReport]| -> usize {
+            reports.iter().map(|r| r.linear_iterations).sum()
+        };
         assert!(linear(&a.1) == 0 && linear(&b.1) > 0);
         let force = |d: &Driver<2>| d.tool_force("floor").expect("exists");
         let (a, b) = (force(&a.0), force(&b.0));

@@ -3,8 +3,8 @@
 
 use moreau_contact::Plane;
 use moreau_driver::{
-    Axis, Collapse, Driver, Increments, Model, ModelError, Nesting, Numbers, Saved, Settings, Step,
-    StepError, StepReport,
+    Axis, Collapse, Driver, IncrementError, IncrementReport, Increments, Model, ModelError,
+    Nesting, Numbers, Saved, Settings, Step,
 };
 use moreau_laws::{Coulomb, Elastic, VonMises};
 use moreau_mesh::{Axisymmetric, CellKind, Integration, PlaneStrain, block2, uniform};
@@ -14,10 +14,10 @@ pub(crate) fn collapse<const D: usize>(
     driver: &mut Driver<D>,
     step: &Step<D>,
     increments: usize,
-) -> (Collapse, Vec<StepReport>) {
+) -> (Collapse, Vec<IncrementReport>) {
     let (mut reports, before) = (Vec::new(), driver.increments());
     match driver.run(step, increments, |_, r| reports.push(r.clone())) {
-        Err(StepError::Collapse { collapse, step: s }) => {
+        Err(IncrementError::Collapse { collapse, step: s }) => {
             assert_eq!(s, step.name());
             assert_eq!(driver.increments() - before, reports.len());
             (collapse, reports)
@@ -193,7 +193,7 @@ fn a_path_that_is_read_back_goes_on_to_the_bit() {
             Err(end) => break end,
         }
     };
-    assert!(matches!(end, StepError::Collapse { .. }), "{end}");
+    assert!(matches!(end, IncrementError::Collapse { .. }), "{end}");
     for (k, numbers) in saved.iter().enumerate() {
         let mut other = cylinder(Settings::default());
         let mut from = Numbers::Read(numbers);
@@ -225,12 +225,12 @@ fn a_step_that_stops_before_collapse_says_how_far_it_is() {
     };
     let mut driver = cylinder(outside);
     match driver.run(&pressed(1.25 * limit()), 20, |_, _| {}) {
-        Err(error @ StepError::Stopped { .. }) => {
+        Err(error @ IncrementError::Stopped { .. }) => {
             assert!(
                 error.to_string().contains("the last increments put at "),
                 "{error}"
             );
-            let StepError::Stopped {
+            let IncrementError::Stopped {
                 limit: Some(limit),
                 reached,
                 ..

@@ -3,7 +3,7 @@
 
 use moreau_contact::{Ball, Obstacle, Plane, Polyline};
 use moreau_driver::{
-    Analysis, Axis, Buckling, Deformation, Driver, Model, Settings, Step, StepError,
+    Analysis, Axis, Buckling, Deformation, Driver, IncrementError, Model, Settings, Step,
 };
 use moreau_laws::{Coulomb, Elastic};
 use moreau_mesh::{
@@ -414,10 +414,13 @@ fn a_state_beyond_all_numbers_is_refused() {
     let error = driver
         .run(&step(1e300), 1, |_, _| {})
         .expect_err("no result");
-    let StepError::Stopped { cause, .. } = &error else {
+    let IncrementError::Stopped { cause, .. } = &error else {
         panic!("{error}")
     };
-    assert!(matches!(**cause, StepError::NotFinite { .. }), "{cause}");
+    assert!(
+        matches!(**cause, IncrementError::NotFinite { .. }),
+        "{cause}"
+    );
     assert!(error.to_string().contains("beyond anything"), "{error}");
     assert_eq!(driver.increments(), 0);
     driver.run(&step(1e-3), 1, |_, _| {}).expect("converges");

@@ -1,7 +1,7 @@
 //! How steps are divided into increments, and what is told of them.
 
 use crate::steps::on_floor;
-use moreau_driver::{Axis, Increments, Settings, Step, StepError};
+use moreau_driver::{Axis, IncrementError, Increments, Settings, Step};
 
 #[test]
 fn a_step_that_is_too_long_is_cut_and_ends_where_it_should() {
@@ -119,7 +119,7 @@ fn increments_are_cut_to_the_least() {
         .fix("block.left", &[Axis::X])
         .displace("punch", Axis::Y, -0.2);
     match driver.run(&step, increments, |_, _| {}) {
-        Err(StepError::Stopped {
+        Err(IncrementError::Stopped {
             reached, smallest, ..
         }) => {
             assert!(reached < 0.9, "{reached}");

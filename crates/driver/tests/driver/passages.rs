@@ -1,7 +1,7 @@
 //! Tools that move far in one increment: contact is found on the side that they come from.
 
 use moreau_contact::Ball;
-use moreau_driver::{Axis, Driver, Increments, Model, Settings, Step, StepError};
+use moreau_driver::{Axis, Driver, IncrementError, Increments, Model, Settings, Step};
 use moreau_laws::{Coulomb, Elastic};
 use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
 
@@ -52,8 +52,8 @@ fn a_passage_that_may_not_be_cut_is_told() {
         max: 1.0,
     };
     match driver.run(&down(112.0), whole, |_, _| {}) {
-        Err(StepError::Stopped { cause, .. }) => match *cause {
-            StepError::Passage { tool, depth, .. } => {
+        Err(IncrementError::Stopped { cause, .. }) => match *cause {
+            IncrementError::Passage { tool, depth, .. } => {
                 assert_eq!(tool, "t");
                 assert!(depth > 0.02 && depth < 2.1, "{depth}");
             }

@@ -3,8 +3,8 @@
 use crate::steps::on_floor;
 use moreau_contact::GaussSeidel;
 use moreau_driver::{
-    Axis, ElementCells, Model, ModelError, Nesting, Numbers, Saved, Settings, SolidBlock, Step,
-    StepError,
+    Axis, ElementCells, IncrementError, Model, ModelError, Nesting, Numbers, Saved, Settings,
+    SolidBlock, Step,
 };
 use moreau_laws::Elastic;
 use moreau_mesh::{CellKind, Integration, PlaneStrain, Quad4, Quad8, block2};
@@ -24,9 +24,9 @@ fn a_body_pulled_off_its_floor_is_an_error_that_changes_nothing() {
         .fix("block.left", &[Axis::X])
         .pressure("block.top", -1.0);
     match driver.run(&step, 1, |_, _| {}) {
-        Err(StepError::Stopped { reached, cause, .. }) => {
+        Err(IncrementError::Stopped { reached, cause, .. }) => {
             assert_eq!(reached, 0.0);
-            assert!(matches!(*cause, StepError::Contact { .. }), "{cause}");
+            assert!(matches!(*cause, IncrementError::Contact { .. }), "{cause}");
         }
         other => panic!("expected Stopped, got {other:?}"),
     }
@@ -50,7 +50,7 @@ fn a_factor_larger_than_the_memory_is_refused_with_both_sizes() {
         .displace("punch", Axis::Y, -0.1);
     let mut driver = on_floor([8, 4], 0.0, 0.1, settings(4096));
     match driver.run(&step, 1, |_, _| {}) {
-        Err(StepError::Model(ModelError::TooLarge {
+        Err(IncrementError::Model(ModelError::TooLarge {
             unknowns,
             needed,
             room,
@@ -80,7 +80,8 @@ fn a_loading_of_another_model_is_refused() {
         (moved, "degree of freedom"),
         (wild, "force f_x on node 0"),
     ] {
-        let Err(StepError::Model(ModelError::OutOfRange { what, .. })) = driver.advance(&loading)
+        let Err(IncrementError::Model(ModelError::OutOfRange { what, .. })) =
+            driver.advance(&loading)
         else {
             panic!("{told} passes");
         };
@@ -109,7 +110,7 @@ fn a_saved_ramp_of_another_model_is_refused() {
         let mut ramp = ramp.clone();
         ramp.read(&mut Numbers::Read(&other)).expect("whole");
         let outcome = driver.proceed(&mut ramp, &mut |_| {});
-        let Err(StepError::Model(ModelError::OutOfRange { value, .. })) = outcome else {
+        let Err(IncrementError::Model(ModelError::OutOfRange { value, .. })) = outcome else {
             panic!("expected OutOfRange, got {outcome:?}");
         };
         assert_eq!((value, driver.increments()), (1e6, 0));
@@ -136,7 +137,10 @@ fn the_papers_nesting_cannot_hold_a_floating_body() {
         },
     );
     let load = driver.run(&Step::new("load").pressure("block.top", 40.0), 1, |_, _| {});
-    assert!(matches!(load, Err(StepError::Stopped { .. })), "{load:?}");
+    assert!(
+        matches!(load, Err(IncrementError::Stopped { .. })),
+        "{load:?}"
+    );
 }
 
 #[test]

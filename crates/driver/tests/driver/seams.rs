@@ -2,7 +2,7 @@
 
 use crate::collapse::collapse;
 use moreau_contact::{Ball, ContactSolver, Penalty, Plane, SemismoothNewton};
-use moreau_driver::{Axis, Driver, Model, Numbers, Seam, Settings, Step, StepReport};
+use moreau_driver::{Axis, Driver, IncrementReport, Model, Numbers, Seam, Settings, Step};
 use moreau_laws::{
     AnisotropicCoulomb, Coulomb, Friction, Isotropic, LimitedCoulomb, Tresca, VonMises,
 };
@@ -34,7 +34,7 @@ fn compare<const D: usize>(
     steps: &[Step<D>],
     increments: usize,
     tolerance: f64,
-) -> [Vec<StepReport>; 2] {
+) -> [Vec<IncrementReport>; 2] {
     let run = |seam: Seam| {
         let mut driver = make(seam);
         let mut reports = Vec::new();

@@ -2,8 +2,8 @@
 
 use moreau_contact::{Ball, Plane};
 use moreau_driver::{
-    Analysis, Axis, Collapse, Driver, Increments, Model, ModelError, Numbers, Saved, Settings,
-    Step, StepError,
+    Analysis, Axis, Collapse, Driver, IncrementError, Increments, Model, ModelError, Numbers,
+    Saved, Settings, Step,
 };
 use moreau_laws::{Coulomb, Status, VonMises};
 use moreau_mesh::{
@@ -288,7 +288,7 @@ fn a_block_floats_between_a_floor_and_a_plate_under_a_force() {
     assert!((plate[0] - 2000.0).abs() < 8e-6, "{plate}");
     assert!(driver.contacts().iter().any(|c| c.status == Status::Stick));
     match driver.run(&along(6000.0), 4, |_, _| {}) {
-        Err(StepError::Collapse { collapse, .. }) => {
+        Err(IncrementError::Collapse { collapse, .. }) => {
             let Collapse { load_factor, .. } = collapse;
             // μ N = 2400 N, from 2000 on the way to 6000.
             assert!((load_factor - 0.1).abs() < 1e-6, "{collapse:?}");
@@ -301,7 +301,7 @@ fn a_block_floats_between_a_floor_and_a_plate_under_a_force() {
 fn forces_that_nothing_stands_up_to_are_refused_by_name() {
     let supports = || held("pull").fix("block.left", &[Axis::X]);
     let refused = |driver: &mut Driver<2>, step: &Step<2>| match driver.run(step, 1, |_, _| {}) {
-        Err(StepError::Model(error)) => error,
+        Err(IncrementError::Model(error)) => error,
         other => panic!("{other:?}"),
     };
     let mut driver = cylinder(0.0);
@@ -402,7 +402,7 @@ fn a_tool_that_meets_nothing_is_told_with_its_distance() {
     };
     let down = held("press").push("ball", Axis::Y, -10.0);
     match beside(200.0).run(&down, 1, |_, _| {}) {
-        Err(StepError::Model(ModelError::ToolOutOfContact(loose))) => {
+        Err(IncrementError::Model(ModelError::ToolOutOfContact(loose))) => {
             let told = loose.to_string();
             // From (200, 120.3) to the corner (40, 20), less the radius.
             let gap = 160f64.hypot(100.3) - 100.0;
@@ -425,7 +425,7 @@ fn a_tool_that_meets_nothing_is_told_with_its_distance() {
         .push("ball", Axis::Y, -10.0)
         .push("ball", Axis::X, 5.0);
     match smooth.run(&askew, 1, |_, _| {}) {
-        Err(StepError::Model(ModelError::ToolOutOfContact(loose))) => {
+        Err(IncrementError::Model(ModelError::ToolOutOfContact(loose))) => {
             let (gap, meets) = (loose.gap, loose.meets.expect("on its way"));
             let x = 20.0 + meets[0];
             // At the corner (40, 20), or on the flat top before it.
@@ -452,7 +452,7 @@ fn a_tool_that_meets_nothing_is_told_with_its_distance() {
     let untouched = driver.run(&push, 1, |_, _| {});
     assert!(matches!(
         untouched,
-        Err(StepError::Model(
+        Err(IncrementError::Model(
             ModelError::UntouchedTool { .. } | ModelError::FreeTool { .. }
         ))
     ));

@@ -2,7 +2,7 @@
 //! part.
 
 use super::face::{Face, Values};
-use super::{Coupling, Sides};
+use super::{MortarRow, Sides};
 use crate::mesh::NodeKind;
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
@@ -59,7 +59,7 @@ struct Multipliers {
 }
 
 impl<const D: usize> Sides<'_, D> {
-    pub(super) fn mortar(&self, measure: &dyn Fn(&[f64; D]) -> f64) -> Vec<Coupling<D>> {
+    pub(super) fn mortar(&self, measure: &dyn Fn(&[f64; D]) -> f64) -> Vec<MortarRow<D>> {
         let mut sums: BTreeMap<usize, Sums> = BTreeMap::new();
         for face in self.own {
             let overlap = match D {
@@ -78,7 +78,7 @@ impl<const D: usize> Sides<'_, D> {
                 let sum: f64 = weights.values().sum();
                 weights.into_iter().map(|(b, w)| (b, w / sum)).collect()
             };
-            Coupling {
+            MortarRow {
                 node,
                 kind: sums.kind,
                 area: sums.area,

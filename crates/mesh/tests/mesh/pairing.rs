@@ -2,7 +2,7 @@
 
 use super::{facets, sum};
 use moreau_mesh::{
-    Axisymmetric, CellKind, Coupling, Hypothesis, Mesh, Pairing, PlaneStrain, block2, uniform,
+    Axisymmetric, CellKind, Hypothesis, Mesh, MortarRow, Pairing, PlaneStrain, block2, uniform,
 };
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ fn stack(
         .expect("valid")
 }
 
-fn pair(mesh: &Mesh<2>, pairing: Pairing) -> Vec<Coupling<2>> {
+fn pair(mesh: &Mesh<2>, pairing: Pairing) -> Vec<MortarRow<2>> {
     pair_under(mesh, pairing, &PlaneStrain::default())
 }
 
@@ -30,9 +30,9 @@ fn pair_under(
     mesh: &Mesh<2>,
     pairing: Pairing,
     hypothesis: &impl Hypothesis<2>,
-) -> Vec<Coupling<2>> {
+) -> Vec<MortarRow<2>> {
     let group = |name| mesh.facet_group(name).expect("named");
-    mesh.couplings(
+    mesh.mortar_rows(
         mesh.nodes(),
         (group("upper.bottom"), group("lower.top")),
         pairing,
@@ -61,11 +61,11 @@ fn linear_fields_and_a_uniform_pressure_pass_between_meshes_that_do_not_match() 
     ] {
         for kinds in KINDS {
             let mesh = stack(kinds, (0.0, 6.0, 4), lower, |x| x);
-            let couplings = pair(&mesh, Pairing::Mortar);
+            let mortar_rows = pair(&mesh, Pairing::Mortar);
             let x = |a: usize| mesh.nodes()[a][0];
             let mut on_lower: BTreeMap<usize, f64> = BTreeMap::new();
             let mut total = [0.0; 2];
-            for c in &couplings {
+            for c in &mortar_rows {
                 assert!(c.area > 0.0, "{kinds:?} {lower:?}");
                 assert!((c.normal[1] - 1.0).abs() < 1e-14);
                 assert!((sum(&c.own, |_| 1.0) - 1.0).abs() < 1e-12);
@@ -107,11 +107,11 @@ fn linear_fields_and_a_uniform_pressure_pass_at_the_axis() {
                 let shares = mesh.positive_shares(facets, &Axisymmetric);
                 for pairing in [Pairing::Mortar, Pairing::NodeToSurface] {
                     let what = format!("{kinds:?} {lower} {pairing:?}");
-                    let couplings = pair_under(&mesh, pairing, &Axisymmetric);
-                    assert!(couplings.iter().map(|c| &c.node).eq(&own), "{what}");
+                    let mortar_rows = pair_under(&mesh, pairing, &Axisymmetric);
+                    assert!(mortar_rows.iter().map(|c| &c.node).eq(&own), "{what}");
                     let x = |a: usize| mesh.nodes()[a][0];
                     let mut on_lower: BTreeMap<usize, f64> = BTreeMap::new();
-                    for (c, p) in couplings.iter().zip(&shares) {
+                    for (c, p) in mortar_rows.iter().zip(&shares) {
                         assert!((c.area / p.share.area - 1.0).abs() < 1e-11, "{what}");
                         let apart = sum(&c.own, x) - sum(&c.opposite, x);
                         assert!(apart.abs() < 1e-11, "{what}: {apart}");
@@ -137,12 +137,12 @@ fn a_node_on_an_edge_that_matches_meets_its_twin_alone() {
         let curved = |[x, y]: [f64; 2]| [x + 0.1 * y, y + 0.2 * (0.5 * x).sin()];
         let mesh = stack(kinds, (0.0, 6.0, 4), (0.0, 6.0, 4), curved);
         for pairing in [Pairing::Mortar, Pairing::NodeToSurface] {
-            let couplings = pair(&mesh, pairing);
+            let mortar_rows = pair(&mesh, pairing);
             assert_eq!(
-                couplings.len(),
+                mortar_rows.len(),
                 mesh.node_group("upper.bottom").expect("named").len()
             );
-            for c in couplings {
+            for c in mortar_rows {
                 assert!(c.own.len() == 1 && c.own[0].0 == c.node);
                 assert!((c.own[0].1 - 1.0).abs() < 1e-14);
                 for (b, w) in c.opposite {
@@ -181,15 +181,15 @@ fn a_ring_meets_the_near_side_of_the_ring_within() {
         facets(&mesh, ["inner1.right", "inner2.right"]),
     );
     for pairing in [Pairing::Mortar, Pairing::NodeToSurface] {
-        let couplings = mesh.couplings(
+        let mortar_rows = mesh.mortar_rows(
             mesh.nodes(),
             (&surfaces.0, &surfaces.1),
             pairing,
             &PlaneStrain::default(),
         );
         // The joints of the half rings have a node of each half.
-        assert_eq!(couplings.len(), 2 * 23);
-        for c in couplings {
+        assert_eq!(mortar_rows.len(), 2 * 23);
+        for c in mortar_rows {
             let at =
                 |weights: &[(usize, f64)]| [0, 1].map(|i| sum(weights, |a| mesh.nodes()[a][i]));
             let (own, other) = (at(&c.own), at(&c.opposite));
@@ -230,15 +230,15 @@ fn of_two_layers_the_nearer_is_met() {
         }
         let tops = ["first.top", "second.top"].map(|n| mesh.facet_group(n).expect("named"));
         let own = mesh.facet_group("upper.bottom").expect("named");
-        let couplings = mesh.couplings(
+        let mortar_rows = mesh.mortar_rows(
             mesh.nodes(),
             (own, &tops.concat()),
             Pairing::Mortar,
             &PlaneStrain::default(),
         );
-        assert_eq!(couplings.len(), 9);
+        assert_eq!(mortar_rows.len(), 9);
         let met = mesh.node_group(&format!("{near}.top")).expect("named");
-        for c in couplings {
+        for c in mortar_rows {
             let share: f64 = c
                 .opposite
                 .iter()

@@ -1,7 +1,7 @@
 //! Pairing of surfaces in space that do not match, wholly and partly covered, flat and curved.
 
 use super::{facets, sum};
-use moreau_mesh::{CellKind, Coupling, Mesh, Pairing, Solid, block3, uniform};
+use moreau_mesh::{CellKind, Mesh, MortarRow, Pairing, Solid, block3, uniform};
 use std::collections::BTreeMap;
 
 /// Sides of the footprint along x and z.
@@ -52,9 +52,9 @@ fn turned(angle: f64, scale: [f64; 2]) -> impl Fn([f64; 2]) -> [f64; 2] {
     }
 }
 
-fn pair(mesh: &Mesh<3>, pairing: Pairing) -> Vec<Coupling<3>> {
+fn pair(mesh: &Mesh<3>, pairing: Pairing) -> Vec<MortarRow<3>> {
     let group = |name| mesh.facet_group(name).expect("named");
-    mesh.couplings(
+    mesh.mortar_rows(
         mesh.nodes(),
         (group("upper.bottom"), group("lower.top")),
         pairing,
@@ -159,9 +159,9 @@ fn a_node_on_a_face_that_matches_meets_its_twin_alone() {
             .and_then(|m| m.map(wavy))
             .expect("valid");
         for pairing in [Pairing::Mortar, Pairing::NodeToSurface] {
-            let couplings = pair(&mesh, pairing);
-            assert_eq!(couplings.len(), 25);
-            for c in couplings {
+            let mortar_rows = pair(&mesh, pairing);
+            assert_eq!(mortar_rows.len(), 25);
+            for c in mortar_rows {
                 assert!(c.own.len() == 1 && c.own[0].0 == c.node);
                 for (b, w) in c.opposite {
                     let (x, y) = (mesh.nodes()[b], mesh.nodes()[c.node]);
@@ -193,7 +193,7 @@ fn gaps_and_normals_between_curved_faces_are_those_of_the_surfaces() {
             .expect("valid");
         let group = |name| mesh.facet_group(name).expect("named");
         let surfaces = (group("outer.left"), group("inner.right"));
-        for c in mesh.couplings(mesh.nodes(), surfaces, Pairing::Mortar, &Solid) {
+        for c in mesh.mortar_rows(mesh.nodes(), surfaces, Pairing::Mortar, &Solid) {
             let [x, y, _] = mesh.nodes()[c.node];
             let lean = (c.normal[0] * y - c.normal[1] * x) / x.hypot(y);
             assert!(
@@ -248,10 +248,11 @@ fn a_tube_meets_the_near_side_of_the_tube_within() {
         facets(&mesh, ["inner1.right", "inner2.right"]),
     );
     for pairing in [Pairing::Mortar, Pairing::NodeToSurface] {
-        let couplings = mesh.couplings(mesh.nodes(), (&surfaces.0, &surfaces.1), pairing, &Solid);
+        let mortar_rows =
+            mesh.mortar_rows(mesh.nodes(), (&surfaces.0, &surfaces.1), pairing, &Solid);
         // The joints of the half tubes have a node of each half.
-        assert_eq!(couplings.len(), 2 * 17 * 5, "{pairing:?}");
-        for c in couplings {
+        assert_eq!(mortar_rows.len(), 2 * 17 * 5, "{pairing:?}");
+        for c in mortar_rows {
             let at = |w: &[(usize, f64)]| [0, 1, 2].map(|i| sum(w, |a| mesh.nodes()[a][i]));
             let (own, other) = (at(&c.own), at(&c.opposite));
             let gap: f64 = (0..3).map(|i| (own[i] - other[i]) * c.normal[i]).sum();
@@ -299,11 +300,11 @@ fn of_two_layers_the_nearer_is_met() {
         }
         let tops = ["first.top", "second.top"].map(|n| mesh.facet_group(n).expect("named"));
         let own = mesh.facet_group("upper.bottom").expect("named");
-        let couplings =
-            mesh.couplings(mesh.nodes(), (own, &tops.concat()), Pairing::Mortar, &Solid);
-        assert_eq!(couplings.len(), 12);
+        let mortar_rows =
+            mesh.mortar_rows(mesh.nodes(), (own, &tops.concat()), Pairing::Mortar, &Solid);
+        assert_eq!(mortar_rows.len(), 12);
         let met = mesh.node_group(&format!("{near}.top")).expect("named");
-        for c in couplings {
+        for c in mortar_rows {
             let only = c.opposite.iter().all(|(b, _)| met.binary_search(b).is_ok());
             assert!(only, "{far} is met behind {near}");
         }

@@ -4,7 +4,7 @@ use super::status_name;
 use super::table::field;
 use super::touch::{Touch, touches};
 use crate::deck::Units;
-use crate::driver::{ContactRecord, Driver, StepReport};
+use crate::driver::{ContactRecord, Driver, IncrementReport};
 use crate::mesh::NodeKind;
 use crate::numbers::number;
 
@@ -20,7 +20,7 @@ pub(super) fn header(units: Units) -> String {
 /// The rows of an increment. Slips are those of the increment; nodes are counted from 0.
 pub(super) fn rows<const D: usize>(
     driver: &Driver<D>,
-    report: &StepReport,
+    report: &IncrementReport,
     stage: usize,
 ) -> Vec<String> {
     let row = |(c, touch): (&ContactRecord<D>, Touch<D>)| {

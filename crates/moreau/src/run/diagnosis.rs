@@ -3,7 +3,7 @@
 use super::log::Trace;
 use super::status_name;
 use crate::deck::{Action, Deck, Method, Units};
-use crate::driver::{Driver, Imbalance, StepError};
+use crate::driver::{Driver, Imbalance, IncrementError};
 use crate::laws::Status;
 use std::fmt;
 
@@ -46,10 +46,10 @@ impl Diagnosis {
         deck: &Deck,
         stage: usize,
         trace: &Trace,
-        error: &StepError,
+        error: &IncrementError,
     ) -> Self {
         let (cause, plastic_fraction, limit) = match error {
-            StepError::Stopped {
+            IncrementError::Stopped {
                 cause,
                 plastic_fraction,
                 limit,
@@ -75,7 +75,7 @@ impl Diagnosis {
             .collect();
         let suggestion = suggestion(deck, stage, cause, plastic_fraction, !flips.is_empty());
         let worst = match cause {
-            StepError::NotConverged { worst, .. } => worst.clone(),
+            IncrementError::NotConverged { worst, .. } => worst.clone(),
             _ if trace.is_of_next(driver) => driver.worst(&trace.residual),
             _ => Vec::new(),
         };
@@ -109,7 +109,7 @@ impl Diagnosis {
 fn suggestion(
     deck: &Deck,
     stage: usize,
-    cause: &StepError,
+    cause: &IncrementError,
     plastic_fraction: f64,
     flips: bool,
 ) -> String {
@@ -129,7 +129,7 @@ fn suggestion(
     });
     let mut conditions = step.conditions.iter();
     let pushed = conditions.find(|c| matches!(c.action, Action::Push(..)));
-    let yields = matches!(cause, StepError::Mechanism { .. }) || plastic_fraction > WIDESPREAD;
+    let yields = matches!(cause, IncrementError::Mechanism { .. }) || plastic_fraction > WIDESPREAD;
     let exact = deck.solver.method == Method::Exact && !deck.solver.outside;
     match (load, cause) {
         (Some(load), _) if yields => format!(
@@ -137,20 +137,20 @@ fn suggestion(
              displacement there instead (move), which passes the limit and shows the load",
             load.on.value
         ),
-        (_, StepError::Contact { .. }) if exact && pushed.is_some() => format!(
+        (_, IncrementError::Contact { .. }) if exact && pushed.is_some() => format!(
             "nothing holds the tool \"{}\" against its force, it slides off or its contact opens: turn the \
              force towards the surface, give the contact friction, or prescribe the motion of the tool \
              (move) along what slides",
             pushed.map_or("", |p| &p.on.value)
         ),
-        (_, StepError::Contact { .. }) if !exact => {
+        (_, IncrementError::Contact { .. }) if !exact => {
             "set contact = \"exact\" in [solver]: it needs no parameter and no contraction".into()
         }
-        (_, StepError::NotFinite { .. }) => format!(
+        (_, IncrementError::NotFinite { .. }) => format!(
             "in step \"{name}\" prescribe what the model can follow: displacements of its size at most, and \
              loads of the size of its strength, in the units of the deck"
         ),
-        (_, StepError::Mechanism { node, axis, .. }) => {
+        (_, IncrementError::Mechanism { node, axis, .. }) => {
             format!("hold u_{axis} near node {node}, or bring it into contact: it moves freely")
         }
         _ if flips => format!(

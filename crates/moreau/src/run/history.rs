@@ -3,7 +3,7 @@
 use super::table::field;
 use crate::deck::{Setup, Units};
 use crate::deck::{Unit, columns};
-use crate::driver::{Driver, PointField, StepReport};
+use crate::driver::{Driver, IncrementReport, PointField};
 use crate::mandel::{Sym2, von_mises};
 use crate::numbers::number;
 
@@ -50,7 +50,7 @@ impl History {
     pub(super) fn record<const D: usize>(
         &mut self,
         driver: &Driver<D>,
-        report: &StepReport,
+        report: &IncrementReport,
         place: &Place<'_>,
     ) -> String {
         let energies = &report.energies;

@@ -7,7 +7,8 @@ use super::warnings::Warnings;
 use crate::contact::Certificate;
 use crate::deck::{Deck, Setup, Units};
 use crate::driver::{
-    Collapse, Driver, Energies, ModelError, Numbers, Saved, StepError, StepReport, UpperBound,
+    Collapse, Driver, Energies, IncrementError, IncrementReport, ModelError, Numbers, Saved,
+    UpperBound,
 };
 use crate::laws::Status;
 use crate::memory;
@@ -42,11 +43,11 @@ impl RunStatus {
         }
     }
 
-    pub(super) fn of(failure: Option<&StepError>) -> Self {
+    pub(super) fn of(failure: Option<&IncrementError>) -> Self {
         match failure {
             None => Self::Done,
-            Some(StepError::Model(error)) => Self::Refused(error.to_string()),
-            Some(error @ StepError::Collapse { .. }) => Self::Collapsed(error.to_string()),
+            Some(IncrementError::Model(error)) => Self::Refused(error.to_string()),
+            Some(error @ IncrementError::Collapse { .. }) => Self::Collapsed(error.to_string()),
             Some(error) => Self::NotConverged(error.to_string()),
         }
     }
@@ -86,7 +87,7 @@ pub(super) struct Tally {
     relative_gap: f64,
     /// Whether each contact was ever closed.
     closed: Vec<bool>,
-    /// The largest [`StepReport::criticality`], with its contact point and the increment.
+    /// The largest [`IncrementReport::criticality`], with its contact point and the increment.
     criticality: Option<(usize, f64, usize)>,
     pub(super) warnings: Warnings,
     /// The last collapse and the step, from 0, that ended in it.
@@ -115,7 +116,7 @@ impl Tally {
     pub(super) fn add<const D: usize>(
         &mut self,
         driver: &Driver<D>,
-        report: &StepReport,
+        report: &IncrementReport,
         to_collapse: bool,
     ) {
         self.factorisations += report.factorisations;
@@ -220,9 +221,9 @@ pub struct Outcome {
     pub threads: usize,
     /// The worst of all increments.
     pub certificate: Certificate,
-    /// The largest gap, see [`StepReport::relative_gap`].
+    /// The largest gap, see [`IncrementReport::relative_gap`].
     pub relative_gap: f64,
-    /// The largest coefficient of friction over its critical value, see [`StepReport::criticality`].
+    /// The largest coefficient of friction over its critical value, see [`IncrementReport::criticality`].
     pub criticality: Option<f64>,
     /// Contact points that are open, stick and slip at the end; those held along the surface are
     /// not counted as sticking or slipping.

@@ -26,7 +26,7 @@ pub(super) fn touches<const D: usize>(driver: &Driver<D>) -> Vec<Touch<D>> {
         status: records[*k].status,
     };
     let mut touches: Vec<Touch<D>> = (0..records.len()).map(|k| own(&k)).collect();
-    for &point in driver.handed_over() {
+    for &point in driver.redistributed() {
         let parts = beside(driver, point);
         let sum: f64 = parts.iter().map(|p| p.1).sum();
         let nearest = parts.iter().max_by(|a, b| a.1.total_cmp(&b.1));

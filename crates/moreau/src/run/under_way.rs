@@ -8,7 +8,7 @@ use super::outcome::{self, Outcome, RunStatus, Tally};
 use super::vtu::{self, Collection, LIST};
 use super::{Diagnosis, Event, RUN, Resumable, RunError, View, Watch, contact};
 use crate::deck::{Deck, Setup, Vtu};
-use crate::driver::{Driver, Numbers, Ramp, Saved, StepError, StepReport};
+use crate::driver::{Driver, IncrementError, IncrementReport, Numbers, Ramp, Saved};
 use std::path::Path;
 use std::time::Instant;
 
@@ -228,7 +228,10 @@ where
                 (RunStatus::NotConverged(error), None)
             }
             Ending::Failed(error) => {
-                let sought = matches!(error, StepError::Model(_) | StepError::Collapse { .. });
+                let sought = matches!(
+                    error,
+                    IncrementError::Model(_) | IncrementError::Collapse { .. }
+                );
                 let diagnosis = (!sought).then(|| {
                     let (driver, trace) = (&self.setup.driver, &self.trace);
                     Diagnosis::new(driver, self.deck, self.stage, trace, &error)
@@ -291,13 +294,13 @@ where
                 }
                 let report = match result {
                     Ok(report) => report,
-                    Err(StepError::Collapse { collapse, step }) => {
+                    Err(IncrementError::Collapse { collapse, step }) => {
                         self.tally.collapse = Some((self.stage, collapse));
                         if self.setup.stages[self.stage].until_collapse {
                             collapsed = true;
                             break;
                         }
-                        let error = StepError::Collapse { collapse, step };
+                        let error = IncrementError::Collapse { collapse, step };
                         return Ok(Ending::Failed(error));
                     }
                     Err(error) => return Ok(Ending::Failed(error)),
@@ -331,7 +334,7 @@ where
     }
 
     /// Writes a converged increment.
-    fn record(&mut self, report: &StepReport) -> Result<(), RunError> {
+    fn record(&mut self, report: &IncrementReport) -> Result<(), RunError> {
         let Some(out) = &mut self.out else {
             return Ok(());
         };
@@ -359,5 +362,5 @@ enum Ending {
     Interrupted,
     /// A step that was to end in collapse has not.
     Carried(String),
-    Failed(StepError),
+    Failed(IncrementError),
 }

@@ -3,7 +3,7 @@
 
 use crate::deck::{Deck, Units};
 use crate::driver::{Between, Buckling, ContactRecord, Deformation, Driver, Energies, Extent};
-use crate::driver::{ModelError, Numbers, Saved, StepReport};
+use crate::driver::{IncrementReport, ModelError, Numbers, Saved};
 use crate::numbers::{place, shown};
 
 /// What may be doubtful about a converged state.
@@ -126,7 +126,7 @@ impl Warnings {
     pub(super) fn add<const D: usize>(
         &mut self,
         driver: &Driver<D>,
-        report: &StepReport,
+        report: &IncrementReport,
         to_collapse: bool,
     ) {
         self.balance.add(&report.energies, report.increment);
@@ -149,7 +149,7 @@ impl Warnings {
     }
 
     /// Takes note of what contact has no say in, or not the only one.
-    fn undecided<const D: usize>(&mut self, driver: &Driver<D>, report: &StepReport) {
+    fn undecided<const D: usize>(&mut self, driver: &Driver<D>, report: &IncrementReport) {
         let when = report.increment;
         // What carries a force may be inside by the springs of a penalty.
         let inside = |c: &&ContactRecord<D>| c.u[0] < -driver.rounding_of_gaps() && c.t[0] == 0.0;

@@ -7,7 +7,7 @@ mod units;
 
 use super::{folder, temporary};
 use moreau::deck::{Problem, open_in};
-use moreau::driver::StepReport;
+use moreau::driver::IncrementReport;
 use moreau::run::{Directory, Event, Watch, resume, run};
 use std::fs;
 use std::path::Path;
@@ -105,7 +105,7 @@ struct Pause(usize);
 
 impl Watch for Pause {
     fn converged(&mut self, event: &Event<'_>) {
-        let report: &StepReport = event.report;
+        let report: &IncrementReport = event.report;
         self.0 = self.0.saturating_sub(report.increment);
     }
 

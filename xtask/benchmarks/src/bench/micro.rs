@@ -4,7 +4,7 @@ use std::error::Error;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use moreau::contact::{ContactProblem, ContactSolver, SemismoothNewton};
+use moreau::contact::{CondensedProblem, ContactSolver, SemismoothNewton};
 use moreau::driver::{Analysis, Block, Settings, SolidBlock, Stiffness};
 use moreau::laws::{BulkLaw, Coulomb, Local, VonMises, VonMisesState};
 use moreau::mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
@@ -94,7 +94,7 @@ pub(super) fn run() -> Result<bool, Box<dyn Error>> {
         let load = DVector::from_fn(n, |i, _| 10.0 * (1.0 + (0.3 * i as f64).sin()));
         let zero = vec![Local::<2>::zeros(); contacts];
         let law = vec![Coulomb::new(0.2)?; contacts];
-        let problem = ContactProblem::new(stiffness, load, zero.clone(), law, zero)?;
+        let problem = CondensedProblem::new(stiffness, load, zero.clone(), law, zero)?;
         let solver = SemismoothNewton::default();
         let cold = solver.solve(&problem, None)?;
         let what = format!("contact problem of {contacts} contacts, from nothing");

@@ -6,7 +6,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use moreau::contact::{Ball, Obstacle, Plane};
-use moreau::driver::{Axis, ContactRecord, Driver, Model, Seam, Settings, Step, StepReport};
+use moreau::driver::{Axis, ContactRecord, Driver, IncrementReport, Model, Seam, Settings, Step};
 use moreau::laws::{Coulomb, Elastic, VonMises};
 use moreau::mesh::{CellKind, Integration, Mesh, Solid, block3, uniform};
 use nalgebra::SVector;
@@ -195,7 +195,7 @@ impl Case {
         let mut driver = Driver::new(self.model()?, Settings::default())?;
         let reports = driver.run(&self.step(), self.increments, |_, _| {})?;
         let seconds = clock.elapsed().as_secs_f64();
-        let sum = |f: fn(&StepReport) -> usize| reports.iter().map(f).sum::<usize>();
+        let sum = |f: fn(&IncrementReport) -> usize| reports.iter().map(f).sum::<usize>();
         let newton = sum(|r| r.newton_iterations);
         let ordering = driver.timings().ordering.as_secs_f64();
         Ok(Figures {

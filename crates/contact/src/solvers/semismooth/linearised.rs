@@ -1,6 +1,6 @@
 //! The linear equations of a Newton step on the natural map; not the map.
 
-use crate::ContactProblem;
+use crate::CondensedProblem;
 use moreau_algebra::Lu;
 use moreau_laws::Local;
 use nalgebra::{DMatrix, DVector, SMatrix};
@@ -28,7 +28,7 @@ const NONE: f64 = 1e-14;
 /// rows bind its own components only. They are answered first; what is left is as small as the open
 /// contacts with all, and the slipping ones with their tangential components, make it.
 pub(super) fn solve<const D: usize>(
-    problem: &ContactProblem<D>,
+    problem: &CondensedProblem<D>,
     rows: Vec<Row<D>>,
 ) -> Option<DVector<f64>> {
     let s = problem.stiffness();
@@ -202,7 +202,7 @@ mod tests {
             let zero = vec![Local::<3>::zeros(); kinds.len()];
             let law = vec![Coulomb::new(0.3).expect("valid"); kinds.len()];
             let problem =
-                ContactProblem::new(s.clone(), DVector::zeros(n), zero.clone(), law, zero)
+                CondensedProblem::new(s.clone(), DVector::zeros(n), zero.clone(), law, zero)
                     .expect("valid");
             // E a projector of rank 0 to 3, A the rest, both turned.
             let row = |(c, &rank): (usize, &usize)| {
@@ -246,7 +246,7 @@ mod tests {
     fn stuck_contacts_leave_no_equations_and_rows_of_zeros_no_step() {
         let zero = vec![Local::<2>::zeros()];
         let law = vec![Coulomb::new(0.3).expect("valid")];
-        let problem = ContactProblem::new(
+        let problem = CondensedProblem::new(
             DMatrix::identity(2, 2),
             DVector::zeros(2),
             zero.clone(),

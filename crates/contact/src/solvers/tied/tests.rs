@@ -1,7 +1,7 @@
 //! A tied problem is solved as the condensed one is, whatever its ties.
 
 use super::*;
-use crate::ContactProblem;
+use crate::CondensedProblem;
 use crate::problem::stack;
 use crate::solvers::{ContactSolver, SemismoothNewton};
 use crate::tied::{Springs, Structure};
@@ -67,7 +67,7 @@ fn sample<const D: usize>(
     seed: &[f64],
     laws: &[Friction],
     rigid: bool,
-) -> (Dense, ContactProblem<D>) {
+) -> (Dense, CondensedProblem<D>) {
     let n = D * contacts;
     let b = DMatrix::from_fn(n, n, |i, j| {
         random(seed, 7 * i + 3 * j) / (1.0 + i.abs_diff(j) as f64)
@@ -88,7 +88,7 @@ fn sample<const D: usize>(
         .map(|i| Local::<D>::from_fn(|k, _| if k == 0 { 0.3 * random(seed, i) } else { 0.0 }));
     let law = |i: usize| laws[i % laws.len()];
     let friction: Vec<Friction> = (0..contacts).map(law).collect();
-    let problem = ContactProblem::new(
+    let problem = CondensedProblem::new(
         s.clone(),
         load.clone(),
         origin.collect(),
@@ -107,7 +107,7 @@ fn sample<const D: usize>(
 
 fn tied<const D: usize>(
     structure: &mut Dense,
-    problem: &ContactProblem<D>,
+    problem: &CondensedProblem<D>,
     guess: Option<&ContactSolution<D>>,
 ) -> Result<ContactSolution<D>, ContactError> {
     let contacts = problem.contacts();
@@ -127,7 +127,7 @@ fn tied<const D: usize>(
 /// The law holds, and the structure is in balance.
 fn assert_solves<const D: usize>(
     structure: &Dense,
-    problem: &ContactProblem<D>,
+    problem: &CondensedProblem<D>,
     found: &ContactSolution<D>,
 ) -> Result<(), TestCaseError> {
     let scale = problem.force_scale(&found.force);

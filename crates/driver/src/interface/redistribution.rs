@@ -12,7 +12,7 @@
 use crate::driver::Driver;
 use crate::interface::condensation::{Elimination, row};
 use crate::model::load::Loading;
-use crate::model::points::{Footing, Kinematics};
+use crate::model::points::{Kinematics, RelativeMotionRow};
 use moreau_mesh::Facet;
 use nalgebra::SVector;
 use std::collections::{BTreeMap, BTreeSet};
@@ -26,9 +26,9 @@ const DISTINCT: f64 = 0.05;
 
 impl<const D: usize> Driver<D> {
     /// Hands over the multipliers of the points of a contact that a loading holds.
-    pub(crate) fn hand_over(
+    pub(crate) fn redistribute_multipliers(
         &self,
-        footings: &mut [Footing<D>],
+        motion_rows: &mut [RelativeMotionRow<D>],
         (contact, surface): (usize, &[Facet]),
         loading: &Loading<D>,
     ) {
@@ -37,7 +37,7 @@ impl<const D: usize> Driver<D> {
         let is_held = |&c: &usize| (0..D).any(|i| !is_free(D * own(c) + i));
         let meets = |c: &usize| self.points[*c].contact == contact;
         let all: Vec<usize> = (0..self.points.len())
-            .filter(|c| meets(c) && footings[*c].plane(&SVector::zeros()).is_some())
+            .filter(|c| meets(c) && motion_rows[*c].plane(&SVector::zeros()).is_some())
             .collect();
         if !all.iter().any(is_held) {
             return;
@@ -45,7 +45,7 @@ impl<const D: usize> Driver<D> {
         let neighbours = self.neighbours(surface);
         // Those that cannot give way to a pressure, next to others that can.
         let stiff = |&c: &usize| {
-            let normal = footings[c].plane(&SVector::zeros()).map(|(n, _)| n);
+            let normal = motion_rows[c].plane(&SVector::zeros()).map(|(n, _)| n);
             let free = from_free(own(c), is_free);
             normal.is_none_or(|n| {
                 !Kinematics::new(&self.points[c], &n, 0.0, &SVector::zeros(), free).active[0]
@@ -58,13 +58,13 @@ impl<const D: usize> Driver<D> {
             if takers.is_empty() {
                 stranded.push(c);
             } else {
-                give(footings, c, &takers);
+                give(motion_rows, c, &takers);
             }
         }
         kept.extend(stranded);
         // Those about which the others say all.
         loop {
-            let spare = self.spare(footings, &kept, is_free);
+            let spare = self.spare(motion_rows, &kept, is_free);
             if spare.is_empty() {
                 return;
             }
@@ -78,7 +78,7 @@ impl<const D: usize> Driver<D> {
                 }
                 // Where no point says anything, nothing is lost by what is kept.
                 if !takers.is_empty() {
-                    give(footings, c, &takers);
+                    give(motion_rows, c, &takers);
                 }
             }
         }
@@ -169,13 +169,13 @@ impl<const D: usize> Driver<D> {
     /// opposite nearly to themselves.
     fn spare(
         &self,
-        footings: &[Footing<D>],
+        motion_rows: &[RelativeMotionRow<D>],
         kept: &BTreeSet<usize>,
         is_free: impl Fn(usize) -> bool + Copy,
     ) -> Vec<usize> {
         let own = |c: usize| (0..D).map(move |i| D * self.points[c].node + i);
         let alone = |c: usize| {
-            let opposite = footings[c].opposite.iter().map(|o| o.1);
+            let opposite = motion_rows[c].opposite.iter().map(|o| o.1);
             match own(c).all(is_free) {
                 true => f64::INFINITY,
                 false => opposite.fold(0.0, f64::max),
@@ -186,18 +186,20 @@ impl<const D: usize> Driver<D> {
         let mut rows = Elimination::new(self.state.displacement.len());
         let mut spare = Vec::new();
         for (alone, c) in order {
-            let footing = &footings[c];
-            let Some((n, gap)) = footing.plane(&SVector::zeros()) else {
+            let motion_row = &motion_rows[c];
+            let Some((n, gap)) = motion_row.plane(&SVector::zeros()) else {
                 continue;
             };
-            let free = footing.free(self.points[c].node, is_free);
+            let free = motion_row.free(self.points[c].node, is_free);
             let k = Kinematics::new(&self.points[c], &n, gap, &SVector::zeros(), free);
             let unknown = |dof: usize| is_free(dof).then_some(dof);
             let active = (0..D).filter(|&j| k.active[j]);
             let all: Vec<_> = active
-                .map(|j| (D * c + j, row(footing, &k, j, unknown)))
+                .map(|j| (D * c + j, row(motion_row, &k, j, unknown)))
                 .collect();
-            let distinct = all.iter().all(|(_, row)| rows.says(row, DISTINCT));
+            let distinct = all
+                .iter()
+                .all(|(_, row)| rows.is_independent(row, DISTINCT));
             if alone.is_finite() && !distinct {
                 spare.push(c);
                 continue;
@@ -217,9 +219,13 @@ fn from_free<const D: usize>(node: usize, is_free: impl Fn(usize) -> bool) -> [b
 }
 
 /// Adds parts of the multiplier of a point to those of others; it has none then.
-fn give<const D: usize>(footings: &mut [Footing<D>], from: usize, takers: &[(usize, f64)]) {
-    let given = std::mem::take(&mut footings[from]);
+fn give<const D: usize>(
+    motion_rows: &mut [RelativeMotionRow<D>],
+    from: usize,
+    takers: &[(usize, f64)],
+) {
+    let given = std::mem::take(&mut motion_rows[from]);
     for &(taker, part) in takers {
-        footings[taker].take_over(&given, part);
+        motion_rows[taker].take_over(&given, part);
     }
 }
