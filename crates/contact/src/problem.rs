@@ -73,7 +73,7 @@ fn criticality<const D: usize>(
     let ratio = |i: usize| {
         // Between stretched vectors an anisotropic law is isotropic.
         let moved = d(i).component_mul(&laws[i].stretch());
-        (i, laws[i].friction() * moved.norm())
+        (i, laws[i].coefficient() * moved.norm())
     };
     contacts.map(ratio).max_by(|a, b| a.1.total_cmp(&b.1))
 }

@@ -98,7 +98,7 @@ impl Friction {
     /// of them fill Coulomb's cone of the angle of friction and that one together. Of a law that limits
     /// the shear only the coefficient counts.
     pub fn at_corner(self, half_angle: f64) -> Self {
-        let angle = self.friction().atan() + half_angle;
+        let angle = self.coefficient().atan() + half_angle;
         Self::Coulomb(Coulomb::of(angle.min(STEEPEST).tan()))
     }
 
@@ -244,13 +244,13 @@ impl Friction {
             Self::Tresca(law) => law.limit(),
             Self::Limited(law) => law.bound(t_n),
             Self::Bounded(law) => law.bound(t_n),
-            law => law.friction() * t_n,
+            law => law.coefficient() * t_n,
         }
     }
 
     /// The coefficient of friction, the slope of [`Self::bound`] at t_n = 0.
     #[inline]
-    pub fn friction(&self) -> f64 {
+    pub fn coefficient(&self) -> f64 {
         match self {
             Self::Coulomb(law) => law.friction(),
             Self::Tresca(_) => 0.0,
@@ -266,7 +266,7 @@ impl Friction {
         match self {
             Self::Limited(law) if law.bound(t_n) >= law.limit() => 0.0,
             Self::Bounded(law) => law.slope(t_n),
-            law => law.friction(),
+            law => law.coefficient(),
         }
     }
 

@@ -22,7 +22,7 @@ fn the_three_storages_say_the_same() {
         let own = problem.operator().diagonal(0);
         assert_eq!(own.as_slice(), [2.0, 0.0, 1.0, 3.0]);
         assert_eq!(problem.free()[0].as_slice(), [-1.0, 0.5]);
-        assert_eq!(problem.laws()[0].friction(), 0.25);
+        assert_eq!(problem.laws()[0].coefficient(), 0.25);
     }
 }
 

@@ -23,7 +23,7 @@ impl Bound {
             },
             Friction::Bounded(law) => Self::Curve(law),
             law => Self::Line {
-                slope: law.friction(),
+                slope: law.coefficient(),
                 limit: f64::INFINITY,
             },
         }

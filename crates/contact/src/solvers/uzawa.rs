@@ -124,7 +124,7 @@ fn steps<const D: usize>(problem: &LocalProblem<D>) -> Vec<f64> {
         v = w / largest;
     }
     // Friction adds μ‖u_t‖ to the normal displacement: its slope enters the Lipschitz constant.
-    let slope = |i: usize| (1.0 + problem.laws()[i].friction().powi(2)).sqrt();
+    let slope = |i: usize| (1.0 + problem.laws()[i].coefficient().powi(2)).sqrt();
     (0..contacts)
         .map(|i| scale[i] / (1.05 * largest * slope(i)))
         .collect()

@@ -430,7 +430,11 @@ mod tests {
             };
             let held_across = [true, false, true];
             let k = Kinematics::new(&point, &floor, 0.0, &SVector::zeros(), held_across);
-            assert!((k.law.friction() - expected).abs() < 1e-14, "{:?}", k.law);
+            assert!(
+                (k.law.coefficient() - expected).abs() < 1e-14,
+                "{:?}",
+                k.law
+            );
             assert_eq!(k.active, [true, true, false]);
         }
     }

@@ -22,7 +22,7 @@ impl<const D: usize> Driver<D> {
         let slip = |c: &ContactRecord<D>| (1..D).map(|j| -c.t[j] * c.u[j]).sum::<f64>();
         let friction: f64 = contacts.iter().map(slip).sum();
         let mut pairs = self.points.iter().zip(contacts);
-        let coulomb = pairs.any(|(p, c)| c.status == Status::Slip && p.law.friction() > 0.0);
+        let coulomb = pairs.any(|(p, c)| c.status == Status::Slip && p.law.coefficient() > 0.0);
         (proportional > 0.0).then(|| UpperBound {
             load_factor: (flow.total + friction - dead) / proportional,
             elastic_share: flow.elastic / proportional,

@@ -378,7 +378,7 @@ fn a_bound_of_a_user_is_a_law_of_friction() -> Result<(), Box<dyn std::error::Er
         let error = (bounded.scaled(3.0).project(&q) - coulomb.project(&q)).norm();
         assert!(error < 1e-12, "{error:e} at {q}");
     }
-    assert_eq!(bounded.friction(), 0.3);
+    assert_eq!(bounded.coefficient(), 0.3);
     assert!(bounded.resists_slip() && bounded == Friction::from(&CONE));
     assert!(bounded != bounded.scaled(2.0));
     Ok(())
