@@ -28,6 +28,8 @@ use front::{Front, Pivots};
 /// The matrix is scaled by powers of two, rows and columns alike, so that its rows are of size 1. Of rows that
 /// have no diagonal, as those of multipliers, that is not the only scale: where they are 10¹³ times as large as the
 /// rows that they constrain, these are taken for rounding.
+///
+/// The memory of an analysis is that of L; the fronts that wait for their parents come on top of it.
 pub struct Ldlt {
     symbolic: Symbolic,
     /// Supernodes that receive what others leave, by the others; the last one beyond them is of the kept
