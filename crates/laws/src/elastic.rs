@@ -2,7 +2,7 @@
 
 use crate::bulk::{BulkLaw, FlowPower, Response};
 use crate::error::{LawError, Parameter, positive};
-use moreau_mandel::{Sym2, Sym4, deviator, deviatoric_projector, identity, trace};
+use moreau_mandel::{Sym2, Sym4, deviator, identity, isotropic, trace};
 
 /// Isotropic linear elasticity, σ = K_c tr(ε) δ + 2G e with the deviator e of ε.
 ///
@@ -58,8 +58,7 @@ impl Elastic {
     /// The tangent S = K_c δ⊗δ + 2G (1 − ⅓ δ⊗δ) \[MPa\]; symmetric positive definite.
     #[inline]
     pub fn tangent(&self) -> Sym4 {
-        let delta = identity();
-        self.bulk * delta * delta.transpose() + 2.0 * self.shear * deviatoric_projector()
+        isotropic(self.bulk, 2.0 * self.shear)
     }
 
     /// Energy ½ ε·S·ε = ½ K_c (tr ε)² + G ‖e‖² of a strain \[N·mm/mm³\], \[59\]; convex, quadratic.

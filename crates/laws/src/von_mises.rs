@@ -7,7 +7,7 @@ use crate::elastic::Elastic;
 use crate::error::{LawError, Parameter, non_negative, positive};
 use crate::isotropic::Isotropic;
 use moreau_mandel::{
-    Sym2, Sym4, deviator, deviatoric_projector, equivalent_strain, identity, trace, von_mises,
+    Sym2, Sym4, add_symmetric_product, deviator, equivalent_strain, isotropic, trace, von_mises,
 };
 
 /// What a von Mises material remembers, with so many terms of kinematic hardening with recall; the
@@ -367,16 +367,13 @@ impl<const TERMS: usize> BulkLaw for VonMises<TERMS> {
         let (k, g) = (self.elastic.bulk_modulus(), self.elastic.shear_modulus());
         let beta = 3.0 * g * d_p / trial;
         let gamma = 3.0 * g / step.slope;
-        let delta = identity();
-        let mut tangent = k * delta * delta.transpose()
-            + 2.0
-                * g
-                * ((1.0 - beta) * deviatoric_projector() + (beta - gamma) * n * n.transpose());
+        let mut tangent = isotropic(k, 2.0 * g * (1.0 - beta));
+        add_symmetric_product(&mut tangent, g * (beta - gamma), &n, &n);
         if TERMS > 0 {
             // Recall turns n: a part a⊗n that is not symmetric, of which the symmetric is kept.
             let across = step.recall - n * n.dot(&step.recall);
             let turned = -(1.5f64.sqrt() * g * beta / step.slope) * across;
-            tangent += turned * n.transpose() + n * turned.transpose();
+            add_symmetric_product(&mut tangent, 1.0, &turned, &n);
         }
         Response {
             stress: self.stress(&state),

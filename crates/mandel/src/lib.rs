@@ -58,16 +58,42 @@ pub fn equivalent_strain(e: &Sym2) -> f64 {
     (2.0f64 / 3.0).sqrt() * e.norm()
 }
 
+/// The isotropic tensor k δ ⊗ δ + s (1 − ⅓ δ ⊗ δ): of elasticity with the bulk modulus k and twice the shear
+/// modulus s.
+#[inline]
+pub fn isotropic(k: f64, s: f64) -> Sym4 {
+    let mut c = Sym4::zeros();
+    for i in 0..3 {
+        for j in 0..3 {
+            c[(i, j)] = k - s / 3.0;
+        }
+    }
+    for i in 0..6 {
+        c[(i, i)] += s;
+    }
+    c
+}
+
+/// c ← c + s (a ⊗ b + b ⊗ a), which stays symmetric to the bit.
+#[inline]
+pub fn add_symmetric_product(c: &mut Sym4, s: f64, a: &Sym2, b: &Sym2) {
+    for j in 0..6 {
+        for i in 0..6 {
+            c[(i, j)] += s * (a[i] * b[j] + b[i] * a[j]);
+        }
+    }
+}
+
 /// The projector on spherical tensors, ⅓ δ ⊗ δ.
 #[inline]
 pub fn spherical_projector() -> Sym4 {
-    identity() * identity().transpose() / 3.0
+    isotropic(1.0 / 3.0, 0.0)
 }
 
 /// The projector on deviators, 1 − ⅓ δ ⊗ δ.
 #[inline]
 pub fn deviatoric_projector() -> Sym4 {
-    Sym4::identity() - spherical_projector()
+    isotropic(0.0, 1.0)
 }
 
 /// Mandel vector of the symmetric part of a 3×3 matrix.
