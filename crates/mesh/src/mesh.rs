@@ -34,6 +34,8 @@ pub struct Facet {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh<const D: usize> {
     nodes: Vec<[f64; D]>,
+    /// [`Mesh::size`], which is asked for at every contact point.
+    size: f64,
     kinds: Vec<CellKind>,
     /// Nodes of cell c: `connectivity[offsets[c]..offsets[c + 1]]`.
     offsets: Vec<usize>,
@@ -63,6 +65,7 @@ impl<const D: usize> Mesh<D> {
             return Err(MeshError::NoCells);
         }
         let mut mesh = Self {
+            size: diagonal(&nodes),
             nodes,
             kinds: Vec::with_capacity(cells.len()),
             offsets: vec![0],
@@ -130,7 +133,7 @@ impl<const D: usize> Mesh<D> {
 
     /// Diagonal of the box around the nodes \[mm\].
     pub fn size(&self) -> f64 {
-        diagonal(&self.nodes)
+        self.size
     }
 
     /// The mesh with every node moved from x to f(x) \[mm\], groups kept.
@@ -145,6 +148,7 @@ impl<const D: usize> Mesh<D> {
         for x in &mut self.nodes {
             *x = f(*x);
         }
+        self.size = diagonal(&self.nodes);
         self.check_geometry()?;
         Ok(self)
     }

@@ -1,8 +1,9 @@
-//! Who is whose neighbour: boundary, bodies, and two meshes in one; nothing here looks at
-//! coordinates.
+//! Who is whose neighbour: boundary, bodies, and two meshes in one; not where they
+//! are.
 
 use super::{Facet, Mesh};
 use crate::MeshError;
+use crate::geometry::diagonal;
 
 /// Nodes of a facet in increasing order: the same for the facets of both of its cells.
 pub(crate) type FacetKey = [usize; 9];
@@ -76,6 +77,7 @@ impl<const D: usize> Mesh<D> {
             self.insert_group(&name, group.shifted(nodes, cells))?;
         }
         self.nodes.extend(other.nodes);
+        self.size = diagonal(&self.nodes);
         self.kinds.extend(other.kinds);
         self.offsets
             .extend(other.offsets[1..].iter().map(|offset| offset + start));
