@@ -127,6 +127,13 @@ pub trait BulkLaw: 'static + Clone + Send + Sync {
     /// Stress in a state \[MPa\].
     fn stress(&self, state: &Self::State) -> Sym2;
 
+    /// Elastic strain of a state, under which its stress is what it is: what large strains start from. That
+    /// of linear elasticity, unless the law says otherwise.
+    fn elastic_strain(&self, state: &Self::State) -> Sym2 {
+        let compliance = self.elastic_tangent().try_inverse();
+        compliance.map_or_else(Sym2::zeros, |s| s * self.stress(state))
+    }
+
     /// The elastic tangent \[MPa\], 6×6, symmetric positive definite.
     fn elastic_tangent(&self) -> Sym4;
 

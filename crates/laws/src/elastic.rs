@@ -105,6 +105,11 @@ impl BulkLaw for Elastic {
         self.bulk * trace(state) * identity() + 2.0 * self.shear * deviator(state)
     }
 
+    #[inline]
+    fn elastic_strain(&self, state: &Sym2) -> Sym2 {
+        *state
+    }
+
     fn elastic_tangent(&self) -> Sym4 {
         self.tangent()
     }

@@ -207,6 +207,11 @@ impl BulkLaw for ElasticDruckerPrager {
         self.elastic.stress(&state.elastic_strain)
     }
 
+    #[inline]
+    fn elastic_strain(&self, state: &DruckerPragerState) -> Sym2 {
+        state.elastic_strain
+    }
+
     fn elastic_tangent(&self) -> Sym4 {
         self.elastic.tangent()
     }

@@ -388,6 +388,11 @@ impl<const TERMS: usize> BulkLaw for VonMises<TERMS> {
         self.elastic.stress(&state.elastic_strain)
     }
 
+    #[inline]
+    fn elastic_strain(&self, state: &VonMisesState<TERMS>) -> Sym2 {
+        state.elastic_strain
+    }
+
     fn elastic_tangent(&self) -> Sym4 {
         self.elastic.tangent()
     }

@@ -13,6 +13,10 @@
 //! assert!((von_mises(&from_matrix(&shear)) - 3f64.sqrt() * 100.0).abs() < 1e-12);
 //! ```
 
+mod spectral;
+
+pub use spectral::{Spectrum, logarithmic_slope};
+
 use nalgebra::{Matrix3, SMatrix, SVector};
 use std::f64::consts::SQRT_2;
 

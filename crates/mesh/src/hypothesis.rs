@@ -5,10 +5,10 @@ use crate::MeshError;
 use nalgebra::SMatrix;
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
-/// An entry of the block B_a of \[77\]: a field times a factor.
+/// An entry of what a displacement of a node does to a point: a field times a factor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Entry {
-    /// Component of the strain, in Mandel's order.
+    /// Component of the strain, in Mandel's order; or of the gradient, 3i + j of ∂uᵢ/∂xⱼ.
     pub row: usize,
     /// Which of [`Hypothesis::fields`].
     pub field: usize,
@@ -16,7 +16,7 @@ pub struct Entry {
     pub factor: f64,
 }
 
-const fn stretch(row: usize, field: usize) -> Entry {
+const fn plain(row: usize, field: usize) -> Entry {
     let factor = 1.0;
     Entry { row, field, factor }
 }
@@ -38,6 +38,10 @@ pub trait Hypothesis<const D: usize>: 'static + Copy + Send + Sync {
 
     /// The entries of B_a that are not zero, column by column; no field twice in a column.
     const OPERATOR: [&'static [Entry]; D];
+
+    /// The entries of the displacement gradient ∂uᵢ/∂xⱼ in R³ that are not zero, by the components of the
+    /// displacement.
+    const GRADIENT: [&'static [Entry]; D];
 
     /// Block B_a of \[77\], 6×D: the Mandel strain \[–\] by a unit displacement \[mm\] of one node,
     /// with shape value `n` \[–\] and gradient `grad` \[1/mm\], at the point `x` \[mm\].
@@ -104,7 +108,10 @@ impl Hypothesis<2> for PlaneStrain {
     }
 
     const OPERATOR: [&'static [Entry]; 2] =
-        [&[stretch(0, 0), shear(5, 1)], &[stretch(1, 1), shear(5, 0)]];
+        [&[plain(0, 0), shear(5, 1)], &[plain(1, 1), shear(5, 0)]];
+
+    const GRADIENT: [&'static [Entry]; 2] =
+        [&[plain(0, 0), plain(1, 1)], &[plain(3, 0), plain(4, 1)]];
 
     fn measure(&self, _: &[f64; 2]) -> f64 {
         self.thickness
@@ -131,8 +138,13 @@ impl Hypothesis<2> for Axisymmetric {
     }
 
     const OPERATOR: [&'static [Entry]; 2] = [
-        &[stretch(0, 0), shear(5, 1), stretch(2, 2)],
-        &[stretch(1, 1), shear(5, 0)],
+        &[plain(0, 0), shear(5, 1), plain(2, 2)],
+        &[plain(1, 1), shear(5, 0)],
+    ];
+
+    const GRADIENT: [&'static [Entry]; 2] = [
+        &[plain(0, 0), plain(1, 1), plain(8, 2)],
+        &[plain(3, 0), plain(4, 1)],
     ];
 
     fn measure(&self, &[r, _]: &[f64; 2]) -> f64 {
@@ -157,9 +169,15 @@ impl Hypothesis<3> for Solid {
     }
 
     const OPERATOR: [&'static [Entry]; 3] = [
-        &[stretch(0, 0), shear(5, 1), shear(4, 2)],
-        &[stretch(1, 1), shear(5, 0), shear(3, 2)],
-        &[stretch(2, 2), shear(4, 0), shear(3, 1)],
+        &[plain(0, 0), shear(5, 1), shear(4, 2)],
+        &[plain(1, 1), shear(5, 0), shear(3, 2)],
+        &[plain(2, 2), shear(4, 0), shear(3, 1)],
+    ];
+
+    const GRADIENT: [&'static [Entry]; 3] = [
+        &[plain(0, 0), plain(1, 1), plain(2, 2)],
+        &[plain(3, 0), plain(4, 1), plain(5, 2)],
+        &[plain(6, 0), plain(7, 1), plain(8, 2)],
     ];
 
     fn measure(&self, _: &[f64; 3]) -> f64 {

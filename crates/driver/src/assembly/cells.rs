@@ -2,9 +2,10 @@
 //! and stiffness; no law.
 
 use crate::ModelError;
+use moreau_laws::GradientTangent;
 use moreau_mandel::{Sym2, Sym4};
 use moreau_mesh::{Element, Entry, Hypothesis, Integration, Mesh};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, SMatrix};
 use pulp::{Arch, Simd, WithSimd};
 
 /// Largest number of quadrature points of a cell.
@@ -44,6 +45,13 @@ pub trait Cells<const D: usize>: Send + Sync {
     /// Writes the upper triangle of ∫ Bᵀ C B dΩ, row by row without the lower one \[N/mm\], from
     /// the symmetric tangents at the points of the k-th cell.
     fn stiffness(&self, k: usize, tangent: &[Sym4], stiffness: &mut [f64]);
+
+    /// Writes the upper triangle of ∫ ∂δu/∂x : A : ∂u/∂x dΩ, row by row without the lower one \[N/mm\], from
+    /// symmetric A = ∂P/∂(∂u/∂x) at the points of the k-th cell \[MPa\]; no dilatation is averaged.
+    fn gradient_stiffness(&self, k: usize, tangent: &[GradientTangent], stiffness: &mut [f64]);
+
+    /// Whether the dilatation of a cell is averaged over it.
+    fn averages_dilatation(&self) -> bool;
 }
 
 /// Cells of an element of N nodes: of this crate's or of any other. What strains them is kept field by field with the nodes next to
@@ -59,6 +67,8 @@ pub struct ElementCells<const D: usize, const N: usize> {
     fields: Vec<[f64; N]>,
     /// What the operators B_a are made of.
     operator: [&'static [Entry]; D],
+    /// What the gradient is made of.
+    gradient: [&'static [Entry]; D],
     /// Trace b̄_a of the operators B_a, averaged over each cell; none where it is not.
     dilatation: Vec<[[f64; N]; D]>,
     /// Instructions that the processor has.
@@ -97,6 +107,7 @@ impl<const D: usize, const N: usize> ElementCells<D, N> {
             per_point: H::FIELDS,
             fields: Vec::new(),
             operator: H::OPERATOR,
+            gradient: H::GRADIENT,
             dilatation: Vec::new(),
             arch: Arch::new(),
         };
@@ -172,6 +183,38 @@ impl<const D: usize, const N: usize> ElementCells<D, N> {
     }
 
     #[inline(always)]
+    fn gradient_of(&self, k: usize, u: &[f64], gradient: &mut [Matrix3<f64>]) {
+        let nodes = &self.nodes[k];
+        let u: [[f64; N]; D] = std::array::from_fn(|i| nodes.map(|a| u[D * a + i]));
+        for ((_, fields), gradient) in self.points(k).zip(gradient) {
+            *gradient = Matrix3::zeros();
+            for (entries, u) in self.gradient.iter().zip(&u) {
+                for entry in *entries {
+                    gradient[(entry.row / 3, entry.row % 3)] += dot(&fields[entry.field], u);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn gradient_force_of(&self, k: usize, flux: &[Matrix3<f64>], force: &mut [f64]) {
+        let mut sum = [[0.0; N]; D];
+        for ((weight, fields), flux) in self.points(k).zip(flux) {
+            for (sum, entries) in sum.iter_mut().zip(self.gradient) {
+                for entry in entries {
+                    let part = weight * flux[(entry.row / 3, entry.row % 3)];
+                    add(sum, part, &fields[entry.field]);
+                }
+            }
+        }
+        for a in 0..N {
+            for i in 0..D {
+                force[D * a + i] = sum[i][a];
+            }
+        }
+    }
+
+    #[inline(always)]
     fn force_of(&self, k: usize, stress: &[Sym2], force: &mut [f64]) {
         let mean = self.dilatation.get(k);
         let mut sum = [[0.0; N]; D];
@@ -216,6 +259,19 @@ impl<const D: usize, const N: usize> ElementCells<D, N> {
         } else {
             tangents
         };
+        self.triangle(k, self.operator, tangents, mean, stiffness);
+    }
+
+    /// The upper triangle of Σ w Bᵀ C B with an operator B, and what the mean dilatation adds.
+    #[inline(always)]
+    fn triangle<const R: usize>(
+        &self,
+        k: usize,
+        operator: [&'static [Entry]; D],
+        tangents: &[SMatrix<f64, R, R>],
+        mean: Option<MeanStiffness<'_, D, N>>,
+        stiffness: &mut [f64],
+    ) {
         // First entry of a row of the triangle, were it a square.
         let row = |unknown: usize| unknown * (2 * D * N + 1 - unknown) / 2 - unknown;
         let fields = &self.fields[k * self.points_per_cell * self.per_point..];
@@ -238,9 +294,9 @@ impl<const D: usize, const N: usize> ElementCells<D, N> {
                     let mut count = 0;
                     for g in first..tangents.len().min(first + POINTS) {
                         let fields = &fields[g * self.per_point..(g + 1) * self.per_point];
-                        for left in self.operator[i] {
+                        for left in operator[i] {
                             let mut traction = [0.0; N];
-                            for right in self.operator[j] {
+                            for right in operator[j] {
                                 let c = weights[g] * tangents[g][(left.row, right.row)];
                                 let c = c * (left.factor * right.factor);
                                 add(&mut traction, c, &fields[right.field]);
@@ -281,7 +337,7 @@ impl<const D: usize, const N: usize> ElementCells<D, N> {
         k: usize,
         mean: &'a [[f64; N]; D],
         tangents: &[Sym4],
-    ) -> ([[f64; N]; D], &'a [[f64; N]; D], f64) {
+    ) -> MeanStiffness<'a, D, N> {
         let mut coupling = [[0.0; N]; D];
         let mut bulk = 0.0;
         for ((weight, fields), tangent) in self.points(k).zip(tangents) {
@@ -301,6 +357,10 @@ impl<const D: usize, const N: usize> ElementCells<D, N> {
         (coupling, mean, bulk)
     }
 }
+
+/// v, b̄ and κ of [`ElementCells::mean_stiffness`].
+type MeanStiffness<'a, const D: usize, const N: usize> =
+    ([[f64; N]; D], &'a [[f64; N]; D], f64);
 
 /// Points whose terms of the stiffness are summed together.
 const POINTS: usize = 4;
@@ -351,6 +411,9 @@ enum Kernel<'a> {
     Strain(&'a [f64], &'a mut [Sym2]),
     Force(&'a [Sym2], &'a mut [f64]),
     Stiffness(&'a [Sym4], &'a mut [f64]),
+    Gradient(&'a [f64], &'a mut [Matrix3<f64>]),
+    GradientForce(&'a [Matrix3<f64>], &'a mut [f64]),
+    GradientStiffness(&'a [GradientTangent], &'a mut [f64]),
 }
 
 struct OfCell<'a, const D: usize, const N: usize> {
@@ -369,6 +432,11 @@ impl<const D: usize, const N: usize> WithSimd for OfCell<'_, D, N> {
             Kernel::Strain(d_u, d_eps) => cells.strain_of(k, d_u, d_eps),
             Kernel::Force(stress, force) => cells.force_of(k, stress, force),
             Kernel::Stiffness(tangent, stiffness) => cells.stiffness_of(k, tangent, stiffness),
+            Kernel::Gradient(u, gradient) => cells.gradient_of(k, u, gradient),
+            Kernel::GradientForce(flux, force) => cells.gradient_force_of(k, flux, force),
+            Kernel::GradientStiffness(tangent, stiffness) => {
+                cells.triangle(k, cells.gradient, tangent, None, stiffness);
+            }
         }
     }
 }
@@ -406,38 +474,19 @@ impl<const D: usize, const N: usize> Cells<D> for ElementCells<D, N> {
     }
 
     fn gradient(&self, k: usize, u: &[f64], gradient: &mut [Matrix3<f64>]) {
-        let nodes = &self.nodes[k];
-        for ((_, fields), gradient) in self.points(k).zip(gradient) {
-            *gradient = Matrix3::zeros();
-            for i in 0..D {
-                let u: [f64; N] = std::array::from_fn(|a| u[D * nodes[a] + i]);
-                for j in 0..D {
-                    gradient[(i, j)] = dot(&fields[j], &u);
-                }
-                if let (0, Some(hoop)) = (i, fields.get(D)) {
-                    gradient[(2, 2)] = dot(hoop, &u);
-                }
-            }
-        }
+        self.dispatch(k, Kernel::Gradient(u, gradient));
     }
 
     fn gradient_force(&self, k: usize, flux: &[Matrix3<f64>], force: &mut [f64]) {
-        let mut sum = [[0.0; N]; D];
-        for ((weight, fields), flux) in self.points(k).zip(flux) {
-            for (i, sum) in sum.iter_mut().enumerate() {
-                for (j, field) in fields[..D].iter().enumerate() {
-                    add(sum, weight * flux[(i, j)], field);
-                }
-                if let (0, Some(hoop)) = (i, fields.get(D)) {
-                    add(sum, weight * flux[(2, 2)], hoop);
-                }
-            }
-        }
-        for a in 0..N {
-            for i in 0..D {
-                force[D * a + i] = sum[i][a];
-            }
-        }
+        self.dispatch(k, Kernel::GradientForce(flux, force));
+    }
+
+    fn gradient_stiffness(&self, k: usize, tangent: &[GradientTangent], stiffness: &mut [f64]) {
+        self.dispatch(k, Kernel::GradientStiffness(tangent, stiffness));
+    }
+
+    fn averages_dilatation(&self) -> bool {
+        !self.dilatation.is_empty()
     }
 
     fn strain(&self, k: usize, d_u: &[f64], d_eps: &mut [Sym2]) {

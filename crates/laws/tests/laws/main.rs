@@ -11,6 +11,7 @@ mod drucker_prager;
 mod flow_power;
 mod friction;
 mod hardening;
+mod large;
 mod lemaitre;
 mod material_point;
 mod natural_map;

@@ -1,0 +1,179 @@
+//! Large strains through a law of small ones: logarithmic strains in a frame that turns with the point; not
+//! a law.
+
+use crate::bulk::{BulkLaw, Numbers};
+use moreau_mandel::{Spectrum, Sym2, from_matrix, logarithmic_slope, rotation, to_matrix, trace};
+use nalgebra::{Matrix3, SMatrix, SVector};
+
+/// A tensor that maps a velocity gradient l to a tensor: entry (3i + j, 3k + m) is ∂(·)ᵢⱼ/∂lₖₘ.
+pub type GradientTangent = SMatrix<f64, 9, 9>;
+
+/// What a point remembers under large strains: the state of its material, with all tensors in the frame that
+/// has turned with the point, and that frame.
+///
+/// A law that remembers tensors, or has axes, then needs not know that it turns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turned<S> {
+    /// State of the material, in the frame.
+    pub material: S,
+    /// The frame Q, a rotation: a tensor a in it is Q a Qᵀ in space.
+    pub frame: Matrix3<f64>,
+}
+
+impl<S> Turned<S> {
+    /// A state of a point that has not turned.
+    pub fn upright(material: S) -> Self {
+        let frame = Matrix3::identity();
+        Self { material, frame }
+    }
+
+    /// A tensor of the frame, in space.
+    pub fn in_space(&self, tensor: &Sym2) -> Sym2 {
+        from_matrix(&(self.frame * to_matrix(tensor) * self.frame.transpose()))
+    }
+}
+
+impl<S: Numbers> Numbers for Turned<S> {
+    fn visit(&mut self, each: &mut dyn FnMut(&mut f64)) {
+        self.material.visit(each);
+        self.frame.iter_mut().for_each(each);
+    }
+}
+
+/// Outcome of a step at a point under large strains.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LargeResponse<S> {
+    /// Kirchhoff stress τ = J σ at the end of the step \[MPa\].
+    pub stress: Matrix3<f64>,
+    /// ∂τ/∂l at the end of the step \[MPa\], of the gradient l = ∂v/∂x there; with a dilatation that is given,
+    /// of that gradient and of a trace that is that of the dilatation.
+    pub tangent: GradientTangent,
+    /// Whether plastic strain grows.
+    pub flows: bool,
+    /// State at the end of the step.
+    pub state: Turned<S>,
+}
+
+/// Response of a law of small strain to a step of large ones, from the displacement gradient h = f − 1 of the
+/// step with respect to the body at its start.
+///
+/// The law sees logarithmic strains, and its stress is that of Kirchhoff. With the elastic strain e of the
+/// state,
+///
+/// b = f exp(2e) fᵀ, e_trial = ½ ln b, f = V R,
+///
+/// the strain increment of the step is e_trial − R e Rᵀ, in the frame that turns by R. For an isotropic
+/// law backward Euler is then exact in rotations, plastic flow keeps the volume if the law says so, and the
+/// stress has the potential of the law, ΔV of the logarithmic strain. `dilatation` is ln(J₁/J₀) of the step
+/// where the trace of the strain is not that of the point but a mean over its cell.
+///
+/// `None` where the step turns the point inside out, or is no number.
+///
+/// Nothing here subtracts numbers of order one: b − 1 and f − 1 are formed as such, and strains of 10⁻¹² keep
+/// twelve digits.
+///
+/// Sources: J. C. Simo, *Computer Methods in Applied Mechanics and Engineering* 99 (1992) 61-112; G. Weber and
+/// L. Anand, the same journal 79 (1990) 173-202; E. A. de Souza Neto, D. Perić and D. R. J. Owen,
+/// *Computational Methods for Plasticity* (2008), chapter 14.
+pub fn respond_large<L: BulkLaw>(
+    law: &L,
+    old: &Turned<L::State>,
+    h: &Matrix3<f64>,
+    dilatation: Option<f64>,
+) -> Option<LargeResponse<L::State>> {
+    let f = Matrix3::identity() + h;
+    let jacobian = 1.0 + volume_change(h);
+    if !(jacobian > 0.0 && jacobian.is_finite()) {
+        return None;
+    }
+    let elastic = law.elastic_strain(&old.material);
+    let in_space = to_matrix(&old.in_space(&elastic));
+    let stretched = Spectrum::new(&in_space).map(|e| (2.0 * e).exp_m1());
+    let stretch = h + h.transpose() + h * h.transpose();
+    let trial = Spectrum::new(&symmetric(&(stretch + f * stretched * f.transpose())));
+    let turn = Turn::new(&f, &symmetric(&stretch));
+    let frame = turn.rotation * old.frame;
+
+    let mut strain = trial.map(|b| 0.5 * b.ln_1p());
+    if let Some(dilatation) = dilatation {
+        let missing = (trace(&elastic) + dilatation - strain.trace()) / 3.0;
+        (0..3).for_each(|i| strain[(i, i)] += missing);
+    }
+    let own = frame.transpose() * strain * frame;
+    let response = law.respond(&old.material, &(from_matrix(&own) - elastic));
+    let state = Turned {
+        material: response.state,
+        frame,
+    };
+    let stress = to_matrix(&state.in_space(&response.stress));
+    // In the frame C acts on the strain; as that turns by Ω, the strain has turned back and the stress with it.
+    let q = rotation(&frame);
+    let c = q * response.tangent * q.transpose();
+    let mut tangent = GradientTangent::zeros();
+    for (k, m) in (0..3).flat_map(|k| (0..3).map(move |m| (k, m))) {
+        let spin = turn.spin(k, m);
+        let commutator = |a: &Matrix3<f64>| spin * a - a * spin;
+        let strain_rate = logarithmic_rate(&trial, k, m) - commutator(&strain);
+        let rate = to_matrix(&(c * from_matrix(&strain_rate))) + commutator(&stress);
+        let column = SVector::<f64, 9>::from_fn(|ij, _| rate[(ij / 3, ij % 3)]);
+        tangent.set_column(3 * k + m, &column);
+    }
+    Some(LargeResponse {
+        stress,
+        tangent,
+        flows: response.flows,
+        state,
+    })
+}
+
+/// det(1 + h) − 1, without loss where h is small.
+pub fn volume_change(h: &Matrix3<f64>) -> f64 {
+    let trace = h.trace();
+    let second = 0.5 * (trace * trace - (h * h).trace());
+    trace + second + h.determinant()
+}
+
+fn symmetric(a: &Matrix3<f64>) -> Matrix3<f64> {
+    0.5 * (a + a.transpose())
+}
+
+/// ∂(½ ln b)/∂l for l = e_k ⊗ e_m and ḃ = l b + b lᵀ, from the spectrum of b − 1: in its directions
+/// ½ (lᵢⱼ bⱼ + lⱼᵢ bᵢ) (ln bᵢ − ln bⱼ)/(bᵢ − bⱼ).
+fn logarithmic_rate(trial: &Spectrum, k: usize, m: usize) -> Matrix3<f64> {
+    let q = &trial.directions;
+    let b = trial.values.map(|b| 1.0 + b);
+    let l = |i: usize, j: usize| q[(k, i)] * q[(m, j)];
+    let own = Matrix3::from_fn(|i, j| {
+        0.5 * logarithmic_slope(b[i], b[j]) * (l(i, j) * b[j] + l(j, i) * b[i])
+    });
+    q * own * q.transpose()
+}
+
+/// The rotation of a step and how it changes.
+struct Turn {
+    /// R of f = V R.
+    rotation: Matrix3<f64>,
+    /// Principal values and directions of V.
+    stretches: [f64; 3],
+    directions: Matrix3<f64>,
+}
+
+impl Turn {
+    /// Of f, from V² − 1.
+    fn new(f: &Matrix3<f64>, stretch: &Matrix3<f64>) -> Self {
+        let spectrum = Spectrum::new(stretch);
+        Self {
+            rotation: spectrum.map(|v| 1.0 / (1.0 + v).sqrt()) * f,
+            stretches: spectrum.values.map(|v| (1.0 + v).sqrt()),
+            directions: spectrum.directions,
+        }
+    }
+
+    /// Ω = Ṙ Rᵀ for l = e_k ⊗ e_m: in the directions of V, (vⱼ lᵢⱼ − vᵢ lⱼᵢ)/(vᵢ + vⱼ).
+    fn spin(&self, k: usize, m: usize) -> Matrix3<f64> {
+        let (q, v) = (&self.directions, &self.stretches);
+        let l = |i: usize, j: usize| q[(k, i)] * q[(m, j)];
+        let own = Matrix3::from_fn(|i, j| (v[j] * l(i, j) - v[i] * l(j, i)) / (v[i] + v[j]));
+        q * own * q.transpose()
+    }
+}
