@@ -1,8 +1,9 @@
 //! The driver: the state of a model, and steps applied to it; not the iteration of an increment.
 
-use crate::assembly::block::{Block, PointField, PointState, Stiffness};
+use crate::assembly::block::{Block, PointField, PointState};
+use crate::assembly::cell_law::{Motion, Stiffness};
 use crate::error::{IncrementError, ModelError};
-use crate::linear::system::{Contacts, System};
+use crate::linear::system::{Assembly, Contacts, System};
 use crate::model::load::Loading;
 use crate::model::points::{ContactPoint, RelativeMotionRow, Tool, tool_index};
 use crate::model::{Analysis, Contact, Measure, Model};
@@ -118,8 +119,12 @@ impl<const D: usize> Driver<D> {
     /// Forces and energy of the stresses at the start.
     fn start(&mut self) {
         let rest = vec![0.0; self.state.displacement.len()];
+        let motion = Motion {
+            from: &rest,
+            by: &rest,
+        };
         for block in &mut self.blocks {
-            block.evaluate(&rest, Stiffness::None, &mut |cell| {
+            block.evaluate(motion, Stiffness::None, &mut |cell| {
                 for (&a, own) in cell.nodes.iter().zip(cell.force.chunks_exact(D)) {
                     let at = self.state.internal[D * a..D * a + D].iter_mut();
                     at.zip(own).for_each(|(sum, f)| *sum += f);
@@ -127,6 +132,25 @@ impl<const D: usize> Driver<D> {
             });
             self.state.energies.stored += block.energy().stored;
         }
+    }
+
+    /// The motion of the mesh by displacement increments, from where it is.
+    pub(crate) fn motion<'a>(&'a self, d_u: &'a [f64]) -> Motion<'a> {
+        let from = &self.state.displacement;
+        Motion { from, by: d_u }
+    }
+
+    /// [`System::assemble`] under displacement increments.
+    pub(crate) fn assemble(
+        &mut self,
+        system: &mut System,
+        d_u: &[f64],
+        missing: &SparseVector,
+        stiffness: Stiffness,
+    ) -> Assembly {
+        let from = &self.state.displacement;
+        let motion = Motion { from, by: d_u };
+        system.assemble(&mut self.blocks, motion, missing, stiffness)
     }
 
     /// Finds what the contact points stand on, at the committed positions, under the displacement
@@ -256,7 +280,10 @@ impl<const D: usize> Driver<D> {
 
     /// Committed state at all quadrature points, cells in the order of their blocks.
     pub fn points(&self) -> Vec<PointState<D>> {
-        self.blocks.iter().flat_map(|b| b.points()).collect()
+        self.blocks
+            .iter()
+            .flat_map(|b| b.points(&self.state.displacement))
+            .collect()
     }
 
     /// The fields that laws have of their own at every quadrature point, in the order of
@@ -265,7 +292,7 @@ impl<const D: usize> Driver<D> {
         let mut all: Vec<PointField> = Vec::new();
         let mut before = 0;
         for block in &self.blocks {
-            let points = block.points().len();
+            let points = block.points(&self.state.displacement).len();
             for own in block.fields() {
                 let same = |f: &PointField| (&f.name, f.components) == (&own.name, own.components);
                 match all.iter_mut().find(|f| same(f)) {
@@ -444,7 +471,8 @@ impl<const D: usize> Driver<D> {
         system.timings += before;
         system.floats = self.floats(loading);
         system.paired = self.paired();
-        system.assemble_elastic(&mut self.blocks, self.settings.nesting == Nesting::Inside);
+        let inside = self.settings.nesting == Nesting::Inside;
+        system.assemble_elastic(&mut self.blocks, &self.state.displacement, inside);
         Ok(system)
     }
 

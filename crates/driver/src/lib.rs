@@ -43,10 +43,11 @@ mod settings;
 mod timings;
 mod vector;
 
-pub use assembly::block::{
-    Block, BlockEnergy, CellResult, PointField, PointState, SolidBlock, Stiffness,
-};
+pub use assembly::block::{Block, BlockEnergy, CellResult, PointField, PointState, SolidBlock};
+pub use assembly::cell_law::{CellLaw, CellOutput, Motion, Stiffness};
 pub use assembly::cells::{Cells, ElementCells};
+pub use assembly::large::Large;
+pub use assembly::small::Small;
 pub use checks::between::Between;
 pub use checks::gaps::LeastGap;
 pub use checks::rigid::Stopper;

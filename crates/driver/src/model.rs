@@ -169,6 +169,8 @@ pub struct Model<const D: usize, H> {
     /// Number of the material of every cell, in the order in which they were given.
     pub(crate) material: Vec<Option<usize>>,
     materials: usize,
+    /// Whether strains and rotations of materials are large.
+    large: bool,
 }
 
 impl<const D: usize, H: Analysis<D>> Model<D, H> {
@@ -177,12 +179,22 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         Self {
             material: vec![None; mesh.cell_count()],
             materials: 0,
+            large: false,
             mesh,
             hypothesis,
             blocks: Vec::new(),
             tools: Vec::new(),
             contacts: Vec::new(),
             points: Vec::new(),
+        }
+    }
+
+    /// A model whose materials bear large strains and rotations: their laws see logarithmic strains, and
+    /// equilibrium is where the body is.
+    pub fn with_large_strains(mesh: Mesh<D>, hypothesis: H) -> Self {
+        Self {
+            large: true,
+            ..Self::new(mesh, hypothesis)
         }
     }
 
@@ -228,8 +240,11 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             let own = self.hypothesis.cells(&self.mesh, kind, &cells, integration);
             // A mesh of dimension D has no cells of another dimension.
             if let Some(own) = own {
-                let block = SolidBlock::new(cells, own, law.clone()).with_states(&state);
-                self.blocks.push(Box::new(block));
+                let law = law.clone();
+                self.blocks.push(match self.large {
+                    true => Box::new(SolidBlock::large(cells, own, law).with_states(&state)),
+                    false => Box::new(SolidBlock::new(cells, own, law).with_states(&state)),
+                });
             }
         }
         Ok(self)

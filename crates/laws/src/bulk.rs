@@ -127,6 +127,13 @@ pub trait BulkLaw: 'static + Clone + Send + Sync {
     /// Stress in a state \[MPa\].
     fn stress(&self, state: &Self::State) -> Sym2;
 
+    /// Whether nothing but stress and strain has a direction: the material has no axes and remembers no
+    /// tensor that acts, as a back stress does. Under large strains its tangent is then as symmetric as
+    /// under small ones.
+    fn is_isotropic(&self) -> bool {
+        false
+    }
+
     /// Elastic strain of a state, under which its stress is what it is: what large strains start from. That
     /// of linear elasticity, unless the law says otherwise.
     fn elastic_strain(&self, state: &Self::State) -> Sym2 {

@@ -105,6 +105,10 @@ impl BulkLaw for Elastic {
         self.bulk * trace(state) * identity() + 2.0 * self.shear * deviator(state)
     }
 
+    fn is_isotropic(&self) -> bool {
+        true
+    }
+
     #[inline]
     fn elastic_strain(&self, state: &Sym2) -> Sym2 {
         *state

@@ -207,6 +207,10 @@ impl BulkLaw for ElasticDruckerPrager {
         self.elastic.stress(&state.elastic_strain)
     }
 
+    fn is_isotropic(&self) -> bool {
+        true
+    }
+
     #[inline]
     fn elastic_strain(&self, state: &DruckerPragerState) -> Sym2 {
         state.elastic_strain

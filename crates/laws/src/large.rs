@@ -2,11 +2,11 @@
 //! a law.
 
 use crate::bulk::{BulkLaw, Numbers};
-use moreau_mandel::{Spectrum, Sym2, from_matrix, logarithmic_slope, rotation, to_matrix, trace};
-use nalgebra::{Matrix3, SMatrix, SVector};
-
-/// A tensor that maps a velocity gradient l to a tensor: entry (3i + j, 3k + m) is ∂(·)ᵢⱼ/∂lₖₘ.
-pub type GradientTangent = SMatrix<f64, 9, 9>;
+use moreau_mandel::{
+    GradientTangent, Spectrum, Sym2, Sym4, from_matrix, logarithmic_slope, rotation, to_matrix,
+    trace,
+};
+use nalgebra::{Matrix3, SVector};
 
 /// What a point remembers under large strains: the state of its material, with all tensors in the frame that
 /// has turned with the point, and that frame.
@@ -41,17 +41,43 @@ impl<S: Numbers> Numbers for Turned<S> {
 }
 
 /// Outcome of a step at a point under large strains.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct LargeResponse<S> {
     /// Kirchhoff stress τ = J σ at the end of the step \[MPa\].
     pub stress: Matrix3<f64>,
-    /// ∂τ/∂l at the end of the step \[MPa\], of the gradient l = ∂v/∂x there; with a dilatation that is given,
-    /// of that gradient and of a trace that is that of the dilatation.
-    pub tangent: GradientTangent,
+    /// Strain increment that the law has seen, in the frame of the end of the step.
+    pub d_eps: Sym2,
+    /// Its tangent, in that frame \[MPa\].
+    pub law_tangent: Sym4,
     /// Whether plastic strain grows.
     pub flows: bool,
     /// State at the end of the step.
     pub state: Turned<S>,
+    /// Elastic strain of the trial, in space.
+    strain: Matrix3<f64>,
+    /// Of b − 1 of the trial.
+    trial: Spectrum,
+    turn: Turn,
+}
+
+impl<S> LargeResponse<S> {
+    /// ∂τ/∂l at the end of the step \[MPa\], of the gradient l = ∂v/∂x there, with a tangent of the law in the
+    /// frame; where a dilatation was given, of a gradient whose trace is its rate.
+    pub fn tangent(&self, of_law: &Sym4) -> GradientTangent {
+        let q = rotation(&self.state.frame);
+        let c = q * of_law * q.transpose();
+        let mut tangent = GradientTangent::zeros();
+        for (k, m) in (0..3).flat_map(|k| (0..3).map(move |m| (k, m))) {
+            // As the frame turns by Ω, what the law sees of the strain turns back, and the stress with the frame.
+            let spin = self.turn.spin(k, m);
+            let commutator = |a: &Matrix3<f64>| spin * a - a * spin;
+            let strain_rate = logarithmic_rate(&self.trial, k, m) - commutator(&self.strain);
+            let rate = to_matrix(&(c * from_matrix(&strain_rate))) + commutator(&self.stress);
+            let column = SVector::<f64, 9>::from_fn(|ij, _| rate[(ij / 3, ij % 3)]);
+            tangent.set_column(3 * k + m, &column);
+        }
+        tangent
+    }
 }
 
 /// Response of a law of small strain to a step of large ones, from the displacement gradient h = f − 1 of the
@@ -100,29 +126,21 @@ pub fn respond_large<L: BulkLaw>(
         (0..3).for_each(|i| strain[(i, i)] += missing);
     }
     let own = frame.transpose() * strain * frame;
-    let response = law.respond(&old.material, &(from_matrix(&own) - elastic));
+    let d_eps = from_matrix(&own) - elastic;
+    let response = law.respond(&old.material, &d_eps);
     let state = Turned {
         material: response.state,
         frame,
     };
-    let stress = to_matrix(&state.in_space(&response.stress));
-    // In the frame C acts on the strain; as that turns by Ω, the strain has turned back and the stress with it.
-    let q = rotation(&frame);
-    let c = q * response.tangent * q.transpose();
-    let mut tangent = GradientTangent::zeros();
-    for (k, m) in (0..3).flat_map(|k| (0..3).map(move |m| (k, m))) {
-        let spin = turn.spin(k, m);
-        let commutator = |a: &Matrix3<f64>| spin * a - a * spin;
-        let strain_rate = logarithmic_rate(&trial, k, m) - commutator(&strain);
-        let rate = to_matrix(&(c * from_matrix(&strain_rate))) + commutator(&stress);
-        let column = SVector::<f64, 9>::from_fn(|ij, _| rate[(ij / 3, ij % 3)]);
-        tangent.set_column(3 * k + m, &column);
-    }
     Some(LargeResponse {
-        stress,
-        tangent,
+        stress: to_matrix(&state.in_space(&response.stress)),
+        d_eps,
+        law_tangent: response.tangent,
         flows: response.flows,
         state,
+        strain,
+        trial,
+        turn,
     })
 }
 
@@ -150,6 +168,7 @@ fn logarithmic_rate(trial: &Spectrum, k: usize, m: usize) -> Matrix3<f64> {
 }
 
 /// The rotation of a step and how it changes.
+#[derive(Debug, Clone)]
 struct Turn {
     /// R of f = V R.
     rotation: Matrix3<f64>,

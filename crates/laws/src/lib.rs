@@ -79,6 +79,6 @@ pub use friction::coulomb::Coulomb;
 pub use friction::limited::LimitedCoulomb;
 pub use friction::tresca::Tresca;
 pub use isotropic::Isotropic;
-pub use large::{GradientTangent, LargeResponse, Turned, respond_large, volume_change};
+pub use large::{LargeResponse, Turned, respond_large, volume_change};
 pub use local::{Local, Status};
 pub use von_mises::{VonMises, VonMisesState};

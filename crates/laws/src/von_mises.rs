@@ -388,6 +388,10 @@ impl<const TERMS: usize> BulkLaw for VonMises<TERMS> {
         self.elastic.stress(&state.elastic_strain)
     }
 
+    fn is_isotropic(&self) -> bool {
+        TERMS == 0 && self.kinematic == 0.0
+    }
+
     #[inline]
     fn elastic_strain(&self, state: &VonMisesState<TERMS>) -> Sym2 {
         state.elastic_strain

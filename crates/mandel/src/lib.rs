@@ -26,6 +26,10 @@ pub type Sym2 = SVector<f64, 6>;
 /// Fourth-order tensor with minor symmetries, acting on [`Sym2`] by the matrix product.
 pub type Sym4 = SMatrix<f64, 6, 6>;
 
+/// Fourth-order tensor without symmetries, as of a stress by a gradient: entry (3i + j, 3k + m) is
+/// ∂(·)ᵢⱼ/∂(·)ₖₘ.
+pub type GradientTangent = SMatrix<f64, 9, 9>;
+
 /// Row and column of the Mandel components 0..6.
 const INDEX: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
 

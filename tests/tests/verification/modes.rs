@@ -1,7 +1,7 @@
 //! Motions of cells that cost no energy, counted as the zero eigenvalues of their stiffness: the
 //! rigid ones and the spurious ones of reduced rules; not hourglass control.
 
-use moreau::driver::{Analysis, Block, SolidBlock, Stiffness};
+use moreau::driver::{Analysis, Block, Motion, SolidBlock, Stiffness};
 use moreau::laws::Elastic;
 use moreau::mesh::{
     Axisymmetric, CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform,
@@ -23,7 +23,12 @@ fn zero_modes<H: Analysis<D>, const D: usize>(
     let dofs = D * mesh.nodes().len();
     let mut stiffness = DMatrix::<f64>::zeros(dofs, dofs);
     let size = D * mesh.cell_nodes(0).len();
-    block.evaluate(&vec![0.0; dofs], Stiffness::Total(0.0), &mut |result| {
+    let rest = vec![0.0; dofs];
+    let rest = Motion {
+        from: &rest,
+        by: &rest,
+    };
+    block.evaluate(rest, Stiffness::Total(0.0), &mut |result| {
         let nodes = mesh.cell_nodes(result.cell);
         let dof = |k: usize| D * nodes[k / D] + k % D;
         let mut entries = result.stiffness.iter();

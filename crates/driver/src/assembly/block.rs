@@ -1,34 +1,14 @@
 //! Blocks of cells of one element and one law: forces and stiffness of their cells, and the state
 //! of their material; not their assembly.
 
+use crate::assembly::cell_law::{CellLaw, CellOutput, Motion, Stiffness};
 use crate::assembly::cells::{Cells, MAX_POINTS};
+use crate::assembly::large::Large;
+use crate::assembly::small::Small;
 use moreau_laws::{BulkLaw, FlowPower, Numbers};
-use moreau_mandel::{Sym2, Sym4, to_matrix};
-use nalgebra::Matrix3;
+use moreau_mandel::{Sym2, from_matrix, to_matrix};
+use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
-
-/// Which stiffness an evaluation computes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Stiffness {
-    /// None: forces only.
-    None,
-    /// The elastic one, ∫ Bᵀ C B dΩ, and this part, in [0, 1], of what flow adds to it.
-    Total(f64),
-    /// This part, in [0, 1], of what flow adds to the elastic one: ∫ Bᵀ (∂σ₁/∂Δε − C) B dΩ, of the
-    /// cells in which plastic strain grows.
-    Plastic(f64),
-}
-
-impl Stiffness {
-    /// Whether a cell has any, in which plastic strain grows or not.
-    fn is_given(self, flows: bool) -> bool {
-        match self {
-            Self::None => false,
-            Self::Total(_) => true,
-            Self::Plastic(_) => flows,
-        }
-    }
-}
 
 /// Forces of a cell and, if asked for, its stiffness.
 #[derive(Debug, Clone, Copy)]
@@ -92,12 +72,11 @@ pub trait Block<const D: usize>: Send + Sync {
     /// Nodes of the k-th cell of the block.
     fn nodes(&self, k: usize) -> &[usize];
 
-    /// Forces and stiffness under the displacement increments `d_u` of the whole step (one entry
-    /// a degree of freedom of the mesh), handed cell by cell, in order, to `sink`. Returns whether
-    /// plastic strain grows anywhere.
+    /// Forces and stiffness at the end of a step, handed cell by cell, in order, to `sink`. Returns
+    /// whether the stiffness is another than the elastic one anywhere.
     fn evaluate(
         &mut self,
-        d_u: &[f64],
+        motion: Motion<'_>,
         stiffness: Stiffness,
         sink: &mut dyn FnMut(CellResult<'_>),
     ) -> bool;
@@ -105,14 +84,18 @@ pub trait Block<const D: usize>: Send + Sync {
     /// Whether the stiffness is that of the forces, or does for it.
     fn is_symmetric(&self) -> bool;
 
-    /// Forces ∫ Bᵀ A B v dΩ of what the tangents under the displacement increments `d_u` lack of being
-    /// those of the forces, A, on the displacements `v` (one entry a degree of freedom of the mesh),
-    /// handed cell by cell, in order, to `sink`: its nodes, and the forces node by node \[N\].
-    fn lacking(&self, d_u: &[f64], v: &[f64], sink: &mut dyn FnMut(&[usize], &[f64]));
+    /// Whether the elastic stiffness is the same always, and plastic flow adds to it: displacements are so
+    /// small that they do not change it.
+    fn keeps_elastic_stiffness(&self) -> bool;
+
+    /// Forces ∫ Bᵀ A B v dΩ of what the tangents at the end of a step lack of being those of the forces, A,
+    /// on the displacements `v` (one entry a degree of freedom of the mesh), handed cell by cell, in order,
+    /// to `sink`: its nodes, and the forces node by node \[N\].
+    fn lacking(&self, motion: Motion<'_>, v: &[f64], sink: &mut dyn FnMut(&[usize], &[f64]));
 
     /// ∫ ΔV(Δε) + σ₀ : Δε dΩ, the bulk part of ΔΦ \[74\] when total forces are
     /// applied instead of increments \[N·mm\]; `None` of a law without a potential.
-    fn potential(&self, d_u: &[f64]) -> Option<f64>;
+    fn potential(&self, motion: Motion<'_>) -> Option<f64>;
 
     /// Energies of the candidate that the last evaluation left.
     fn energy(&self) -> BlockEnergy;
@@ -124,8 +107,9 @@ pub trait Block<const D: usize>: Send + Sync {
     /// Makes the candidate the state at the start of the next step.
     fn commit(&mut self);
 
-    /// The committed state at every quadrature point, cell by cell.
-    fn points(&self) -> Vec<PointState<D>>;
+    /// The committed state at every quadrature point, cell by cell, at these displacements of the degrees of
+    /// freedom of the mesh.
+    fn points(&self, u: &[f64]) -> Vec<PointState<D>>;
 
     /// The fields that the law has of its own, in the committed state at every quadrature point, in the
     /// order of [`Block::points`].
@@ -158,49 +142,42 @@ const PANEL: usize = 1 << 19;
 /// Quadrature points that are worth a thread: waking one takes as long as some hundred.
 const GRAIN: usize = 2048;
 
-/// The block of some cells with law L.
-pub struct SolidBlock<L: BulkLaw, const D: usize> {
+/// The block of some cells with a law.
+pub struct SolidBlock<C: CellLaw<D>, const D: usize> {
     members: Vec<usize>,
     cells: Box<dyn Cells<D>>,
-    law: L,
-    old: Vec<L::State>,
-    new: Vec<L::State>,
+    of_cell: C,
+    old: Vec<C::State>,
+    new: Vec<C::State>,
     force: Vec<f64>,
     stiffness: Vec<f64>,
     /// Cells of the panel at hand in which plastic strain grows.
     flows: Vec<bool>,
 }
 
-impl<L: BulkLaw, const D: usize> SolidBlock<L, D> {
-    /// The committed state at a quadrature point.
-    fn point(&self, point: usize) -> PointState<D> {
-        let state = &self.old[point];
-        PointState {
-            cell: self.members[point / self.cells.points_per_cell()],
-            position: self.cells.position(point),
-            weight: self.cells.weight(point),
-            stress: self.law.stress(state),
-            plastic_strain: self.law.equivalent_plastic_strain(state),
-        }
-    }
-
-    /// The same block from other states at the start, from the position of a quadrature point in the
-    /// undeformed body \[mm\]: under a stress, or with axes that vary.
-    pub fn with_states(mut self, state: impl Fn(&[f64; D]) -> L::State) -> Self {
-        for (point, old) in self.old.iter_mut().enumerate() {
-            *old = state(&self.cells.position(point));
-        }
-        self.new.copy_from_slice(&self.old);
-        self
-    }
-
-    /// The block of `cells`, which are the cells `members` of the mesh, in the initial state of the law.
+impl<L: BulkLaw, const D: usize> SolidBlock<Small<L>, D> {
+    /// The block of `cells`, which are the cells `members` of the mesh, in the initial state of the law and
+    /// under small strains.
     pub fn new(members: Vec<usize>, cells: Box<dyn Cells<D>>, law: L) -> Self {
-        let states = vec![law.initial(); cells.count() * cells.points_per_cell()];
+        Self::of(members, cells, Small(law))
+    }
+}
+
+impl<L: BulkLaw, const D: usize> SolidBlock<Large<L>, D> {
+    /// The same under large strains and rotations.
+    pub fn large(members: Vec<usize>, cells: Box<dyn Cells<D>>, law: L) -> Self {
+        Self::of(members, cells, Large(law))
+    }
+}
+
+impl<C: CellLaw<D>, const D: usize> SolidBlock<C, D> {
+    fn of(members: Vec<usize>, cells: Box<dyn Cells<D>>, of_cell: C) -> Self {
+        let start = C::start(of_cell.law().initial());
+        let states = vec![start; cells.count() * cells.points_per_cell()];
         Self {
             members,
             cells,
-            law,
+            of_cell,
             old: states.clone(),
             new: states,
             force: Vec::new(),
@@ -208,59 +185,74 @@ impl<L: BulkLaw, const D: usize> SolidBlock<L, D> {
             flows: Vec::new(),
         }
     }
+
+    /// The same block from other states at the start, from the position of a quadrature point in the
+    /// undeformed body \[mm\]: under a stress, or with axes that vary.
+    pub fn with_states(mut self, state: impl Fn(&[f64; D]) -> <C::Law as BulkLaw>::State) -> Self {
+        for (point, old) in self.old.iter_mut().enumerate() {
+            *old = C::start(state(&self.cells.position(point)));
+        }
+        self.new.copy_from_slice(&self.old);
+        self
+    }
+
+    /// The k-th cell with its committed states.
+    fn cell(&self, k: usize) -> ((&dyn Cells<D>, usize), &[C::State]) {
+        let count = self.cells.points_per_cell();
+        let old = &self.old[k * count..(k + 1) * count];
+        ((self.cells.as_ref(), k), old)
+    }
+
+    /// The committed state at a quadrature point, where the displacements have this gradient.
+    fn point(&self, point: usize, gradient: &Matrix3<f64>) -> PointState<D> {
+        let state = &self.old[point];
+        let law = self.of_cell.law();
+        PointState {
+            cell: self.members[point / self.cells.points_per_cell()],
+            position: self.cells.position(point),
+            weight: self.cells.weight(point),
+            stress: self.of_cell.stress(state, gradient),
+            plastic_strain: law.equivalent_plastic_strain(C::material(state)),
+        }
+    }
 }
 
 /// What the cells of a panel are evaluated from.
-struct Panel<'a, L: BulkLaw, const D: usize> {
+struct Panel<'a, C: CellLaw<D>, const D: usize> {
     cells: &'a dyn Cells<D>,
-    law: &'a L,
-    old: &'a [L::State],
+    of_cell: &'a C,
+    old: &'a [C::State],
     kind: Stiffness,
-    d_u: &'a [f64],
+    motion: Motion<'a>,
 }
 
-impl<L: BulkLaw, const D: usize> Panel<'_, L, D> {
+impl<C: CellLaw<D>, const D: usize> Panel<'_, C, D> {
     /// Forces, the upper triangles of the stiffness asked for, of so many entries, the new states,
-    /// and whether plastic strain grows, of the cells from `first` on.
+    /// and whether the stiffness is another than the elastic one, of the cells from `first` on.
     fn evaluate(
         &self,
         first: usize,
         entries: usize,
         (forces, matrices): (&mut [f64], &mut [f64]),
-        (new, flows): (&mut [L::State], &mut [bool]),
+        (new, flows): (&mut [C::State], &mut [bool]),
     ) {
         let count = self.cells.points_per_cell();
         let size = D * self.cells.nodes(first).len();
-        let elastic = self.law.elastic_tangent();
-        let mut d_eps = [Sym2::zeros(); MAX_POINTS];
-        let mut stress = [Sym2::zeros(); MAX_POINTS];
-        let mut tangent = [Sym4::zeros(); MAX_POINTS];
         for (k, force) in forces.chunks_mut(size).enumerate() {
             let cell = first + k;
-            self.cells.strain(cell, self.d_u, &mut d_eps[..count]);
-            flows[k] = false;
-            for g in 0..count {
-                let response = self.law.respond(&self.old[cell * count + g], &d_eps[g]);
-                flows[k] |= response.flows;
-                new[k * count + g] = response.state;
-                stress[g] = response.stress;
-                tangent[g] = match self.kind {
-                    Stiffness::None => continue,
-                    Stiffness::Total(0.0) => elastic,
-                    Stiffness::Total(part) => elastic + (response.tangent - elastic) * part,
-                    Stiffness::Plastic(part) => (response.tangent - elastic) * part,
-                };
-            }
-            self.cells.force(cell, &stress[..count], force);
-            if self.kind.is_given(flows[k]) {
-                let matrix = &mut matrices[k * entries..(k + 1) * entries];
-                self.cells.stiffness(cell, &tangent[..count], matrix);
-            }
+            let old = &self.old[cell * count..(cell + 1) * count];
+            let out = CellOutput {
+                new: &mut new[k * count..(k + 1) * count],
+                force,
+                stiffness: &mut matrices[k * entries..(k + 1) * entries],
+            };
+            let of = (self.cells, cell);
+            flows[k] = self.of_cell.respond(of, old, self.motion, self.kind, out);
         }
     }
 }
 
-impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
+impl<C: CellLaw<D>, const D: usize> Block<D> for SolidBlock<C, D> {
     fn cells(&self) -> &[usize] {
         &self.members
     }
@@ -271,7 +263,7 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
 
     fn evaluate(
         &mut self,
-        d_u: &[f64],
+        motion: Motion<'_>,
         stiffness: Stiffness,
         sink: &mut dyn FnMut(CellResult<'_>),
     ) -> bool {
@@ -294,10 +286,10 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
         self.flows.resize(cells, false);
         let panel = Panel {
             cells: self.cells.as_ref(),
-            law: &self.law,
+            of_cell: &self.of_cell,
             old: &self.old,
             kind: stiffness,
-            d_u,
+            motion,
         };
         let mut any = false;
         for start in (0..all).step_by(cells) {
@@ -339,62 +331,50 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
     }
 
     fn is_symmetric(&self) -> bool {
-        self.law.is_symmetric()
+        self.of_cell.is_symmetric()
     }
 
-    fn lacking(&self, d_u: &[f64], v: &[f64], sink: &mut dyn FnMut(&[usize], &[f64])) {
+    fn keeps_elastic_stiffness(&self) -> bool {
+        self.of_cell.keeps_elastic_stiffness()
+    }
+
+    fn lacking(&self, motion: Motion<'_>, v: &[f64], sink: &mut dyn FnMut(&[usize], &[f64])) {
         let all = self.cells.count();
         if all == 0 || self.is_symmetric() {
             return;
         }
         let size = D * self.cells.nodes(0).len();
-        let count = self.cells.points_per_cell();
-        let (cells, law, old) = (self.cells.as_ref(), &self.law, &self.old);
-        let of_a_cell = |(cell, force): (usize, &mut [f64])| {
-            let mut d_eps = [Sym2::zeros(); MAX_POINTS];
-            let mut rate = [Sym2::zeros(); MAX_POINTS];
-            cells.strain(cell, d_u, &mut d_eps[..count]);
-            cells.strain(cell, v, &mut rate[..count]);
-            for (g, rate) in rate[..count].iter_mut().enumerate() {
-                *rate = law.lacking(&old[cell * count + g], &d_eps[g]) * *rate;
-            }
-            cells.force(cell, &rate[..count], force);
+        let of_a_cell = |(k, force): (usize, &mut [f64])| {
+            let (cell, old) = self.cell(k);
+            self.of_cell.lacking(cell, old, motion, v, force);
         };
         let mut forces = vec![0.0; all * size];
         let parts = forces.par_chunks_mut(size).enumerate();
         parts
-            .with_min_len(GRAIN.div_ceil(count))
+            .with_min_len(GRAIN.div_ceil(self.cells.points_per_cell()))
             .for_each(of_a_cell);
         for (k, force) in forces.chunks_exact(size).enumerate() {
-            sink(cells.nodes(k), force);
+            sink(self.cells.nodes(k), force);
         }
     }
 
-    fn potential(&self, d_u: &[f64]) -> Option<f64> {
-        let count = self.cells.points_per_cell();
-        let mut d_eps = [Sym2::zeros(); MAX_POINTS];
-        let mut sum = 0.0;
-        for k in 0..self.cells.count() {
-            self.cells.strain(k, d_u, &mut d_eps[..count]);
-            for (g, d_eps) in d_eps[..count].iter().enumerate() {
-                let point = k * count + g;
-                let old = &self.old[point];
-                // ΔV leaves out the linear part σ₀·Δε, [48]: it is what equilibrium held before.
-                let linear = self.law.stress(old).dot(d_eps);
-                sum += self.cells.weight(point) * (self.law.potential(old, d_eps)? + linear);
-            }
-        }
-        Some(sum)
+    fn potential(&self, motion: Motion<'_>) -> Option<f64> {
+        let of_a_cell = |k: usize| {
+            let (cell, old) = self.cell(k);
+            self.of_cell.potential(cell, old, motion)
+        };
+        (0..self.cells.count()).map(of_a_cell).sum()
     }
 
     fn energy(&self) -> BlockEnergy {
-        let mut sum = BlockEnergy::default();
+        let (law, mut sum) = (self.of_cell.law(), BlockEnergy::default());
         for (point, (old, new)) in self.old.iter().zip(&self.new).enumerate() {
+            let (old, new) = (C::material(old), C::material(new));
             let weight = self.cells.weight(point);
-            sum.stored += weight * self.law.stored_energy(new);
-            sum.dissipated += weight * self.law.dissipation(old, new);
+            sum.stored += weight * law.stored_energy(new);
+            sum.dissipated += weight * law.dissipation(old, new);
             sum.volume += weight;
-            if self.law.equivalent_plastic_strain(new) > self.law.equivalent_plastic_strain(old) {
+            if law.equivalent_plastic_strain(new) > law.equivalent_plastic_strain(old) {
                 sum.plastic_volume += weight;
             }
         }
@@ -402,16 +382,10 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
     }
 
     fn flow_power(&self, v: &[f64]) -> Option<FlowPower> {
-        let count = self.cells.points_per_cell();
-        let mut rates = [Sym2::zeros(); MAX_POINTS];
         let mut sum = FlowPower::default();
         for k in 0..self.cells.count() {
-            self.cells.strain(k, v, &mut rates[..count]);
-            for (g, rate) in rates[..count].iter().enumerate() {
-                let point = k * count + g;
-                let part = self.law.flow_power(&self.old[point], rate)?;
-                sum = sum.with(self.cells.weight(point), part);
-            }
+            let (cell, old) = self.cell(k);
+            sum = sum.with(1.0, self.of_cell.flow_power(cell, old, v)?);
         }
         Some(sum)
     }
@@ -420,25 +394,32 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
         self.old.copy_from_slice(&self.new);
     }
 
-    fn points(&self) -> Vec<PointState<D>> {
-        (0..self.old.len()).map(|point| self.point(point)).collect()
+    fn points(&self, u: &[f64]) -> Vec<PointState<D>> {
+        let mut points = Vec::with_capacity(self.old.len());
+        self.gradients(u, &mut |point, _| points.push(*point));
+        points
     }
 
     fn fields(&self) -> Vec<PointField> {
         let mut fields: Vec<PointField> = Vec::new();
         for state in &self.old {
             let mut index = 0;
-            self.law.fields(state, &mut |name, values| {
-                if index == fields.len() {
-                    fields.push(PointField {
-                        name: name.to_owned(),
-                        components: values.len(),
-                        values: Vec::with_capacity(values.len() * self.old.len()),
-                    });
-                }
-                fields[index].values.extend(values);
-                index += 1;
-            });
+            self.of_cell
+                .law()
+                .fields(C::material(state), &mut |name, values| {
+                    if index == fields.len() {
+                        fields.push(PointField {
+                            name: name.to_owned(),
+                            components: values.len(),
+                            values: Vec::with_capacity(values.len() * self.old.len()),
+                        });
+                    }
+                    match C::frame(state) {
+                        Some(frame) => fields[index].values.extend(turned(&frame, values)),
+                        None => fields[index].values.extend(values),
+                    }
+                    index += 1;
+                });
         }
         fields
     }
@@ -449,7 +430,7 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
         for k in 0..self.cells.count() {
             self.cells.gradient(k, u, &mut gradient[..count]);
             for (g, gradient) in gradient[..count].iter().enumerate() {
-                sink(&self.point(k * count + g), gradient);
+                sink(&self.point(k * count + g, gradient), gradient);
             }
         }
     }
@@ -466,7 +447,8 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
                 let weight = self.cells.weight(point);
                 volume += weight;
                 mean += gradient * weight;
-                stress += self.law.stress(&self.old[point]) * weight;
+                let rest = Matrix3::zeros();
+                stress += self.of_cell.stress(&self.old[point], &rest) * weight;
             }
             gradient[..count].fill(mean * to_matrix(&stress) / (volume * volume));
             let nodes = self.cells.nodes(k);
@@ -498,5 +480,18 @@ impl<L: BulkLaw, const D: usize> Block<D> for SolidBlock<L, D> {
             self.new.copy_from_slice(&self.old);
         }
         count
+    }
+}
+
+/// Components of a scalar, vector or symmetric tensor of a frame, in space.
+fn turned(frame: &Matrix3<f64>, values: &[f64]) -> Vec<f64> {
+    match *values {
+        [x, y, z] => (frame * Vector3::new(x, y, z)).as_slice().to_vec(),
+        [_, _, _, _, _, _] => {
+            let tensor = to_matrix(&Sym2::from_column_slice(values));
+            let tensor = from_matrix(&(frame * tensor * frame.transpose()));
+            tensor.as_slice().to_vec()
+        }
+        _ => values.to_vec(),
     }
 }

@@ -2,8 +2,7 @@
 //! and stiffness; no law.
 
 use crate::ModelError;
-use moreau_laws::GradientTangent;
-use moreau_mandel::{Sym2, Sym4};
+use moreau_mandel::{GradientTangent, Sym2, Sym4};
 use moreau_mesh::{Element, Entry, Hypothesis, Integration, Mesh};
 use nalgebra::{Matrix3, SMatrix};
 use pulp::{Arch, Simd, WithSimd};
@@ -359,8 +358,7 @@ impl<const D: usize, const N: usize> ElementCells<D, N> {
 }
 
 /// v, b̄ and κ of [`ElementCells::mean_stiffness`].
-type MeanStiffness<'a, const D: usize, const N: usize> =
-    ([[f64; N]; D], &'a [[f64; N]; D], f64);
+type MeanStiffness<'a, const D: usize, const N: usize> = ([[f64; N]; D], &'a [[f64; N]; D], f64);
 
 /// Points whose terms of the stiffness are summed together.
 const POINTS: usize = 4;

@@ -1,7 +1,8 @@
 //! The linear system of a mesh: numbering, pattern, assembly and factorisation; not the iteration that
 //! uses it.
 
-use crate::assembly::block::{Block, Stiffness};
+use crate::assembly::block::Block;
+use crate::assembly::cell_law::{Motion, Stiffness};
 use crate::assembly::numbering::Numbering;
 use crate::assembly::scatter::{FIXED, Scatter, prescribed_columns};
 use crate::error::ModelError;
@@ -261,7 +262,8 @@ impl System {
             pivot,
             scatter,
             prescribed_columns: Vec::new(),
-            keeps_elastic: pattern.entries() <= KEPT,
+            keeps_elastic: pattern.entries() <= KEPT
+                && blocks.iter().all(|b| b.keeps_elastic_stiffness()),
             matrix: Matrix::new(pattern),
             coarse,
             tied: is_tied.then(Vec::new),
@@ -313,12 +315,12 @@ impl System {
         self.shift
     }
 
-    /// Internal forces under the displacement increments `d_u`, and the stiffness if asked for.
+    /// Internal forces at the end of a motion, and the stiffness if asked for.
     /// `missing` are the prescribed increments still to come.
     pub(crate) fn assemble<const D: usize>(
         &mut self,
         blocks: &mut [Box<dyn Block<D>>],
-        d_u: &[f64],
+        motion: Motion<'_>,
         missing: &SparseVector,
         stiffness: Stiffness,
     ) -> Assembly {
@@ -327,7 +329,7 @@ impl System {
             Stiffness::Plastic(part) if !self.keeps_elastic => Stiffness::Total(part),
             other => other,
         };
-        let mut internal = vec![0.0; d_u.len()];
+        let mut internal = vec![0.0; motion.by.len()];
         let mut flows = false;
         let with_stiffness = stiffness != Stiffness::None;
         if with_stiffness {
@@ -336,7 +338,7 @@ impl System {
         let mut prescribed_load = Vec::new();
         let missing = (!missing.is_zero()).then_some(missing);
         if let Some(missing) = missing {
-            prescribed_load.resize(d_u.len(), 0.0);
+            prescribed_load.resize(motion.by.len(), 0.0);
             for &(unknown, prescribed, k) in &self.prescribed_columns {
                 prescribed_load[unknown] += k * missing.at(prescribed);
             }
@@ -344,7 +346,7 @@ impl System {
         let position = &self.position;
         let (pattern, values) = self.matrix.values_mut();
         for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
-            flows |= block.evaluate(d_u, stiffness, &mut |cell| {
+            flows |= block.evaluate(motion, stiffness, &mut |cell| {
                 for (&a, force) in cell.nodes.iter().zip(cell.force.chunks_exact(D)) {
                     let at = internal[D * a..D * a + D].iter_mut();
                     at.zip(force).for_each(|(sum, f)| *sum += f);
@@ -374,22 +376,27 @@ impl System {
     pub(crate) fn assemble_elastic<const D: usize>(
         &mut self,
         blocks: &mut [Box<dyn Block<D>>],
+        from: &[f64],
         shifted: bool,
     ) {
         let clock = Instant::now();
-        let rest = vec![0.0; self.position.len()];
+        let by = vec![0.0; from.len()];
         let keeps = self.keeps_elastic;
         let (position, all) = (&self.position, &mut self.prescribed_columns);
         let (pattern, values) = self.matrix.values_mut();
         for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
-            block.evaluate(&rest, Stiffness::Total(0.0), &mut |cell| {
-                scatter.add::<D>(&cell, position, pattern, values);
-                if keeps {
-                    prescribed_columns::<D>(&cell, position, &mut |unknown, prescribed, k| {
-                        all.push((unknown, prescribed, k));
-                    });
-                }
-            });
+            block.evaluate(
+                Motion { from, by: &by },
+                Stiffness::Total(0.0),
+                &mut |cell| {
+                    scatter.add::<D>(&cell, position, pattern, values);
+                    if keeps {
+                        prescribed_columns::<D>(&cell, position, &mut |unknown, prescribed, k| {
+                            all.push((unknown, prescribed, k));
+                        });
+                    }
+                },
+            );
         }
         if keeps {
             self.matrix.keep();

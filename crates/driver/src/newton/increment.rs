@@ -1,7 +1,7 @@
 //! One increment by Newton's method with the contact problem solved inside every iteration; not
 //! the sequence of increments.
 
-use crate::assembly::block::Stiffness;
+use crate::assembly::cell_law::Stiffness;
 use crate::driver::Driver;
 use crate::error::IncrementError;
 use crate::linear::system::System;
@@ -110,7 +110,7 @@ impl<const D: usize> Driver<D> {
             end: Cow::Borrowed(end),
             control,
             iterate: Iterate {
-                assembly: system.assemble(&mut self.blocks, &d_u, &missing, tangent),
+                assembly: self.assemble(system, &d_u, &missing, tangent),
                 d_u,
                 contact: self.state.contact.clone(),
                 part: 0.0,

@@ -1,6 +1,6 @@
 //! How far to go along a Newton step; not which step.
 
-use crate::assembly::block::Stiffness;
+use crate::assembly::cell_law::Stiffness;
 use crate::driver::Driver;
 use crate::linear::system::System;
 use crate::model::load::Loading;
@@ -105,7 +105,7 @@ impl<const D: usize> Driver<D> {
             true => Stiffness::Plastic(1.0),
             false => Stiffness::None,
         };
-        let assembly = system.assemble(&mut self.blocks, &d_u, &none, stiffness);
+        let assembly = self.assemble(system, &d_u, &none, stiffness);
         let scale = self.force_scale(&assembly, end, &step.contact);
         let before = line.residual(
             system,
@@ -121,10 +121,12 @@ impl<const D: usize> Driver<D> {
             None if at_start < 0.0 => at_end > ACCEPTED_SLOPE * at_start.abs(),
             None => norm(&after) > before,
         };
+        // A step that turns cells inside out leads to no forces.
+        let inverts = !left.is_finite();
         // While prescribed displacements or motions are missing, ΔΦ is not what the step minimises; in balance
         // its slope is rounding.
         let enough = self.accepted_residual(system, scale, &d_u) + step.slack;
-        if !step.complete || !overshoots || left <= enough {
+        if !inverts && (!step.complete || !overshoots || left <= enough) {
             *iterate = Iterate {
                 d_u,
                 assembly,
@@ -142,7 +144,7 @@ impl<const D: usize> Driver<D> {
         };
         let d_u = line.displacement(s);
         *iterate = Iterate {
-            assembly: system.assemble(&mut self.blocks, &d_u, &none, Stiffness::Plastic(1.0)),
+            assembly: self.assemble(system, &d_u, &none, Stiffness::Plastic(1.0)),
             contact: line.contact(s),
             d_u,
             part: s,
@@ -153,7 +155,7 @@ impl<const D: usize> Driver<D> {
     /// The residual at the part s of a step.
     fn residual_along(&mut self, system: &mut System, line: &Line<'_, D>, s: f64) -> Vec<f64> {
         let (trial, none) = (line.displacement(s), SparseVector::default());
-        let at = system.assemble(&mut self.blocks, &trial, &none, Stiffness::None);
+        let at = self.assemble(system, &trial, &none, Stiffness::None);
         line.residual(system, &at.internal, &line.contact(s), s)
     }
 
@@ -171,14 +173,17 @@ impl<const D: usize> Driver<D> {
         let mut s = 1.0;
         for _ in 0..TRIALS {
             let margin = 0.05 * (high.0 - low.0);
-            s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            s = match high.1.is_finite() {
+                true => (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1),
+                false => 0.5 * (low.0 + high.0),
+            };
             s = s.clamp(low.0 + margin, high.0 - margin);
             let slope = line.slope(&self.residual_along(system, line, s));
             if slope.abs() <= ACCEPTED_SLOPE * at_start.abs() {
                 break;
             }
             // An end that stays twice weighs half.
-            if slope > 0.0 {
+            if slope > 0.0 || !slope.is_finite() {
                 high = (s, slope);
                 low.1 *= if last_side > 0.0 { 0.5 } else { 1.0 };
             } else {
@@ -240,7 +245,10 @@ mod tests {
 
     /// ΔΦ, \[74\], without contact.
     fn potential(driver: &Driver<2>, end: &Loading<2>, d_u: &[f64]) -> f64 {
-        let potentials = driver.blocks.iter().map(|b| b.potential(d_u));
+        let potentials = driver
+            .blocks
+            .iter()
+            .map(|b| b.potential(driver.motion(d_u)));
         let stored: f64 = potentials.sum::<Option<f64>>().expect("a potential");
         stored - end.force.dot(d_u)
     }
@@ -277,7 +285,7 @@ mod tests {
         let mut system = driver.prepare(&end, None).expect("held");
         let rest = vec![0.0; 2 * driver.mesh.nodes().len()];
         let none = SparseVector::default();
-        let assembly = system.assemble(&mut driver.blocks, &rest, &none, Stiffness::Plastic(1.0));
+        let assembly = driver.assemble(&mut system, &rest, &none, Stiffness::Plastic(1.0));
         system.factorise(true).expect("elastic");
         let (mut load, mut step) = (rest.clone(), rest.clone());
         end.force.add_to(&mut load, 1.0);

@@ -1,6 +1,6 @@
 //! The tangent at an iterate, made definite where it is that of a mechanism; not the step that it gives.
 
-use crate::assembly::block::Stiffness;
+use crate::assembly::cell_law::Stiffness;
 use crate::driver::Driver;
 use crate::error::{IncrementError, ModelError};
 use crate::linear::system::System;
@@ -25,7 +25,7 @@ impl<const D: usize> Driver<D> {
         }
         if !now.assembly.stiffness {
             let tangent = Stiffness::Plastic(1.0);
-            now.assembly = system.assemble(&mut self.blocks, &now.d_u, missing, tangent);
+            now.assembly = self.assemble(system, &now.d_u, missing, tangent);
         }
         Ok(())
     }
@@ -42,7 +42,7 @@ impl<const D: usize> Driver<D> {
         let elastic = !now.assembly.flows;
         if !(now.assembly.stiffness || elastic && system.holds_elastic_factor()) {
             let tangent = Stiffness::Plastic(1.0);
-            now.assembly = system.assemble(&mut self.blocks, &now.d_u, missing, tangent);
+            now.assembly = self.assemble(system, &now.d_u, missing, tangent);
         }
         let mut outcome = system.factorise(elastic);
         for part in BLENDS {
@@ -50,7 +50,7 @@ impl<const D: usize> Driver<D> {
                 break;
             }
             let blended = Stiffness::Plastic(part);
-            now.assembly = system.assemble(&mut self.blocks, &now.d_u, missing, blended);
+            now.assembly = self.assemble(system, &now.d_u, missing, blended);
             outcome = system.factorise(false);
         }
         if let Err(dof) = outcome

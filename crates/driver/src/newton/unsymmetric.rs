@@ -120,7 +120,7 @@ impl<const D: usize> Driver<D> {
     fn lacking(&self, d_u: &[f64], v: &[f64], held: &[usize]) -> Vec<f64> {
         let mut forces = vec![0.0; v.len()];
         for block in &self.blocks {
-            block.lacking(d_u, v, &mut |nodes, force| {
+            block.lacking(self.motion(d_u), v, &mut |nodes, force| {
                 for (&a, force) in nodes.iter().zip(force.chunks_exact(D)) {
                     let at = forces[D * a..D * a + D].iter_mut();
                     at.zip(force).for_each(|(sum, f)| *sum += f);

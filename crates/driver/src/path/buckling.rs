@@ -1,7 +1,7 @@
 //! How near a structure is to buckling under its stresses, which small displacements do not see; not
 //! what it does then.
 
-use crate::assembly::block::Stiffness;
+use crate::assembly::cell_law::Stiffness;
 use crate::driver::Driver;
 use crate::interface::condensation::Condensation;
 use crate::interface::tied::Tied;
@@ -82,7 +82,7 @@ impl<const D: usize> Driver<D> {
     fn nearest_instability(&mut self, system: &mut System) -> Option<Buckling<D>> {
         let rest = vec![0.0; self.state.displacement.len()];
         let elastic = Stiffness::Plastic(0.0);
-        system.assemble(&mut self.blocks, &rest, &SparseVector::default(), elastic);
+        self.assemble(system, &rest, &SparseVector::default(), elastic);
         let kinematics = self.kinematics(system, &self.state.loading, &rest);
         let status: Vec<Status> = match &self.state.solution {
             Some(solution) => solution.status.clone(),

@@ -1,7 +1,7 @@
 //! Contract of a block: its forces are the gradient of its potential, its stiffness that of its
 //! forces, whatever element, hypothesis and law.
 
-use moreau_driver::{Analysis, Block, SolidBlock, Stiffness};
+use moreau_driver::{Analysis, Block, Cells, Motion, SolidBlock, Stiffness};
 use moreau_laws::{BulkLaw, Elastic, VonMises};
 use moreau_mesh::{Axisymmetric, CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3};
 use nalgebra::DMatrix;
@@ -12,8 +12,12 @@ struct Evaluated {
 }
 
 /// Forces and stiffness assembled densely.
-fn evaluate<const D: usize>(block: &mut dyn Block<D>, d_u: &[f64], kind: Stiffness) -> Evaluated {
-    let dofs = d_u.len();
+fn evaluate<const D: usize>(
+    block: &mut dyn Block<D>,
+    motion: Motion<'_>,
+    kind: Stiffness,
+) -> Evaluated {
+    let dofs = motion.by.len();
     let cells: Vec<Vec<usize>> = (0..block.cells().len())
         .map(|k| {
             block
@@ -27,7 +31,7 @@ fn evaluate<const D: usize>(block: &mut dyn Block<D>, d_u: &[f64], kind: Stiffne
         force: vec![0.0; dofs],
         stiffness: DMatrix::zeros(dofs, dofs),
     };
-    block.evaluate(d_u, kind, &mut |result| {
+    block.evaluate(motion, kind, &mut |result| {
         let own = &cells[result.cell];
         let mut entries = result.stiffness.iter();
         for (i, &a) in own.iter().enumerate() {
@@ -59,52 +63,91 @@ fn displacement<const D: usize>(mesh: &Mesh<D>, size: f64, phase: f64) -> Vec<f6
         .collect()
 }
 
-fn contract<H: Analysis<D>, L: BulkLaw, const D: usize>(mesh: &Mesh<D>, hypothesis: H, law: L) {
-    obeys(mesh, &hypothesis, Integration::Full, law.clone());
-    obeys(mesh, &hypothesis, mesh.kind(0).integration(), law);
+/// The cells of a mesh under its full rule and under that of its kind.
+fn rules<H: Analysis<D>, const D: usize>(
+    mesh: &Mesh<D>,
+    hypothesis: H,
+) -> [(Vec<usize>, Box<dyn Cells<D>>); 2] {
+    [Integration::Full, mesh.kind(0).integration()].map(|rule| {
+        let members: Vec<usize> = (0..mesh.cell_count()).collect();
+        let cells = hypothesis.cells(mesh, mesh.kind(0), &members, rule);
+        (members, cells.expect("an element of this dimension"))
+    })
 }
 
-fn obeys<H: Analysis<D>, L: BulkLaw, const D: usize>(
+fn contract<H: Analysis<D> + Copy, L: BulkLaw, const D: usize>(
     mesh: &Mesh<D>,
-    hypothesis: &H,
-    rule: Integration,
+    hypothesis: H,
     law: L,
 ) {
-    let members: Vec<usize> = (0..mesh.cell_count()).collect();
-    let cells = hypothesis
-        .cells(mesh, mesh.kind(0), &members, rule)
-        .expect("an element of this dimension");
-    let mut block = SolidBlock::new(members, cells, law);
+    for (members, cells) in rules(mesh, hypothesis) {
+        obeys_small_strains(mesh, &mut SolidBlock::new(members, cells, law.clone()));
+    }
+    contract_of_large_strains(mesh, hypothesis, law);
+}
+
+fn contract_of_large_strains<H: Analysis<D>, L: BulkLaw, const D: usize>(
+    mesh: &Mesh<D>,
+    hypothesis: H,
+    law: L,
+) {
+    for (members, cells) in rules(mesh, hypothesis) {
+        obeys_large_strains(mesh, &mut SolidBlock::large(members, cells, law.clone()));
+    }
+}
+
+/// The slope of all forces at a motion along its k-th increment.
+fn slopes<const D: usize>(
+    block: &mut dyn Block<D>,
+    motion: Motion<'_>,
+    k: usize,
+    h: f64,
+) -> Vec<f64> {
+    let mut at = |sign: f64| {
+        let mut by = motion.by.to_vec();
+        by[k] += sign * h;
+        let moved = Motion { by: &by, ..motion };
+        evaluate(block, moved, Stiffness::None).force
+    };
+    let (ahead, behind) = (at(1.0), at(-1.0));
+    let of = |(a, b)| (a - b) / (2.0 * h);
+    ahead.iter().zip(&behind).map(of).collect()
+}
+
+fn obeys_small_strains<const D: usize>(mesh: &Mesh<D>, block: &mut dyn Block<D>) {
     // From a plastic state on, with a step that loads some points and unloads others.
     let first = displacement(mesh, 4e-3, 0.0);
-    evaluate(&mut block, &first, Stiffness::None);
+    let rest = vec![0.0; first.len()];
+    let by = |by| Motion { from: &rest, by };
+    evaluate(block, by(&first), Stiffness::None);
     block.commit();
     let d_u = displacement(mesh, 1.5e-3, 2.0);
-    let mut at = evaluate(&mut block, &d_u, Stiffness::Plastic(1.0));
-    let elastic = evaluate(&mut block, &d_u, Stiffness::Total(0.0)).stiffness;
+    let mut at = evaluate(block, by(&d_u), Stiffness::Plastic(1.0));
+    let elastic = evaluate(block, by(&d_u), Stiffness::Total(0.0)).stiffness;
     let stiffness_size = elastic.amax();
-    let half = evaluate(&mut block, &d_u, Stiffness::Total(0.5)).stiffness;
+    let half = evaluate(block, by(&d_u), Stiffness::Total(0.5)).stiffness;
     let blended = &elastic + 0.5 * &at.stiffness;
     assert!((half - blended).amax() < 1e-14 * stiffness_size);
     at.stiffness += elastic;
     let force_size = at.force.iter().fold(0.0f64, |a, f| a.max(f.abs()));
     let h = 1e-7;
     for k in 0..d_u.len() {
-        let moved = |sign: f64| {
+        let potential = |side: f64| {
             let mut v = d_u.clone();
-            v[k] += sign * h;
-            v
+            v[k] += side * h;
+            let moved = Motion {
+                from: &rest,
+                by: &v,
+            };
+            block.potential(moved).expect("a potential")
         };
-        let potential = |side: f64| block.potential(&moved(side)).expect("a potential");
         let slope = (potential(1.0) - potential(-1.0)) / (2.0 * h);
         assert!(
             (slope - at.force[k]).abs() < 1e-6 * force_size,
             "force {k}: {slope}"
         );
-        let ahead = evaluate(&mut block, &moved(1.0), Stiffness::None).force;
-        let behind = evaluate(&mut block, &moved(-1.0), Stiffness::None).force;
-        for l in 0..d_u.len() {
-            let slope = (ahead[l] - behind[l]) / (2.0 * h);
+        let slopes = slopes(block, by(&d_u), k, h);
+        for (l, slope) in slopes.into_iter().enumerate() {
             let k_lk = at.stiffness[(l, k)];
             assert!(
                 (slope - k_lk).abs() < 1e-5 * stiffness_size,
@@ -113,7 +156,43 @@ fn obeys<H: Analysis<D>, L: BulkLaw, const D: usize>(
         }
     }
     // Forces alone are the same forces.
-    assert_eq!(evaluate(&mut block, &d_u, Stiffness::None).force, at.force);
+    assert_eq!(evaluate(block, by(&d_u), Stiffness::None).force, at.force);
+}
+
+fn obeys_large_strains<const D: usize>(mesh: &Mesh<D>, block: &mut dyn Block<D>) {
+    let (before, by) = (displacement(mesh, 0.1, 0.0), displacement(mesh, 0.04, 2.0));
+    let rest = vec![0.0; by.len()];
+    let first = Motion {
+        from: &rest,
+        by: &before,
+    };
+    evaluate(block, first, Stiffness::None);
+    block.commit();
+    let motion = Motion {
+        from: &before,
+        by: &by,
+    };
+    let at = evaluate(block, motion, Stiffness::Total(1.0));
+    let size = at.stiffness.amax();
+    assert!(at.force.iter().all(|f| f.is_finite()) && size > 0.0);
+    for k in 0..by.len() {
+        let mut along = rest.clone();
+        along[k] = 1.0;
+        let mut column: Vec<f64> = at.stiffness.column(k).iter().copied().collect();
+        block.lacking(motion, &along, &mut |nodes, force| {
+            for (&a, own) in nodes.iter().zip(force.chunks_exact(D)) {
+                (0..D).for_each(|i| column[D * a + i] += own[i]);
+            }
+        });
+        for (l, slope) in slopes(block, motion, k, 1e-6).into_iter().enumerate() {
+            assert!(
+                (slope - column[l]).abs() < 1e-6 * size,
+                "stiffness {l} {k}: {slope} {}",
+                column[l]
+            );
+        }
+    }
+    assert_eq!(evaluate(block, motion, Stiffness::None).force, at.force);
 }
 
 /// Cells that stay elastic hand on no stiffness but the elastic one.
@@ -127,12 +206,13 @@ fn flow_adds_to_the_stiffness_of_cells_that_flow() {
     let mut block = SolidBlock::new(vec![0, 1], cells, steel());
     let pulled = |x: &[f64; 2]| [1e-2 * (x[0] - 1.0).max(0.0), 0.0];
     let d_u: Vec<f64> = mesh.nodes().iter().flat_map(pulled).collect();
-    let entries = |block: &mut dyn Block<2>, kind, d_u: &[f64]| {
+    let rest = vec![0.0; d_u.len()];
+    let entries = |block: &mut dyn Block<2>, kind, by: &[f64]| {
         let mut counts = Vec::new();
-        let flows = block.evaluate(d_u, kind, &mut |cell| counts.push(cell.stiffness.len()));
+        let motion = Motion { from: &rest, by };
+        let flows = block.evaluate(motion, kind, &mut |cell| counts.push(cell.stiffness.len()));
         (flows, counts)
     };
-    let rest = vec![0.0; d_u.len()];
     let plastic = Stiffness::Plastic(1.0);
     assert_eq!(entries(&mut block, plastic, &rest), (false, vec![0, 0]));
     assert_eq!(entries(&mut block, plastic, &d_u), (true, vec![0, 136]));
@@ -186,6 +266,8 @@ fn solid_blocks() {
             .expect("valid")
     };
     contract(&mesh(CellKind::Hex8), Solid, steel());
+    let kinematic = steel().with_kinematic(2e4).expect("valid");
+    contract_of_large_strains(&mesh(CellKind::Hex8), Solid, kinematic);
     contract(&mesh(CellKind::Tet4), Solid, steel());
     for kind in [CellKind::Tet10, CellKind::Hex20, CellKind::Hex27] {
         contract(&mesh(kind), Solid, steel());

@@ -5,7 +5,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use moreau::contact::{CondensedProblem, ContactSolver, SemismoothNewton};
-use moreau::driver::{Analysis, Block, Settings, SolidBlock, Stiffness};
+use moreau::driver::{Analysis, Block, Motion, Settings, SolidBlock, Stiffness};
 use moreau::laws::{BulkLaw, Coulomb, Local, VonMises, VonMisesState};
 use moreau::mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
 use nalgebra::{DMatrix, DVector};
@@ -57,25 +57,44 @@ pub(super) fn run() -> Result<bool, Box<dyn Error>> {
     let cells = PlaneStrain::default()
         .cells(&mesh, CellKind::Quad8, &members, Integration::Reduced)
         .ok_or("an element of another dimension")?;
-    let count = members.len();
-    let mut block = SolidBlock::new(members, cells, steel);
-    for (size, state) in [(1e-4, "elastic"), (1e-2, "plastic")] {
-        let stretched = |x: &[f64; 2]| [size * x[0], 0.3 * size * x[1]];
-        let d_u: Vec<f64> = mesh.nodes().iter().flat_map(stretched).collect();
-        for (what, kind) in [
-            (
-                "forces and what flow adds to the stiffness",
-                Stiffness::Plastic(1.0),
-            ),
-            ("forces and elastic stiffness", Stiffness::Total(0.0)),
-            ("forces", Stiffness::None),
-        ] {
-            let what = format!("cell of eight nodes and four points, {state}: {what}");
-            time(&what, count, || {
-                block.evaluate(black_box(&d_u), kind, &mut |cell| {
-                    black_box(cell.force);
+    let again = PlaneStrain::default()
+        .cells(&mesh, CellKind::Quad8, &members, Integration::Reduced)
+        .ok_or("an element of another dimension")?;
+    let mut blocks: [(&str, Box<dyn Block<2>>); 2] = [
+        (
+            "small strains",
+            Box::new(SolidBlock::new(members.clone(), cells, steel.clone())),
+        ),
+        (
+            "large strains",
+            Box::new(SolidBlock::large(members, again, steel)),
+        ),
+    ];
+    let at_rest = vec![0.0; 2 * mesh.nodes().len()];
+    for (strains, block) in &mut blocks {
+        for (size, state) in [(1e-4, "elastic"), (1e-2, "plastic")] {
+            let stretched = |x: &[f64; 2]| [size * x[0], 0.3 * size * x[1]];
+            let d_u: Vec<f64> = mesh.nodes().iter().flat_map(stretched).collect();
+            for (what, kind) in [
+                ("forces and stiffness", Stiffness::Total(1.0)),
+                (
+                    "forces and what flow adds to the stiffness",
+                    Stiffness::Plastic(1.0),
+                ),
+                ("forces and elastic stiffness", Stiffness::Total(0.0)),
+                ("forces", Stiffness::None),
+            ] {
+                let what = format!("cell quad8 of four points, {strains}, {state}: {what}");
+                let motion = Motion {
+                    from: &at_rest,
+                    by: &d_u,
+                };
+                time(&what, mesh.cell_count(), || {
+                    block.evaluate(black_box(motion), kind, &mut |cell| {
+                        black_box(cell.force);
+                    });
                 });
-            });
+            }
         }
     }
 

@@ -1,0 +1,117 @@
+//! How a law of the material meets the displacements of a cell; not how cells are put together.
+
+use crate::assembly::cells::Cells;
+use moreau_laws::{BulkLaw, FlowPower, Numbers};
+use moreau_mandel::Sym2;
+use nalgebra::Matrix3;
+
+/// Which stiffness an evaluation computes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stiffness {
+    /// None: forces only.
+    None,
+    /// The elastic one, ∫ Bᵀ C B dΩ, and this part, in [0, 1], of what flow adds to it.
+    Total(f64),
+    /// This part, in [0, 1], of what flow adds to the elastic one: ∫ Bᵀ (∂σ₁/∂Δε − C) B dΩ, of the
+    /// cells in which plastic strain grows.
+    Plastic(f64),
+}
+
+impl Stiffness {
+    /// Whether a cell has any, in which plastic strain grows or not.
+    pub(crate) fn is_given(self, flows: bool) -> bool {
+        match self {
+            Self::None => false,
+            Self::Total(_) => true,
+            Self::Plastic(_) => flows,
+        }
+    }
+}
+
+/// Displacements of a step, an entry a degree of freedom of the mesh \[mm\].
+#[derive(Debug, Clone, Copy)]
+pub struct Motion<'a> {
+    /// At its start, since the body was undeformed.
+    pub from: &'a [f64],
+    /// Increments of the whole step.
+    pub by: &'a [f64],
+}
+
+/// Where a cell leaves what it does.
+pub struct CellOutput<'a, S> {
+    /// States at the end of the step, point by point.
+    pub new: &'a mut [S],
+    /// ∫ Bᵀ σ₁ dΩ, node by node \[N\].
+    pub force: &'a mut [f64],
+    /// The upper triangle of the stiffness asked for \[N/mm\], row by row without the lower one; empty if none
+    /// is.
+    pub stiffness: &'a mut [f64],
+}
+
+/// A law of the material and how displacements strain it: small strains or large ones. A cell is the k-th of
+/// some cells, `(cells, k)`, and its states at the start of a step are given point by point.
+pub trait CellLaw<const D: usize>: 'static + Send + Sync {
+    /// The law.
+    type Law: BulkLaw;
+    /// What a point remembers.
+    type State: Copy + Send + Sync + Numbers;
+
+    /// The law.
+    fn law(&self) -> &Self::Law;
+
+    /// State of a point in an undeformed body.
+    fn start(material: <Self::Law as BulkLaw>::State) -> Self::State;
+
+    /// State of the material of a point.
+    fn material(state: &Self::State) -> &<Self::Law as BulkLaw>::State;
+
+    /// States, forces and stiffness of a cell at the end of a step. Returns whether the stiffness is another
+    /// than the elastic one.
+    fn respond(
+        &self,
+        cell: (&dyn Cells<D>, usize),
+        old: &[Self::State],
+        motion: Motion<'_>,
+        kind: Stiffness,
+        out: CellOutput<'_, Self::State>,
+    ) -> bool;
+
+    /// Whether the stiffness is that of the forces, or does for it.
+    fn is_symmetric(&self) -> bool;
+
+    /// Whether displacements do not change the elastic stiffness.
+    fn keeps_elastic_stiffness(&self) -> bool;
+
+    /// Forces, node by node, of what the stiffness lacks of being that of the forces, on the displacements
+    /// `v` \[N\].
+    fn lacking(
+        &self,
+        cell: (&dyn Cells<D>, usize),
+        old: &[Self::State],
+        motion: Motion<'_>,
+        v: &[f64],
+        force: &mut [f64],
+    );
+
+    /// ∫ ΔV(Δε) + σ₀ : Δε dΩ over a cell \[N·mm\], \[74\]; `None` without a potential.
+    fn potential(
+        &self,
+        cell: (&dyn Cells<D>, usize),
+        old: &[Self::State],
+        motion: Motion<'_>,
+    ) -> Option<f64>;
+
+    /// ∫ D(ε̇) dΩ over a cell of the strain rates of the velocities `v`; `None` of a law that has none.
+    fn flow_power(
+        &self,
+        cell: (&dyn Cells<D>, usize),
+        old: &[Self::State],
+        v: &[f64],
+    ) -> Option<FlowPower>;
+
+    /// Cauchy stress of a point where the displacements have this gradient \[MPa\].
+    fn stress(&self, state: &Self::State, gradient: &Matrix3<f64>) -> Sym2;
+
+    /// The frame in which the tensors of the material are, where that is not space.
+    fn frame(state: &Self::State) -> Option<Matrix3<f64>>;
+}
