@@ -5,6 +5,7 @@ pub mod collapsing;
 pub mod disguise;
 pub mod fields;
 pub mod greco;
+pub mod large;
 pub mod limit;
 pub mod patches;
 pub mod punched;

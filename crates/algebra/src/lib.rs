@@ -10,6 +10,7 @@
 //! | what a direct solver offers: factorise, solve, condense, expand, inertia | [`Engine`] |
 //! | L Lᵀ = A of positive definite matrices | [`Cholesky`] |
 //! | L D Lᵀ = A of any symmetric matrix, and the signs of its eigenvalues | [`Ldlt`] |
+//! | whichever of both a matrix has, matrix by matrix | [`Either`] |
 //! | what a factor will take, before there is one | [`Cost`] |
 //! | fewer unknowns that the others follow, and Pᵀ A P | [`CoarseSpace`] |
 //! | conjugate gradients, preconditioned by sweeps and the factor of a coarse space | [`ConjugateGradients`] |
@@ -49,6 +50,7 @@ mod cholesky;
 mod coarse;
 mod conjugate;
 mod dense;
+mod either;
 mod engine;
 mod ldlt;
 mod lu;
@@ -63,6 +65,7 @@ pub use cholesky::Cholesky;
 pub use coarse::{CoarseError, CoarseSpace};
 pub use conjugate::{ConjugateGradients, Interface, Stop};
 pub use dense::{DenseCholesky, square};
+pub use either::Either;
 pub use engine::{Cost, Engine, EngineError, Inertia, TooLarge};
 pub use ldlt::Ldlt;
 pub use lu::Lu;

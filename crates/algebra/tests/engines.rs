@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Sample, definite, indefinite, laplacian, norm, saddle};
-use moreau_algebra::{Cholesky, Cost, Engine, EngineError, Inertia, Ldlt, Matrix};
+use moreau_algebra::{Cholesky, Cost, Either, Engine, EngineError, Inertia, Ldlt, Matrix};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
@@ -109,6 +109,7 @@ proptest! {
     fn definite_systems_are_solved(sample in definite(1..40)) {
         solves::<Cholesky>(&sample, 1e-14);
         solves::<Ldlt>(&sample, 1e-14);
+        solves::<Either>(&sample, 1e-14);
     }
 
     #[test]
@@ -125,6 +126,28 @@ proptest! {
         let mut engine = engine::<Ldlt>(&sample);
         prop_assert_eq!(engine.factorise(&sample.values), Ok(inertia_of(&sample)));
         solves::<Ldlt>(&sample, 1e-13);
+        solves::<Either>(&sample, 1e-13);
+    }
+
+    /// One after the other, in any order.
+    #[test]
+    fn definite_and_indefinite_systems_take_turns(
+        sample in indefinite(2..20),
+        shifts in prop::collection::vec(prop::bool::ANY, 1..6),
+    ) {
+        prop_assume!(is_regular(&sample));
+        let size = sample.size();
+        let largest = sample.dense.clone().symmetric_eigenvalues().amax();
+        // Far beyond the largest eigenvalue: definite, and with the same entries.
+        let definite = Sample::new(&sample.dense + DMatrix::identity(size, size) * (2.0 * largest));
+        let mut engine = engine::<Either>(&sample);
+        for shifted in shifts {
+            let own = if shifted { &definite } else { &sample };
+            prop_assert_eq!(engine.factorise(&own.values), Ok(inertia_of(own)));
+            let b = own.right_hand_sides(3);
+            let x = solved(&mut engine, &b);
+            prop_assert!(own.residual(&x, &b) < 1e-13);
+        }
     }
 
     #[test]

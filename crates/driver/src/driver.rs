@@ -134,6 +134,11 @@ impl<const D: usize> Driver<D> {
         }
     }
 
+    /// Whether displacements change the stiffness.
+    pub(crate) fn has_large_strains(&self) -> bool {
+        !self.blocks.iter().all(|b| b.keeps_elastic_stiffness())
+    }
+
     /// The motion of the mesh by displacement increments, from where it is.
     pub(crate) fn motion<'a>(&'a self, d_u: &'a [f64]) -> Motion<'a> {
         let from = &self.state.displacement;

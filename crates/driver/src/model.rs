@@ -385,7 +385,12 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         tool: Option<usize>,
     ) -> Result<(), ModelError> {
         let facets = self.mesh.facet_group(surface)?;
-        let shares = self.mesh.positive_shares(facets, &self.hypothesis);
+        let mut shares = self.mesh.positive_shares(facets, &self.hypothesis);
+        if self.large && D == 2 && tool.is_some() {
+            // At nodes themselves, whose places are what large strains ask of: on the axis one may bear nothing.
+            let nodal = self.mesh.facet_shares(facets, &self.hypothesis);
+            shares = nodal.into_iter().map(PositiveShare::of_node).collect();
+        }
         let meets = |p: &&ContactPoint<D>| self.contacts[p.contact].opposite == opposite;
         let taken: BTreeMap<usize, usize> = (self.points.iter().filter(meets))
             .map(|p| (p.node, p.contact))

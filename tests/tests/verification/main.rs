@@ -15,6 +15,7 @@ mod hertz;
 mod hole;
 mod incline;
 mod invariance;
+mod large;
 mod laws;
 mod locking;
 mod modes;

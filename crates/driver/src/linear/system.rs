@@ -11,7 +11,7 @@ use crate::settings::Seam;
 use crate::timings::{Timings, timed};
 use crate::vector::SparseVector;
 use crate::vector::residual;
-use moreau_algebra::{Cholesky, Cost, Engine, EngineError, Matrix, Pattern, TooLarge};
+use moreau_algebra::{Cholesky, Cost, Either, Engine, EngineError, Matrix, Pattern, TooLarge};
 use moreau_mesh::Mesh;
 use std::collections::BTreeSet;
 use std::time::Instant;
@@ -110,9 +110,16 @@ fn conjugate_operations(pattern: &Pattern, coarse: f64) -> f64 {
     10.0 * 80.0 * (5.0 * pattern.entries() as f64 + 2.0 * coarse)
 }
 
-/// What factorises a stiffness of a pattern, in so much memory \[bytes\].
-fn engine(pattern: &Pattern, memory: Option<u64>) -> Result<Box<dyn Engine>, TooLarge> {
-    Ok(Box::new(Cholesky::analyse(pattern, memory)?))
+/// What factorises a stiffness of a pattern, in so much memory \[bytes\], positive definite or of any sign.
+fn engine(
+    pattern: &Pattern,
+    memory: Option<u64>,
+    is_definite: bool,
+) -> Result<Box<dyn Engine>, TooLarge> {
+    Ok(match is_definite {
+        true => Box::new(Cholesky::analyse(pattern, memory)?),
+        false => Box::new(Either::analyse(pattern, memory)?),
+    })
 }
 
 /// Pivots below this part of the diagonal are rounding, and a motion without stiffness.
@@ -213,6 +220,8 @@ impl System {
             ties_are_cheaper::<D>(interface, (pairs(blocks) * D * D, room), tied, condensed)
         });
         let is_tied = tied.is_some();
+        // Under large strains stresses add to the stiffness what may make it indefinite.
+        let is_definite = blocks.iter().all(|b| b.keeps_elastic_stiffness());
         let Numbering {
             position,
             dofs,
@@ -226,7 +235,7 @@ impl System {
         let coarse = || {
             let space = (interface_nodes, pivot, tools);
             let coarse = Coarse::new(mesh, &fixed, space, (&dofs, &pattern))?;
-            let engine = engine(&coarse.space.matrix().pattern, memory);
+            let engine = engine(&coarse.space.matrix().pattern, memory, is_definite);
             Some(engine.map(|engine| (engine, Some(coarse))))
         };
         let cost = Cost::of(&pattern);
@@ -240,7 +249,7 @@ impl System {
                 })
             });
         }
-        let own = || match engine(&pattern, memory) {
+        let own = || match engine(&pattern, memory, is_definite) {
             Ok(engine) => Ok((engine, None)),
             Err(too_large) => coarse().unwrap_or(Err(too_large)),
         };
@@ -262,8 +271,7 @@ impl System {
             pivot,
             scatter,
             prescribed_columns: Vec::new(),
-            keeps_elastic: pattern.entries() <= KEPT
-                && blocks.iter().all(|b| b.keeps_elastic_stiffness()),
+            keeps_elastic: is_definite && pattern.entries() <= KEPT,
             matrix: Matrix::new(pattern),
             coarse,
             tied: is_tied.then(Vec::new),

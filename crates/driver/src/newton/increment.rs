@@ -315,6 +315,7 @@ impl<const D: usize> Driver<D> {
             },
             contact,
             complete: !moved && arrived,
+            missing: !arrived,
             slack: increment.solution.as_ref().map_or(0.0, slack),
             tangent: !(elastic || self.is_symmetric() && last),
             allowed: self.allowed(&increment.counts.residuals),

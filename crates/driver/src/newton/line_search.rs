@@ -25,6 +25,8 @@ pub(crate) struct NewtonStep {
     pub(crate) contact: SparseVector,
     /// Whether the iterate has all prescribed displacements and the motions of tools already.
     pub(crate) complete: bool,
+    /// Whether it makes up for prescribed displacements.
+    pub(crate) missing: bool,
     /// Out-of-balance force left by the contact solver \[N\].
     pub(crate) slack: f64,
     /// Whether the tangent at its end is likely to be needed.
@@ -39,6 +41,8 @@ struct Line<'a, const D: usize> {
     end: &'a Loading<D>,
     from: &'a Iterate,
     step: &'a NewtonStep,
+    /// Whether the contact forces of the end act on the whole way.
+    lagrangian: bool,
 }
 
 impl<const D: usize> Line<'_, D> {
@@ -49,6 +53,9 @@ impl<const D: usize> Line<'_, D> {
 
     /// Contact forces between those of both ends.
     fn contact(&self, s: f64) -> SparseVector {
+        if self.lagrangian {
+            return self.step.contact.clone();
+        }
         self.from
             .contact
             .with(&self.step.contact, |a, b| a + s * (b - a))
@@ -99,6 +106,7 @@ impl<const D: usize> Driver<D> {
             end,
             from: iterate,
             step,
+            lagrangian: self.has_large_strains(),
         };
         let d_u = line.displacement(1.0);
         let stiffness = match step.tangent {
@@ -110,7 +118,7 @@ impl<const D: usize> Driver<D> {
         let before = line.residual(
             system,
             &line.from.assembly.internal,
-            &line.from.contact,
+            &line.contact(0.0),
             0.0,
         );
         let (at_start, before) = (line.slope(&before), norm(&before));
@@ -126,7 +134,11 @@ impl<const D: usize> Driver<D> {
         // While prescribed displacements or motions are missing, ΔΦ is not what the step minimises; in balance
         // its slope is rounding.
         let enough = self.accepted_residual(system, scale, &d_u) + step.slack;
-        if !inverts && (!step.complete || !overshoots || left <= enough) {
+        if !inverts
+            && (!(step.complete || line.lagrangian && !step.missing)
+                || !overshoots
+                || left <= enough)
+        {
             *iterate = Iterate {
                 d_u,
                 assembly,
@@ -311,6 +323,7 @@ mod tests {
             growth: none.clone(),
             contact: none.clone(),
             complete: true,
+            missing: false,
             slack: 0.0,
             tangent: true,
             allowed: None,

@@ -37,6 +37,14 @@ pub struct PositiveShare<const D: usize> {
     pub own: Vec<(usize, f64)>,
 }
 
+impl<const D: usize> PositiveShare<D> {
+    /// Of a node by itself, where Ñ is N.
+    pub fn of_node(share: Share<D>) -> Self {
+        let own = vec![(share.node, 1.0)];
+        Self { share, own }
+    }
+}
+
 impl<const D: usize> Mesh<D> {
     /// Shares of the nodes of a set of facets in their surface, all positive, sorted by node: see
     /// [`PositiveShare`]. They are those of [`Mesh::facet_shares`] where these are positive.
