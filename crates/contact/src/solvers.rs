@@ -114,6 +114,17 @@ pub trait ContactSolver<const D: usize>: std::fmt::Debug + Send + Sync {
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError>;
 
+    /// One step of Newton's method on displacements and forces, from where the bodies are and these forces,
+    /// wherever that leads: what is left where the structure is unstable and its problem may have no
+    /// solution. `None` of other methods, or of a singular step.
+    fn step(
+        &self,
+        _problem: &CondensedProblem<D>,
+        _force: &[Local<D>],
+    ) -> Option<ContactSolution<D>> {
+        None
+    }
+
     /// Springs of compliance C \[mm/N\] in series with the law, and the tolerance, of a method that is
     /// Newton's on the natural map: [`solve_tied`] does the same without a condensed stiffness. `None` of
     /// other methods.

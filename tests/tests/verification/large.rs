@@ -290,9 +290,9 @@ fn explore() -> Fallible {
         kind: QUAD8,
         touching: &["top", "right"],
     };
-    let mut driver = billet.driver(PlaneStrain::default(), 500.0, Some(0.1))?;
+    let mut driver = billet.driver(PlaneStrain::default(), 0.0, Some(0.0))?;
     let mut ramp = driver.begin(&billet.squeezed(4.0), 40)?;
-    for _ in 0..3 {
+    for _ in 0..6 {
         let report = driver.proceed(&mut ramp, &mut |i| {
             let s: String = i
                 .status

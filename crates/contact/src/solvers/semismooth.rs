@@ -41,6 +41,44 @@ impl<const D: usize> ContactSolver<D> for SemismoothNewton {
         newton(problem, Local::zeros(), guess, (self.tolerance, enough))
     }
 
+    fn step(
+        &self,
+        problem: &CondensedProblem<D>,
+        force: &[Local<D>],
+    ) -> Option<ContactSolution<D>> {
+        let springs = vec![Springs::default(); problem.contacts()];
+        let newton = Newton {
+            problem,
+            springs: &springs,
+            part: PARTS[0],
+        };
+        let here = vec![Local::zeros(); problem.contacts()];
+        let now = newton.iterate(here.clone());
+        let row = |(i, t): (usize, &Local<D>)| {
+            let (law, alpha) = (&problem.laws()[i], newton.alpha(i));
+            let (projector, shift) = law.correct_jacobian(&now.u[i], t, alpha);
+            let elastic = SMatrix::identity() - projector;
+            // Forces are unknowns of their own: they change from t to those of the displacements.
+            let value = -law.natural_map(&now.u[i], t, alpha) - elastic * (now.t[i] - t);
+            Row {
+                elastic,
+                shift,
+                value,
+            }
+        };
+        let rows = force.iter().enumerate().map(row).collect();
+        let next = newton.iterate(add(&here, &linearised::solve(problem, rows)?, 1.0));
+        let forces = next.t.clone();
+        let target = newton.part * self.tolerance.relative * problem.force_scale(&next.t);
+        let exact = next.residual <= target.max(problem.rounding(&next.x));
+        let mut solution = newton.solution(next, 1, exact);
+        if !exact {
+            // In balance, as those of the law are not.
+            solution.force = forces;
+        }
+        Some(solution)
+    }
+
     fn springs(&self) -> Option<(Local<D>, Tolerance)> {
         Some((Local::zeros(), self.tolerance))
     }

@@ -27,6 +27,20 @@ pub(crate) struct Counts {
 }
 
 impl Counts {
+    /// Takes over what a part of the increment has counted.
+    pub(crate) fn add(&mut self, part: &Self) {
+        self.newton += part.newton;
+        self.solves += part.solves;
+        self.contact += part.contact;
+        self.shortened += part.shortened;
+        self.factorisations += part.factorisations;
+        self.linear += part.linear;
+        self.contact_solves += part.contact_solves;
+        self.undetermined |= part.undetermined;
+        self.criticality = part.criticality;
+        self.residuals.extend(&part.residuals);
+    }
+
     /// Whether the last step has left about as much out of balance as the one before.
     pub(crate) fn no_longer_improves(&self) -> bool {
         match self.residuals.as_slice() {

@@ -23,6 +23,10 @@ use std::borrow::Cow;
 /// residual smaller.
 const WELL: f64 = 0.1;
 
+/// Parts of an increment that is followed along its loading: the first, and the shortest.
+const PART: f64 = 0.25;
+const SHORTEST: f64 = 1.0 / 128.0;
+
 /// An increment on its way from one loading to another.
 pub(crate) struct Increment<'a, 'c, const D: usize> {
     start: &'a Loading<D>,
@@ -84,9 +88,57 @@ impl<const D: usize> Driver<D> {
     ) -> Result<IncrementReport, IncrementError> {
         let guess = self.predictor(start, end);
         let increment = self.begin_increment(system, (start, end), guess, None);
-        let candidate = self.balance(system, increment, watch)?;
+        let candidate = match self.balance(system, increment, watch) {
+            Err(error) if self.has_large_strains() && !matches!(error, IncrementError::Model(_)) => {
+                self.continued(system, (start, end), watch).map_err(|_| error)?
+            }
+            other => other?,
+        };
         self.check_passage(&candidate.d_u)?;
         self.commit(start, end, candidate)
+    }
+
+    /// Finds the equilibrium at the end of an increment by following it along the loading, in parts that
+    /// shrink where they fail: history stands still, so that the equilibrium is that of one increment.
+    ///
+    /// # Errors
+    /// That of a part as short as they may be.
+    fn continued(
+        &mut self,
+        system: &mut System,
+        (start, end): (&Loading<D>, &Loading<D>),
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>),
+    ) -> Result<Candidate<D>, IncrementError> {
+        let (mut done, mut length) = (0.0, PART);
+        let mut last: Option<Candidate<D>> = None;
+        let mut spent = Counts::default();
+        loop {
+            let to = if done + length < 1.0 - 0.5 * PART { done + length } else { 1.0 };
+            let here = start.towards(end, to);
+            let d_u = match &last {
+                Some(last) => last.d_u.clone(),
+                None => vec![0.0; self.state.displacement.len()],
+            };
+            let mut increment = self.begin_increment(system, (start, &here), d_u, None);
+            if let Some(last) = &last {
+                increment.iterate.contact = self.contact_forces(&last.kinematics, &last.solution.force);
+                increment.solution = Some(last.solution.clone());
+            }
+            match self.balance(system, increment, watch) {
+                Ok(mut candidate) => {
+                    spent.add(&candidate.counts);
+                    if to == 1.0 {
+                        candidate.counts = spent;
+                        return Ok(candidate);
+                    }
+                    done = to;
+                    length = (2.0 * length).min(PART);
+                    last = Some(candidate);
+                }
+                Err(error) if length < SHORTEST => return Err(error),
+                Err(_) => length *= 0.5,
+            }
+        }
     }
 
     /// An increment at its first iterate: a guess of the displacement increments, under the committed

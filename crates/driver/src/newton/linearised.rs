@@ -185,8 +185,13 @@ impl<const D: usize> Driver<D> {
                 .map_err(contact)?;
         let problem = &mut condensation.problem;
         let method = &self.settings.contact;
+        let unstable = |_: &ContactError| self.has_large_strains();
         let solution = method
             .approach(problem, guess, linearised.enough)
+            .or_else(|error| match unstable(&error) {
+                true => method.step(problem, &force).ok_or(error),
+                false => Err(error),
+            })
             .or_else(|error| {
                 counts.undetermined = true;
                 let found = nearest(error, system.shift(), |c| {
