@@ -8,7 +8,11 @@ use std::sync::Arc;
 ///
 /// R never falls, so that ψ is convex and the step has a potential, \[62\].
 #[derive(Debug, Clone, PartialEq)]
-pub struct Isotropic(Kind);
+pub struct Isotropic {
+    kind: Kind,
+    /// What a linear part adds to the modulus \[MPa\].
+    added: f64,
+}
 
 #[derive(Debug, Clone, PartialEq)]
 enum Kind {
@@ -36,6 +40,12 @@ struct Knot {
     energy: f64,
 }
 
+impl From<Kind> for Isotropic {
+    fn from(kind: Kind) -> Self {
+        Self { kind, added: 0.0 }
+    }
+}
+
 impl Isotropic {
     /// R = H p, from the modulus H \[MPa\].
     ///
@@ -43,7 +53,7 @@ impl Isotropic {
     /// `Negative` unless H ≥ 0 is finite: softening has no convex potential.
     pub fn linear(modulus: f64) -> Result<Self, LawError> {
         let modulus = non_negative(Parameter::IsotropicModulus, modulus)?;
-        Ok(Self(Kind::Linear { modulus }))
+        Ok(Kind::Linear { modulus }.into())
     }
 
     /// R = q_∞ (1 − exp(−b p)), from the saturation q_∞ \[MPa\] and the rate b.
@@ -53,10 +63,11 @@ impl Isotropic {
     /// # Errors
     /// `Negative` unless q_∞ ≥ 0 and b ≥ 0 are finite.
     pub fn voce(saturation: f64, rate: f64) -> Result<Self, LawError> {
-        Ok(Self(Kind::Voce {
+        let kind = Kind::Voce {
             saturation: non_negative(Parameter::Saturation, saturation)?,
             rate: non_negative(Parameter::SaturationRate, rate)?,
-        }))
+        };
+        Ok(kind.into())
     }
 
     /// R = k (e₀ + p)ⁿ − k e₀ⁿ, from the strength k \[MPa\], the offset e₀ and the exponent n: the
@@ -67,11 +78,12 @@ impl Isotropic {
     /// # Errors
     /// `Negative` unless k ≥ 0 and n ≥ 0 are finite, `NotPositive` unless e₀ > 0 is finite.
     pub fn swift(strength: f64, offset: f64, exponent: f64) -> Result<Self, LawError> {
-        Ok(Self(Kind::Swift {
+        let kind = Kind::Swift {
             strength: non_negative(Parameter::Strength, strength)?,
             offset: positive(Parameter::Offset, offset)?,
             exponent: non_negative(Parameter::Exponent, exponent)?,
-        }))
+        };
+        Ok(kind.into())
     }
 
     /// Straight lines between points (p, σ) of a tensile test, constant beyond the last:
@@ -121,12 +133,25 @@ impl Isotropic {
                 energy,
             });
         }
-        Ok(Self(Kind::Table(knots.into())))
+        Ok(Kind::Table(knots.into()).into())
+    }
+
+    /// The same with a linear part on top, R + H p, from the modulus H \[MPa\].
+    ///
+    /// # Errors
+    /// `Negative` unless H ≥ 0 is finite.
+    pub fn with_linear(mut self, modulus: f64) -> Result<Self, LawError> {
+        let modulus = non_negative(Parameter::IsotropicModulus, modulus)?;
+        match &mut self.kind {
+            Kind::Linear { modulus: own } => *own += modulus,
+            _ => self.added += modulus,
+        }
+        Ok(self)
     }
 
     /// The yield stress k e₀ⁿ at which Swift's law starts by itself \[MPa\]; `None` of the others.
     pub fn initial(&self) -> Option<f64> {
-        match &self.0 {
+        match &self.kind {
             Kind::Swift {
                 strength,
                 offset,
@@ -139,7 +164,7 @@ impl Isotropic {
     /// R(p) \[MPa\].
     #[inline]
     pub fn stress(&self, p: f64) -> f64 {
-        match &self.0 {
+        let own = match &self.kind {
             Kind::Linear { modulus } => modulus * p,
             Kind::Voce { saturation, rate } => -saturation * (-rate * p).exp_m1(),
             Kind::Swift {
@@ -151,13 +176,14 @@ impl Isotropic {
                 let knot = at(knots, p);
                 knot.stress + knot.slope * (p - knot.p)
             }
-        }
+        };
+        own + self.added * p
     }
 
     /// R'(p) \[MPa\]; at a point of a table that of the line beyond it.
     #[inline]
     pub fn modulus(&self, p: f64) -> f64 {
-        match &self.0 {
+        let own = match &self.kind {
             Kind::Linear { modulus } => *modulus,
             Kind::Voce { saturation, rate } => saturation * rate * (-rate * p).exp(),
             Kind::Swift {
@@ -166,13 +192,14 @@ impl Isotropic {
                 exponent,
             } => strength * exponent * (offset + p).powf(exponent - 1.0),
             Kind::Table(knots) => at(knots, p).slope,
-        }
+        };
+        own + self.added
     }
 
     /// ψ(p) = ∫₀ᵖ R \[N·mm/mm³\]; convex.
     #[inline]
     pub fn energy(&self, p: f64) -> f64 {
-        match &self.0 {
+        let own = match &self.kind {
             Kind::Linear { modulus } => 0.5 * modulus * p.powi(2),
             Kind::Voce { rate: 0.0, .. } => 0.0,
             Kind::Voce { saturation, rate } => saturation * (p + (-rate * p).exp_m1() / rate),
@@ -189,13 +216,14 @@ impl Isotropic {
                 let beyond = p - knot.p;
                 knot.energy + (knot.stress + 0.5 * knot.slope * beyond) * beyond
             }
-        }
+        };
+        own + 0.5 * self.added * p.powi(2)
     }
 
     /// The modulus, if it is the same everywhere.
     #[inline]
     pub(crate) fn constant_modulus(&self) -> Option<f64> {
-        match &self.0 {
+        match &self.kind {
             Kind::Linear { modulus } => Some(*modulus),
             _ => None,
         }

@@ -5,8 +5,8 @@ use super::Fallible;
 use crate::workspace;
 use moreau::contact::Plane;
 use moreau::driver::{Analysis, Axis, Driver, Model, Settings, Step};
-use moreau::laws::{Coulomb, VonMises};
-use moreau::mesh::{CellKind, Facet, Integration, Mesh, block2, uniform};
+use moreau::laws::{Coulomb, Isotropic, VonMises};
+use moreau::mesh::{Axisymmetric, CellKind, Facet, Integration, Mesh, block2, uniform};
 
 /// A table of `tests/reference/finite`: a header, and rows of numbers and words.
 pub struct Reference {
@@ -56,7 +56,16 @@ pub fn steel(hardening: f64) -> Fallible<VonMises> {
     Ok(VonMises::new(210e3, 0.3, 300.0)?.with_isotropic(hardening)?)
 }
 
-/// A block that an edge at the top presses or platens squeeze, its cells, and where it may touch.
+/// Kinds of cells, their rules and what tables call them.
+pub type Cells = (CellKind, Integration, &'static str);
+
+/// Serendipity cells with four points.
+pub const QUAD8: Cells = (CellKind::Quad8, Integration::Reduced, "Q8");
+
+/// Linear cells with the mean dilatation.
+pub const QUAD4: Cells = (CellKind::Quad4, Integration::BBar, "Q4md");
+
+/// A block of steel that a platen presses from above.
 #[derive(Clone, Copy)]
 pub struct Billet<'a> {
     /// Lower and upper ends in x, or r \[mm\].
@@ -65,11 +74,36 @@ pub struct Billet<'a> {
     pub height: f64,
     /// Cells along both.
     pub cells: [usize; 2],
-    /// Their kind and rule.
-    pub kind: (CellKind, Integration),
-    /// Sides that may touch the platen; [`Billet::mesh`] has those but what is on the foot.
+    /// What they are.
+    pub kind: Cells,
+    /// Sides that may touch the platen.
     pub touching: &'a [&'a str],
 }
+
+/// The square block of plane strain, a quarter.
+pub const SQUARE: Billet<'static> = Billet {
+    x: [0.0, 10.0],
+    height: 10.0,
+    cells: [8, 8],
+    kind: QUAD8,
+    touching: &["top", "right"],
+};
+
+/// The cylinder, its upper half.
+pub const CYLINDER: Billet<'static> = Billet {
+    height: 15.0,
+    cells: [8, 12],
+    ..SQUARE
+};
+
+/// The ring 6 : 3 : 2, its upper half.
+pub const RING: Billet<'static> = Billet {
+    x: [4.5, 9.0],
+    height: 3.0,
+    cells: [12, 8],
+    touching: &["top", "left", "right"],
+    ..SQUARE
+};
 
 impl Billet<'_> {
     /// Its mesh, with what may touch as the facets of `block.surface`.
@@ -84,43 +118,49 @@ impl Billet<'_> {
         for side in self.touching {
             facets.extend(mesh.facet_group(&format!("block.{side}"))?);
         }
-        if !facets.is_empty() {
-            mesh.add_facet_group("block.surface", facets)?;
-        }
+        mesh.add_facet_group("block.surface", facets)?;
         Ok(mesh)
     }
 
-    /// The billet under a platen with this friction, or without it.
+    /// The billet under its platen, with this hardening modulus \[MPa\] and friction.
     ///
     /// # Errors
-    /// None for a hardening modulus and a coefficient of friction that are not negative.
+    /// None for numbers that are not negative.
     pub fn driver<H: Analysis<2>>(
         &self,
         hypothesis: H,
         hardening: f64,
-        friction: Option<f64>,
+        friction: f64,
     ) -> Fallible<Driver<2>> {
-        let mut model = Model::with_large_strains(self.mesh()?, hypothesis).material(
-            "block",
-            steel(hardening)?,
-            self.kind.1,
-        )?;
-        if let Some(mu) = friction {
-            model = model
-                .tool("platen", Plane::new([0.0, self.height], [0.0, -1.0])?)?
-                .contact("block.surface", "platen", Coulomb::new(mu)?)?;
-        }
+        let model = Model::with_large_strains(self.mesh()?, hypothesis)
+            .material("block", steel(hardening)?, self.kind.1)?
+            .tool("platen", Plane::new([0.0, self.height], [0.0, -1.0])?)?
+            .contact("block.surface", "platen", Coulomb::new(friction)?)?;
         Ok(Driver::new(model, Settings::default())?)
     }
 
-    /// The platen goes down by this.
-    pub fn squeezed(&self, by: f64) -> Step<2> {
-        let step = Step::new("upset")
-            .fix("block.bottom", &[Axis::Y])
-            .tool("platen", [0.0, -by]);
+    /// Its foot and its axis of symmetry are held.
+    pub fn held(&self, step: &str) -> Step<2> {
+        let step = Step::new(step).fix("block.bottom", &[Axis::Y]);
         match self.x[0] == 0.0 {
             true => step.fix("block.left", &[Axis::X]),
             false => step,
         }
     }
+}
+
+/// A bar of 53.3 mm that is drawn until it necks, an eighth of its section: slightly thinner in the middle, with
+/// hardening that saturates.
+///
+/// # Errors
+/// None.
+pub fn bar(kind: Cells) -> Fallible<Driver<2>> {
+    let (length, radius) = (26.667, 6.413);
+    let (x, y) = (uniform(0.0, radius, 4), uniform(0.0, length, 15));
+    let mesh =
+        block2("bar", kind.0, &x, &y)?.map(|x| [x[0] * (0.982 + 0.018 * x[1] / length), x[1]])?;
+    let hardening = Isotropic::voce(0.715 - 0.45, 16.93)?.with_linear(0.12924)?;
+    let law = VonMises::new(206.9, 0.29, 0.45)?.with_hardening(hardening);
+    let model = Model::with_large_strains(mesh, Axisymmetric).material("bar", law, kind.1)?;
+    Ok(Driver::new(model, Settings::default())?)
 }

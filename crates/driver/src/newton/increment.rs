@@ -89,8 +89,11 @@ impl<const D: usize> Driver<D> {
         let guess = self.predictor(start, end);
         let increment = self.begin_increment(system, (start, end), guess, None);
         let candidate = match self.balance(system, increment, watch) {
-            Err(error) if self.has_large_strains() && !matches!(error, IncrementError::Model(_)) => {
-                self.continued(system, (start, end), watch).map_err(|_| error)?
+            Err(error)
+                if self.has_large_strains() && !matches!(error, IncrementError::Model(_)) =>
+            {
+                self.continued(system, (start, end), watch)
+                    .map_err(|_| error)?
             }
             other => other?,
         };
@@ -113,7 +116,11 @@ impl<const D: usize> Driver<D> {
         let mut last: Option<Candidate<D>> = None;
         let mut spent = Counts::default();
         loop {
-            let to = if done + length < 1.0 - 0.5 * PART { done + length } else { 1.0 };
+            let to = if done + length < 1.0 - 0.5 * PART {
+                done + length
+            } else {
+                1.0
+            };
             let here = start.towards(end, to);
             let d_u = match &last {
                 Some(last) => last.d_u.clone(),
@@ -121,7 +128,8 @@ impl<const D: usize> Driver<D> {
             };
             let mut increment = self.begin_increment(system, (start, &here), d_u, None);
             if let Some(last) = &last {
-                increment.iterate.contact = self.contact_forces(&last.kinematics, &last.solution.force);
+                increment.iterate.contact =
+                    self.contact_forces(&last.kinematics, &last.solution.force);
                 increment.solution = Some(last.solution.clone());
             }
             match self.balance(system, increment, watch) {
