@@ -1,7 +1,7 @@
 //! Rigid obstacles as signed distances; not their motion, which the driver prescribes.
 
 use crate::ContactError;
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// A rigid obstacle, known by its signed distance.
 pub trait Obstacle<const D: usize>: Send + Sync {
@@ -11,6 +11,26 @@ pub trait Obstacle<const D: usize>: Send + Sync {
     /// Gradient of the distance at x: the unit normal that points from the obstacle (Ω_A) into
     /// the body (Ω_B), so that u_n ≥ 0 opens.
     fn normal(&self, x: &SVector<f64, D>) -> SVector<f64, D>;
+
+    /// ∂n/∂x \[1/mm\], by which the normal turns as x moves: the second derivatives of the distance, symmetric. None
+    /// of a plane.
+    fn curvature(&self, _x: &SVector<f64, D>) -> SMatrix<f64, D, D> {
+        SMatrix::zeros()
+    }
+
+    /// The way along the surface from the point nearest to `from` to that nearest to `to` \[mm\], tangent to it at
+    /// the latter: as long as the shortest line between them on the surface. What does not say otherwise takes
+    /// the chord.
+    fn way(&self, from: &SVector<f64, D>, to: &SVector<f64, D>) -> SVector<f64, D> {
+        let foot = |x: &SVector<f64, D>| x - self.normal(x) * self.distance(x);
+        let (chord, n) = (foot(to) - foot(from), self.normal(to));
+        chord - n * n.dot(&chord)
+    }
+
+    /// The point that a motion of the obstacle is told of, and that it turns about, unless another is given.
+    fn reference(&self) -> SVector<f64, D> {
+        SVector::zeros()
+    }
 
     /// The sharp convex corner that x is straight ahead of, or at, within `tolerance` \[mm\] sideways:
     /// the normal there is any of a cone. A smooth obstacle has none.
@@ -37,6 +57,18 @@ impl<const D: usize, T: Obstacle<D> + ?Sized> Obstacle<D> for Box<T> {
 
     fn normal(&self, x: &SVector<f64, D>) -> SVector<f64, D> {
         (**self).normal(x)
+    }
+
+    fn curvature(&self, x: &SVector<f64, D>) -> SMatrix<f64, D, D> {
+        (**self).curvature(x)
+    }
+
+    fn way(&self, from: &SVector<f64, D>, to: &SVector<f64, D>) -> SVector<f64, D> {
+        (**self).way(from, to)
+    }
+
+    fn reference(&self) -> SVector<f64, D> {
+        (**self).reference()
     }
 
     fn corner(&self, x: &SVector<f64, D>, tolerance: f64) -> Option<Corner<D>> {
@@ -81,6 +113,15 @@ impl<const D: usize> Obstacle<D> for Plane<D> {
 
     fn normal(&self, _: &SVector<f64, D>) -> SVector<f64, D> {
         self.normal
+    }
+
+    fn way(&self, from: &SVector<f64, D>, to: &SVector<f64, D>) -> SVector<f64, D> {
+        let chord = to - from;
+        chord - self.normal * self.normal.dot(&chord)
+    }
+
+    fn reference(&self) -> SVector<f64, D> {
+        self.point
     }
 }
 
@@ -137,6 +178,30 @@ impl<const D: usize> Obstacle<D> for Ball<D> {
         // At the very center every direction is as good as another.
         let unit = radial.try_normalize(0.0).unwrap_or_else(|| axis(0));
         unit * self.side()
+    }
+
+    fn curvature(&self, x: &SVector<f64, D>) -> SMatrix<f64, D, D> {
+        let (n, radius) = (self.normal(x), (x - self.center).norm());
+        match radius > 0.0 {
+            true => (SMatrix::identity() - n * n.transpose()) * (self.side() / radius),
+            false => SMatrix::zeros(),
+        }
+    }
+
+    fn way(&self, from: &SVector<f64, D>, to: &SVector<f64, D>) -> SVector<f64, D> {
+        // Sine, as long as it is, and cosine of the angle between both.
+        let (before, now) = (self.normal(from), self.normal(to));
+        let chord = now - before;
+        let sine = chord - now * now.dot(&chord);
+        let length = sine.norm();
+        match length > 0.0 {
+            true => sine * (self.radius * length.atan2(before.dot(&now)) / length),
+            false => sine,
+        }
+    }
+
+    fn reference(&self) -> SVector<f64, D> {
+        self.center
     }
 }
 
@@ -197,6 +262,25 @@ impl Obstacle<3> for Cylinder {
         let unit = unit.unwrap_or_else(|| frame(&self.axis).column(1).into_owned());
         unit * self.ball.side()
     }
+
+    fn curvature(&self, x: &SVector<f64, 3>) -> SMatrix<f64, 3, 3> {
+        let section = self.section(x);
+        let along = self.axis * self.axis.transpose();
+        let around = (section - self.ball.center).norm();
+        match around > 0.0 {
+            true => self.ball.curvature(&section) - along * (self.ball.side() / around),
+            false => SMatrix::zeros(),
+        }
+    }
+
+    fn way(&self, from: &SVector<f64, 3>, to: &SVector<f64, 3>) -> SVector<f64, 3> {
+        let around = self.ball.way(&self.section(from), &self.section(to));
+        around + self.axis * self.axis.dot(&(to - from))
+    }
+
+    fn reference(&self) -> SVector<f64, 3> {
+        self.ball.center
+    }
 }
 
 /// Unit vector along coordinate k.
@@ -219,8 +303,8 @@ fn finite<const D: usize>(what: &'static str, x: &SVector<f64, D>) -> Result<(),
 /// tangent plane. In 2D the tangent is n turned by −90°: for n = e_y it is e_x. In 3D the tangents are
 /// the axes in their order, projected, without the one that n is nearest to: for n = e_y they are e_x
 /// and e_z, and nearly so for an n nearby.
-pub fn frame<const D: usize>(n: &SVector<f64, D>) -> nalgebra::SMatrix<f64, D, D> {
-    let mut q = nalgebra::SMatrix::<f64, D, D>::zeros();
+pub fn frame<const D: usize>(n: &SVector<f64, D>) -> SMatrix<f64, D, D> {
+    let mut q = SMatrix::<f64, D, D>::zeros();
     q.set_column(0, n);
     if D == 2 {
         q[(0, 1)] = n[1];
@@ -257,6 +341,53 @@ mod tests {
         );
     }
 
+    fn turns_by_its_curvature(obstacle: &dyn Obstacle<3>, x: SVector<f64, 3>) {
+        let (w, h) = (obstacle.curvature(&x), 1e-5);
+        for k in 0..3 {
+            let e = axis::<3>(k) * h;
+            let slope = (obstacle.normal(&(x + e)) - obstacle.normal(&(x - e))) / (2.0 * h);
+            assert!((w.column(k) - slope).norm() < 1e-7, "{w} {slope}");
+        }
+    }
+
+    /// Ways add up along the shortest line, and are as long as the chords of many small pieces.
+    fn goes_along_itself(obstacle: &dyn Obstacle<3>, from: SVector<f64, 3>, to: SVector<f64, 3>) {
+        let way = obstacle.way(&from, &to);
+        assert!(way.dot(&obstacle.normal(&to)).abs() < 1e-12);
+        let foot = |x: &SVector<f64, 3>| x - obstacle.normal(x) * obstacle.distance(x);
+        // Backwards along the way, by which the surface leads to where it began.
+        let (mut x, mut left, pieces) = (foot(&to), -way, 20_000);
+        for _ in 0..pieces {
+            let next = foot(&(x + left / f64::from(pieces)));
+            let n = obstacle.normal(&next);
+            let turned = left - n * n.dot(&left);
+            (x, left) = (
+                next,
+                turned * (left.norm() / turned.norm().max(f64::MIN_POSITIVE)),
+            );
+        }
+        assert!((x - foot(&from)).norm() < 1e-3, "{x} {}", foot(&from));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        #[test]
+        fn ways_lead_along_the_surface(
+            from in prop::array::uniform3(-1.0..1.0f64),
+            to in prop::array::uniform3(-1.0..1.0f64),
+        ) {
+            let (from, to) = (SVector::from(from), SVector::from(to));
+            prop_assume!(from.norm() > 0.1 && to.norm() > 0.1 && from.angle(&to) < 3.0);
+            goes_along_itself(&Ball::new([0.0; 3], 2.0).expect("valid"), from, to);
+            goes_along_itself(&Plane::new([0.0; 3], [1.0, -2.0, 0.5]).expect("valid"), from, to);
+            let cylinder = Cylinder::new([0.0; 3], [0.3, 1.0, -0.4], 2.0).expect("valid");
+            let [a, b] = [from, to].map(|x| cylinder.section(&x));
+            prop_assume!(a.norm() > 0.1 && b.norm() > 0.1 && a.angle(&b) < 3.0);
+            goes_along_itself(&cylinder, from, to);
+        }
+    }
+
     proptest! {
         #[test]
         fn normals_are_gradients_of_the_distance(
@@ -272,6 +403,10 @@ mod tests {
             let cylinder = Cylinder::new(center, along, 2.0).expect("valid");
             prop_assume!(cylinder.distance(&x) > -1.5);
             obeys_eikonal(&cylinder, x);
+            turns_by_its_curvature(&Plane::new(center, [1.0, -2.0, 0.5]).expect("valid"), x);
+            turns_by_its_curvature(&Ball::new(center, 2.0).expect("valid"), x);
+            turns_by_its_curvature(&Ball::new(center, 30.0).expect("valid").hollow(), x);
+            turns_by_its_curvature(&cylinder, x);
             obeys_eikonal(&Cylinder::new(center, along, 30.0).expect("valid").hollow(), x);
         }
 

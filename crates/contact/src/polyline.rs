@@ -1,7 +1,7 @@
 //! A rigid profile of straight pieces in the plane; not a closed body, not a surface in space.
 
 use crate::{ContactError, Corner, Obstacle};
-use nalgebra::Vector2;
+use nalgebra::{Matrix2, Vector2};
 
 /// A rigid obstacle bounded by an open polyline, in the plane, that lies on the right of it.
 ///
@@ -143,6 +143,35 @@ impl Obstacle<2> for Polyline {
 
     fn normal(&self, x: &Vector2<f64>) -> Vector2<f64> {
         self.nearest(x).1
+    }
+
+    fn curvature(&self, x: &Vector2<f64>) -> Matrix2<f64> {
+        let (k, s) = self.nearest_segment(x);
+        let corner = match s {
+            0.0 if k > 0 => k,
+            1.0 if k + 1 < self.segments() => k + 1,
+            _ => return Matrix2::zeros(),
+        };
+        // About a corner the normal turns as that of a circle.
+        let (n, from) = (self.normal(x), (x - self.points[corner]).norm());
+        match from > COINCIDENT * self.along(k).norm() {
+            true => (Matrix2::identity() - n * n.transpose()) * (self.distance(x).signum() / from),
+            false => Matrix2::zeros(),
+        }
+    }
+
+    fn way(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> Vector2<f64> {
+        let place = |x: &Vector2<f64>| {
+            let (k, s) = self.nearest_segment(x);
+            let before: f64 = (0..k).map(|j| self.along(j).norm()).sum();
+            before + s * self.along(k).norm()
+        };
+        let n = self.normal(to);
+        Vector2::new(n.y, -n.x) * (place(to) - place(from))
+    }
+
+    fn reference(&self) -> Vector2<f64> {
+        self.points[0]
     }
 
     fn corner(&self, x: &Vector2<f64>, tolerance: f64) -> Option<Corner<2>> {

@@ -5,7 +5,7 @@ use crate::assembly::cell_law::{Motion, Stiffness};
 use crate::error::{IncrementError, ModelError};
 use crate::linear::system::{Assembly, Contacts, System};
 use crate::model::load::Loading;
-use crate::model::points::{ContactPoint, RelativeMotionRow, Tool, tool_index};
+use crate::model::points::{ContactPoint, RelativeMotionRow, Tool, tool_index, turned};
 use crate::model::{Analysis, Contact, Measure, Model};
 use crate::report::{ContactRecord, Energies, IncrementReport, Iteration};
 use crate::settings::{Nesting, Seam, Settings};
@@ -14,7 +14,7 @@ use crate::vector::SparseVector;
 use moreau_contact::ContactSolution;
 use moreau_laws::{Local, Status};
 use moreau_mesh::Mesh;
-use nalgebra::SVector;
+use nalgebra::{SVector, Vector3};
 use std::collections::BTreeMap;
 
 /// The state of a model between increments: one value, replaced when an increment is committed.
@@ -353,6 +353,49 @@ impl<const D: usize> Driver<D> {
         Ok(pairs.filter(touches).map(|(_, c)| c.force).sum())
     }
 
+    /// Moment of the forces that a tool exerts on the body about its reference point, where that is now \[N·mm\]:
+    /// in the plane the third component.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownTool`].
+    pub fn tool_moment(&self, name: &str) -> Result<Vector3<f64>, ModelError> {
+        let rest = vec![0.0; self.state.displacement.len()];
+        let tool = tool_index(&self.tools, name)?;
+        Ok(self.moment(tool, &rest, &self.state.contacts))
+    }
+
+    /// The same of contact forces after displacement increments.
+    pub(crate) fn moment(
+        &self,
+        tool: usize,
+        d_u: &[f64],
+        contacts: &[ContactRecord<D>],
+    ) -> Vector3<f64> {
+        let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
+        let node = self.tool_node(tool);
+        let about = self.tools[tool].reference + self.displacement(node) + moved(node);
+        let in_space =
+            |v: &SVector<f64, D>| Vector3::from_fn(|i, _| if i < D { v[i] } else { 0.0 });
+        let of = |(p, c): (&ContactPoint<D>, &ContactRecord<D>)| {
+            let own = p
+                .own
+                .iter()
+                .map(|&(a, w)| (self.position(a) + moved(a)) * w);
+            in_space(&(own.sum::<SVector<f64, D>>() - about)).cross(&in_space(&c.force))
+        };
+        let points = self.points.iter().zip(contacts);
+        points.filter(|(p, _)| p.tool == Some(tool)).map(of).sum()
+    }
+
+    /// How far a tool has turned: a vector along the axis, as long as the angle \[rad\].
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownTool`].
+    pub fn tool_turn(&self, name: &str) -> Result<Vector3<f64>, ModelError> {
+        let tool = tool_index(&self.tools, name)?;
+        Ok(self.state.loading.turn_of(tool))
+    }
+
     /// Translation of a tool from its first position \[mm\].
     ///
     /// # Errors
@@ -489,7 +532,9 @@ impl<const D: usize> Driver<D> {
             // The most work that a contact force of unit pressure can do against the tool's force.
             let most = |p: &ContactPoint<D>| {
                 let x = self.position(p.node);
-                let n = tool.obstacle.normal(&(x - self.displacement(node)));
+                let turn = self.state.loading.turn_of(k);
+                let seen = tool.seen(x - self.displacement(node), &turn);
+                let n = turned(tool.obstacle.normal(&seen), &turn);
                 let along = n.dot(&force);
                 let across = (force - n * along).norm();
                 along + if p.law.resists_slip() { across } else { 0.0 }

@@ -300,8 +300,23 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         }
         self.tools.push(Tool {
             name: name.into(),
+            reference: obstacle.reference(),
             obstacle: Box::new(obstacle),
         });
+        Ok(self)
+    }
+
+    /// Lets the tool added last turn about another point than [`Obstacle::reference`] \[mm\].
+    ///
+    /// # Errors
+    /// [`ModelError::OutOfRange`] for numbers that are not finite.
+    pub fn reference(mut self, point: [f64; D]) -> Result<Self, ModelError> {
+        if let Some(&value) = point.iter().find(|x| !x.is_finite()) {
+            return Err(out_of_range("reference point", value, "finite coordinates"));
+        }
+        if let Some(tool) = self.tools.last_mut() {
+            tool.reference = point.into();
+        }
         Ok(self)
     }
 

@@ -189,7 +189,8 @@ impl Numbers<'_> {
 impl<const D: usize> Saved for Loading<D> {
     fn visit(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
         numbers.sparse(&mut self.displacement)?;
-        numbers.sparse(&mut self.force)
+        numbers.sparse(&mut self.force)?;
+        numbers.sparse(&mut self.turn)
     }
 }
 

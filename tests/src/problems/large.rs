@@ -3,10 +3,12 @@
 
 use super::Fallible;
 use crate::workspace;
-use moreau::contact::Plane;
+use moreau::contact::{Ball, Plane};
 use moreau::driver::{Analysis, Axis, Driver, Model, Settings, Step};
 use moreau::laws::{Coulomb, Isotropic, VonMises};
-use moreau::mesh::{Axisymmetric, CellKind, Facet, Integration, Mesh, block2, uniform};
+use moreau::mesh::{
+    Axisymmetric, CellKind, Facet, Integration, Mesh, PlaneStrain, block2, uniform,
+};
 
 /// A table of `tests/reference/finite`: a header, and rows of numbers and words.
 pub struct Reference {
@@ -147,6 +149,55 @@ impl Billet<'_> {
             false => step,
         }
     }
+}
+
+/// Half of a block of 40 mm × 20 mm that sticks to its ground, under a disc of radius 10 mm.
+///
+/// # Errors
+/// None for a coefficient of friction that is not negative.
+pub fn indented(friction: f64) -> Fallible<Driver<2>> {
+    let lines = |fine: f64, cells: usize, coarse: f64| {
+        let mut all = uniform(0.0, fine, cells);
+        all.extend((1..=6).map(|i| fine + coarse * (f64::from(i) / 6.0).powf(1.5)));
+        all
+    };
+    let x = lines(7.0, 14, 13.0);
+    let mut y: Vec<f64> = lines(4.0, 8, 16.0).iter().map(|y| 20.0 - y).collect();
+    y.reverse();
+    let mesh = block2("block", CellKind::Quad8, &x, &y)?;
+    let model = Model::with_large_strains(mesh, PlaneStrain::default())
+        .material("block", steel(500.0)?, Integration::Reduced)?
+        .tool("disc", Ball::new([0.0, 30.0], 10.0)?)?
+        .contact("block.top", "disc", Coulomb::new(friction)?)?;
+    Ok(Driver::new(model, Settings::default())?)
+}
+
+/// A block of 20 mm × 20 mm between two platens that turn about its middle.
+///
+/// # Errors
+/// None.
+pub fn turned() -> Fallible<Driver<2>> {
+    let lines = uniform(-10.0, 10.0, 8);
+    let mut mesh = block2("block", CellKind::Quad8, &lines, &lines)?;
+    mesh.node_group_where("pin", "block", |x| x[0].hypot(x[1]) < 1e-9)?;
+    for (half, side, sign) in [("upper", "block.top", 1.0), ("lower", "block.bottom", -1.0)] {
+        let mut facets = mesh.facet_group(side)?.to_vec();
+        for side in ["left", "right"] {
+            let name = format!("{half}-{side}");
+            mesh.facet_group_where(&name, &format!("block.{side}"), |x| sign * x[1] > -1e-9)?;
+            facets.extend(mesh.facet_group(&name)?);
+        }
+        mesh.add_facet_group(half, facets)?;
+    }
+    let model = Model::with_large_strains(mesh, PlaneStrain::default())
+        .material("block", steel(500.0)?, Integration::Reduced)?
+        .tool("top", Plane::new([0.0, 10.0], [0.0, -1.0])?)?
+        .reference([0.0, 0.0])?
+        .contact("upper", "top", Coulomb::new(0.3)?)?
+        .tool("bottom", Plane::new([0.0, -10.0], [0.0, 1.0])?)?
+        .reference([0.0, 0.0])?
+        .contact("lower", "bottom", Coulomb::new(0.3)?)?;
+    Ok(Driver::new(model, Settings::default())?)
 }
 
 /// A bar of 53.3 mm that is drawn until it necks, an eighth of its section: slightly thinner in the middle, with

@@ -5,7 +5,9 @@ use moreau::driver::{Analysis, Axis, ContactRecord, Driver, IncrementReport, Ste
 use moreau::laws::Status;
 use moreau::mesh::{Axisymmetric, PlaneStrain};
 use verification::problems::Fallible;
-use verification::problems::large::{Billet, CYLINDER, QUAD4, QUAD8, RING, Reference, SQUARE, bar};
+use verification::problems::large::{
+    Billet, CYLINDER, QUAD4, QUAD8, RING, Reference, SQUARE, bar, indented, turned,
+};
 
 /// What a run is off by, at most in any increment.
 #[derive(Debug, Default)]
@@ -244,6 +246,57 @@ fn a_bar_is_drawn_until_it_necks() -> Fallible {
         off.check(&name);
         // One more where the neck begins, and all beside it unloads.
         assert!(off.iterations <= 7, "{name}: {off:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn a_block_is_indented_by_a_disc() -> Fallible {
+    for mu in [0.0, 0.2] {
+        let mut driver = indented(mu)?;
+        let name = format!("F5_Q8_lev1_mu{mu}");
+        let (tables, mut off) = (Tables::read(&name)?, Off::default());
+        let step = Step::new("indent")
+            .fix("block.bottom", &[Axis::X, Axis::Y])
+            .fix("block.left", &[Axis::X])
+            .tool("disc", [0.0, -3.0]);
+        driver.run(&step, 60, |driver, report| {
+            let force = driver.tool_force("disc").expect("a tool");
+            off.compare((driver, report), (force[1], "tool0_Fy"), &tables);
+            if mu > 0.0 {
+                let moment = driver.tool_moment("disc").expect("a tool");
+                off.compare((driver, report), (moment.z, "tool0_M"), &tables);
+            }
+        })?;
+        off.check(&name);
+    }
+    Ok(())
+}
+
+#[test]
+fn a_block_is_squeezed_between_platens_that_turn() -> Fallible {
+    for (name, quarter) in [("straight", 0.0), ("rot90", std::f64::consts::FRAC_PI_2)] {
+        let mut driver = turned()?;
+        let name = format!("F6_Q8_8x8_mu0.3_{name}");
+        let (tables, mut off) = (Tables::read(&name)?, Off::default());
+        for k in 1..=40 {
+            let part = f64::from(k) / 40.0;
+            let (angle, closed) = (quarter * part, 3.0 * part);
+            let (s, c) = angle.sin_cos();
+            let axis = [0.0, 0.0, 1.0];
+            let step = Step::new("squeeze")
+                .fix("pin", &[Axis::X, Axis::Y])
+                .tool("top", [s * closed, -c * closed])
+                .turn("top", axis, angle)
+                .tool("bottom", [-s * closed, c * closed])
+                .turn("bottom", axis, angle);
+            driver.run(&step, 1, |driver, report| {
+                let force = driver.tool_force("top").expect("a tool");
+                let load = c * force[1] - s * force[0];
+                off.compare((driver, report), (load, "tool0_Fy_body"), &tables);
+            })?;
+        }
+        off.check(&name);
     }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! Tools within a surface between its nodes, where contact does not act; not how that could be prevented.
 
 use crate::driver::Driver;
+use crate::model::points::turned;
 use moreau_contact::Obstacle;
 use moreau_mesh::{Facet, FacetKind};
 use nalgebra::SVector;
@@ -169,20 +170,19 @@ impl<const D: usize> Driver<D> {
     fn deepest_between(&self, contact: usize) -> Option<Between<D>> {
         let own = || self.points.iter().filter(|p| p.contact == contact);
         let tool = own().next()?.tool?;
-        let obstacle = &self.tools[tool].obstacle;
+        let (body, turn) = (&self.tools[tool], self.state.loading.turn_of(tool));
+        let obstacle = &body.obstacle;
         let at = self.displacement(self.tool_node(tool));
+        let seen = |a: usize| body.seen(self.position(a) - at, &turn);
         let mut offsets = vec![0.0; self.mesh.nodes().len()];
         own().for_each(|p| offsets[p.node] = p.offset);
         let facets = self.mesh.facet_group(self.contact_name(contact).0).ok()?;
         let deepest = |facet: &Facet| {
             let nodes = self.mesh.facet_nodes(*facet);
-            let places = nodes.clone().map(|a| self.position(a) - at).collect();
+            let places = nodes.clone().map(seen).collect();
             let offsets = nodes.map(|a| offsets[a]).collect();
             let cell = self.mesh.cell_nodes(facet.cell);
-            let middle = cell
-                .iter()
-                .map(|&a| self.position(a) - at)
-                .sum::<SVector<f64, D>>();
+            let middle = cell.iter().map(|&a| seen(a)).sum::<SVector<f64, D>>();
             let middle = middle / cell.len() as f64;
             let kind = self.mesh.facet_kind(*facet);
             let sheet = Sheet::new(kind, (places, offsets), middle, obstacle.as_ref());
@@ -193,7 +193,7 @@ impl<const D: usize> Driver<D> {
         };
         let all = facets.iter().filter_map(deepest);
         let (x, depth, facet) = all.max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)))?;
-        let normal = obstacle.normal(&x);
+        let normal = turned(obstacle.normal(&x), &turn);
         let along = own().map(|p| self.displacement(p.node).dot(&normal));
         let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), u| {
             (l.min(u), h.max(u))
@@ -207,7 +207,7 @@ impl<const D: usize> Driver<D> {
             contact,
             depth,
             facet,
-            position: (x + at).into(),
+            position: (body.turned(x, &turn) + at).into(),
             pressed,
         })
     }

@@ -43,8 +43,11 @@ impl<const D: usize> Driver<D> {
             let gap = match p.tool {
                 Some(tool) => {
                     let at = self.displacement(self.tool_node(tool));
-                    let obstacle = self.tools[tool].obstacle.as_ref();
-                    p.gap(obstacle, |a| self.position(a) - at)
+                    let turn = self.state.loading.turn_of(tool);
+                    let tool = &self.tools[tool];
+                    p.gap(tool.obstacle.as_ref(), |a| {
+                        tool.seen(self.position(a) - at, &turn)
+                    })
                 }
                 None => motion_row.plane(&SVector::zeros())?.1 - p.offset,
             };

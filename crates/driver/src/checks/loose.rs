@@ -18,11 +18,12 @@ impl<const D: usize> Driver<D> {
     /// `None` if there are none.
     fn tool_gap(&self, tool: usize, motion: &SVector<f64, D>) -> Option<(f64, usize)> {
         let at = self.displacement(self.tool_node(tool)) + motion;
-        let obstacle = &self.tools[tool].obstacle;
+        let (body, turn) = (&self.tools[tool], self.state.loading.turn_of(tool));
+        let seen = |a: usize| body.seen(self.position(a) - at, &turn);
         let points = self.points.iter().enumerate();
         let gaps = points
             .filter(|(_, p)| p.tool == Some(tool))
-            .map(|(k, p)| (p.gap(obstacle.as_ref(), |a| self.position(a) - at), k));
+            .map(|(k, p)| (p.gap(body.obstacle.as_ref(), seen), k));
         gaps.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 

@@ -3,6 +3,8 @@
 
 use crate::driver::Driver;
 use crate::error::IncrementError;
+use crate::model::load::Loading;
+use crate::model::points::turned;
 use nalgebra::SVector;
 
 /// How deep a straight way through a tool may be in it, over the length of the way inside: of a cylinder, that
@@ -21,22 +23,30 @@ impl<const D: usize> Driver<D> {
     ///
     /// # Errors
     /// [`IncrementError::Passage`].
-    pub(crate) fn check_passage(&self, d_u: &[f64]) -> Result<(), IncrementError> {
+    pub(crate) fn check_passage(
+        &self,
+        d_u: &[f64],
+        end: &Loading<D>,
+    ) -> Result<(), IncrementError> {
         let size = self.mesh.size();
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
         for (p, motion_row) in self.points.iter().zip(&self.motion_rows) {
             let Some(tool) = p.tool else { continue };
-            let way = motion_row.relative(moved);
+            let (start, turn) = (self.seen(p, motion_row), end.turn_of(tool));
+            let mut way = turned(motion_row.relative(moved), &-turn);
+            if turn != self.state.loading.turn_of(tool) {
+                let at = |a: usize| match a < self.mesh.nodes().len() {
+                    true => self.position(a),
+                    false => self.displacement(a),
+                };
+                let there = motion_row.relative(at) + motion_row.relative(moved);
+                way = self.tools[tool].seen(there, &turn) - start;
+            }
             let length = way.norm();
             if length <= THIN * size {
                 continue;
             }
             let obstacle = &self.tools[tool].obstacle;
-            let at = |a: usize| match a < self.mesh.nodes().len() {
-                true => self.position(a),
-                false => self.displacement(a),
-            };
-            let start = motion_row.relative(at);
             let gap = |s: f64| obstacle.distance(&(start + way * (s / length))) - p.offset;
             let surface = gap(0.0).min(gap(length)).min(0.0);
             let piece = (0.25 * THIN * size).max(length / PIECES);

@@ -8,7 +8,7 @@ use crate::checks::rigid::{NOTHING, RigidModes, Rows, Stopper, null_space};
 use crate::driver::Driver;
 use crate::error::ModelError;
 use crate::model::load::{Axis, Condition, Loading, Step};
-use crate::model::points::{ContactPoint, RelativeMotionRow};
+use crate::model::points::{ContactPoint, RelativeMotionRow, turned};
 use moreau_laws::Status;
 use nalgebra::SVector;
 
@@ -214,12 +214,9 @@ impl<const D: usize> Driver<D> {
                 .plane(&SVector::zeros())
                 .map(|(normal, _)| normal);
         };
-        let nodes = self.mesh.nodes().len();
-        let at = |a: usize| match a < nodes {
-            true => self.position(a),
-            false => self.displacement(a),
-        };
-        let x = motion_row.relative(at);
-        Some(self.tools[tool].obstacle.normal(&x))
+        let normal = self.tools[tool]
+            .obstacle
+            .normal(&self.seen(point, motion_row));
+        Some(turned(normal, &self.state.loading.turn_of(tool)))
     }
 }

@@ -3,10 +3,10 @@
 use crate::driver::Driver;
 use crate::linear::system::System;
 use crate::model::load::Loading;
-use crate::model::points::{ContactPoint, Kinematics, RelativeMotionRow};
+use crate::model::points::{ContactPoint, Kinematics, RelativeMotionRow, Turn, turned};
 use crate::vector::SparseVector;
 use moreau_laws::Local;
-use nalgebra::SVector;
+use nalgebra::{SMatrix, SVector};
 
 /// How far sideways of a sharp corner a point may be to be at it, over the size of the mesh: what
 /// decides between its two faces is then rounding, and not the model.
@@ -20,6 +20,29 @@ impl<const D: usize> Driver<D> {
             let moved = self.state.displacement[dof] + d_u[dof];
             end.displacement.get(&dof).copied().unwrap_or(moved)
         })
+    }
+
+    /// Whether slips are ways along tools, and not displacements beside them.
+    fn follows(&self, turn: &Turn) -> bool {
+        self.has_large_strains() || turn.norm() > 0.0
+    }
+
+    /// Where its tool sees a contact point at the start of an increment.
+    pub(crate) fn seen(
+        &self,
+        point: &ContactPoint<D>,
+        motion_row: &RelativeMotionRow<D>,
+    ) -> SVector<f64, D> {
+        let nodes = self.mesh.nodes().len();
+        let at = |a: usize| match a < nodes {
+            true => self.position(a),
+            false => self.displacement(a),
+        };
+        let x = motion_row.relative(at);
+        match point.tool {
+            Some(tool) => self.tools[tool].seen(x, &self.state.loading.turn_of(tool)),
+            None => x,
+        }
     }
 
     /// Frames, gaps and slips of the contact points.
@@ -42,23 +65,37 @@ impl<const D: usize> Driver<D> {
                 };
                 return kinematics.between_forces(motion_row.area);
             };
-            let obstacle = &self.tools[tool].obstacle;
-            let tool = self.tool_position(tool, end, d_u);
+            let turn = end.turn_of(tool);
+            let (tool, at) = (&self.tools[tool], self.tool_position(tool, end, d_u));
+            let obstacle = &tool.obstacle;
             let now = |a: usize| match a < self.mesh.nodes().len() {
                 true => self.position(a) + moved(a),
-                false => tool,
+                false => at,
             };
-            let x = motion_row.relative(now);
+            let x = tool.seen(motion_row.relative(now), &turn);
+            let slip = match self.follows(&turn) {
+                true => turned(obstacle.way(&self.seen(p, motion_row), &x), &turn),
+                false => slip,
+            };
             let Some(corner) = obstacle.corner(&x, AHEAD * size) else {
-                let gap = p.gap(obstacle.as_ref(), |a| now(a) - tool);
-                let kinematics = Kinematics::new(p, &obstacle.normal(&x), gap, &slip, free);
+                let gap = p.gap(obstacle.as_ref(), |a| tool.seen(now(a) - at, &turn));
+                let n = turned(obstacle.normal(&x), &turn);
+                let mut kinematics = Kinematics::new(p, &n, gap, &slip, free);
+                if self.has_large_strains() {
+                    let axes = [0, 1, 2].map(|k| {
+                        let e = SVector::from_fn(|i, _| if i == k { 1.0 } else { 0.0 });
+                        turned(obstacle.curvature(&x) * turned(e, &-turn), &turn)
+                    });
+                    kinematics.curvature = SMatrix::from_fn(|i, j| axes[j][i]);
+                }
                 return kinematics.between_forces(motion_row.area);
             };
             // Any normal of the cone: friction about its axis that holds as far as the cone reaches.
             let gap = corner.axis.dot(&(x - corner.position)) - p.offset;
             let law = p.law.at_corner(corner.half_angle);
             let blunt = ContactPoint { law, ..p.clone() };
-            let mut kinematics = Kinematics::new(&blunt, &corner.axis, gap, &slip, free);
+            let axis = turned(corner.axis, &turn);
+            let mut kinematics = Kinematics::new(&blunt, &axis, gap, &slip, free);
             kinematics.at_corner = true;
             kinematics
         };

@@ -481,6 +481,21 @@ impl System {
         Ok(())
     }
 
+    /// Adds entries (row, column) of a symmetric stiffness at degrees of freedom to K, those of its lower triangle
+    /// and of unknowns that a cell or a contact couples.
+    pub(crate) fn add(&mut self, entries: impl Iterator<Item = (usize, usize, f64)>) {
+        let (pattern, values) = self.matrix.values_mut();
+        for (row, column, k) in entries {
+            let (row, column) = (self.position[row], self.position[column]);
+            if row < column || row == FIXED || column == FIXED {
+                continue;
+            }
+            if let Some(slot) = pattern.slot(row, column) {
+                values[slot as usize] += k;
+            }
+        }
+    }
+
     /// Whether contacts are tied in the factor.
     pub(crate) fn is_tied(&self) -> bool {
         self.tied.is_some()

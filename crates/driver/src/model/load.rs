@@ -1,6 +1,7 @@
 //! Steps as an engineer writes them, and the loading they amount to; not how it is applied.
 
 use crate::error::ModelError;
+use crate::model::points::Turn;
 use crate::vector::SparseVector;
 use std::collections::BTreeMap;
 
@@ -54,6 +55,11 @@ pub(crate) enum Condition<const D: usize> {
     Tool {
         name: String,
         displacement: [f64; D],
+    },
+    Turn {
+        name: String,
+        axis: [f64; 3],
+        angle: f64,
     },
     Push {
         name: String,
@@ -140,6 +146,16 @@ impl<const D: usize> Step<D> {
         })
     }
 
+    /// Turns a tool about its reference point by a total angle \[rad\] since its first position:
+    /// counter-clockwise in the plane, and about `axis` in space, which has any length.
+    pub fn turn(self, name: &str, axis: [f64; 3], angle: f64) -> Self {
+        self.with(Condition::Turn {
+            name: name.into(),
+            axis,
+            angle,
+        })
+    }
+
     /// Drives a tool along an axis by a total force on it \[N\], which it hands on to what it touches;
     /// it moves along that axis as this asks, whatever [`Step::tool`] says of it. Along the others
     /// it stays where it is or moves as it is told.
@@ -165,6 +181,9 @@ pub struct Loading<const D: usize> {
     pub displacement: BTreeMap<usize, f64>,
     /// Applied forces \[N\].
     pub force: SparseVector,
+    /// How far tools have turned \[rad\]: of tool k the components 3k, 3k + 1 and 3k + 2 of a vector along
+    /// the axis, as long as the angle.
+    pub turn: SparseVector,
 }
 
 impl<const D: usize> Loading<D> {
@@ -187,7 +206,13 @@ impl<const D: usize> Loading<D> {
                 })
                 .collect(),
             force: self.force.with(&end.force, mix),
+            turn: self.turn.with(&end.turn, mix),
         }
+    }
+
+    /// How far a tool has turned.
+    pub(crate) fn turn_of(&self, tool: usize) -> Turn {
+        Turn::from_fn(|i, _| self.turn.at(3 * tool + i))
     }
 
     /// The first number that is not finite, or that is of none of so many degrees of freedom; nodes
@@ -222,6 +247,11 @@ impl<const D: usize> Loading<D> {
                 return Err(error(format!("force f_{axis} on {}", place(node)), f));
             }
         }
+        for (k, angle) in self.turn.iter() {
+            if !angle.is_finite() {
+                return Err(error(format!("turn of tool {}", k / 3), angle));
+            }
+        }
         Ok(())
     }
 
@@ -231,9 +261,9 @@ impl<const D: usize> Loading<D> {
         let motions = |l: &Self| -> Vec<f64> { l.displacement.values().copied().collect() };
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let (new, old) = (motions(self), motions(previous));
-        let moved = dot(&old, &old);
+        let moved = dot(&old, &old) + previous.turn.inner(&previous.turn);
         if moved > 0.0 {
-            return dot(&new, &old) / moved;
+            return (dot(&new, &old) + self.turn.inner(&previous.turn)) / moved;
         }
         let loaded = previous.force.inner(&previous.force);
         if loaded > 0.0 {
@@ -252,6 +282,7 @@ impl<const D: usize> Loading<D> {
                 .map(|(d, &u)| (*d, u - start.displacement.get(d).copied().unwrap_or(u)))
                 .collect(),
             force: self.force.with(&start.force, |b, a| b - a),
+            turn: self.turn.with(&start.turn, |b, a| b - a),
         }
     }
 }

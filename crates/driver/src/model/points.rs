@@ -4,13 +4,48 @@ use crate::error::ModelError;
 use moreau_contact::{Obstacle, frame};
 use moreau_laws::{Friction, Local};
 use moreau_mesh::{MortarRow, NodeKind, nearest};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
 use std::collections::BTreeMap;
 
 /// A rigid tool.
 pub(crate) struct Tool<const D: usize> {
     pub(crate) name: String,
     pub(crate) obstacle: Box<dyn Obstacle<D>>,
+    /// What it turns about, where it was first \[mm\].
+    pub(crate) reference: SVector<f64, D>,
+}
+
+/// How far a tool has turned: a vector along the axis, as long as the angle \[rad\]. In the plane its third
+/// component counts, counter-clockwise.
+pub(crate) type Turn = Vector3<f64>;
+
+/// The rotation of a turn.
+fn rotation<const D: usize>(turn: &Turn) -> SMatrix<f64, D, D> {
+    let all = Rotation3::new(*turn).into_inner();
+    SMatrix::from_fn(|i, j| all[(i, j)])
+}
+
+impl<const D: usize> Tool<D> {
+    /// A place that has moved with the tool, but not turned, once that has turned: x_r + R (x − x_r).
+    pub(crate) fn turned(&self, x: SVector<f64, D>, turn: &Turn) -> SVector<f64, D> {
+        self.reference + turned(x - self.reference, turn)
+    }
+
+    /// A place relative to where the tool has moved, as the tool sees it: x_r + Rᵀ (x − x_r).
+    pub(crate) fn seen(&self, x: SVector<f64, D>, turn: &Turn) -> SVector<f64, D> {
+        match turn.norm() > 0.0 {
+            true => self.turned(x, &-turn),
+            false => x,
+        }
+    }
+}
+
+/// R v.
+pub(crate) fn turned<const D: usize>(v: SVector<f64, D>, turn: &Turn) -> SVector<f64, D> {
+    match turn.norm() > 0.0 {
+        true => rotation::<D>(turn) * v,
+        false => v,
+    }
 }
 
 /// Index of a tool by its name.
@@ -192,6 +227,8 @@ pub(crate) struct Kinematics<const D: usize> {
     pub(crate) active: [bool; D],
     /// Whether the point is at a sharp corner of its tool.
     pub(crate) at_corner: bool,
+    /// ∂n/∂x of what is opposite, where forces turn with it \[1/mm\].
+    pub(crate) curvature: SMatrix<f64, D, D>,
     /// The law between them.
     pub(crate) law: Friction,
 }
@@ -267,6 +304,7 @@ impl<const D: usize> Kinematics<D> {
             gap,
             active: [false; D],
             at_corner: false,
+            curvature: SMatrix::zeros(),
             law,
         }
     }

@@ -47,7 +47,8 @@ impl<const D: usize> Driver<D> {
         let certificate = Certificate::new(&laws, &obeying, &forces);
         let contact = self.contact_forces(&kinematics, &forces);
         let work = self.external_work((start, end), &d_u, &internal, &contact)
-            + self.closing_work(&kinematics, &contacts, &d_u);
+            + self.closing_work(&kinematics, &contacts, &d_u)
+            + self.turning_work((start, end), &d_u, &contacts);
         let (energies, plastic_fraction) = self.energies_after(work, &kinematics, &contacts);
         all_finite(&energies, &certificate, &d_u)?;
         for block in &mut self.blocks {
@@ -218,6 +219,28 @@ impl<const D: usize> Driver<D> {
             work += 0.5 * (before + after) * d_u[dof];
         }
         work
+    }
+
+    /// Work of turning tools over the increment, by the trapezoidal rule.
+    fn turning_work(
+        &self,
+        (start, end): (&Loading<D>, &Loading<D>),
+        d_u: &[f64],
+        contacts: &[ContactRecord<D>],
+    ) -> f64 {
+        let rest = vec![0.0; d_u.len()];
+        let of = |tool: usize| {
+            let by = end.turn_of(tool) - start.turn_of(tool);
+            let [before, after] = match by.norm() > 0.0 {
+                true => [
+                    self.moment(tool, &rest, &self.state.contacts),
+                    self.moment(tool, d_u, contacts),
+                ],
+                false => return 0.0,
+            };
+            0.5 * (before + after).dot(&by)
+        };
+        (0..self.tools.len()).map(of).sum()
     }
 
     /// What the trapezoidal rule makes the normal parts of contact forces do, less what springs of a penalty

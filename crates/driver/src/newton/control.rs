@@ -53,6 +53,7 @@ impl Control<'_> {
     pub(crate) fn loading<const D: usize>(&self, start: &Loading<D>) -> Loading<D> {
         let grown = |f, q| f + (self.factor - self.start) * q;
         Loading {
+            turn: start.turn.clone(),
             displacement: start.displacement.clone(),
             force: start.force.with(self.load, grown),
         }
@@ -90,7 +91,7 @@ impl<const D: usize> Driver<D> {
         let outcome = self.balance(&mut system, increment, watch);
         self.system = Some(system);
         let candidate = outcome?;
-        self.check_passage(&candidate.d_u)?;
+        self.check_passage(&candidate.d_u, &start)?;
         (control.factor <= 1.0)
             .then(|| self.commit(&start, &control.loading(&start), candidate))
             .transpose()

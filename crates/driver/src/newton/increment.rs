@@ -65,7 +65,8 @@ impl<'a, 'c, const D: usize> Increment<'a, 'c, D> {
     /// Whether the next step moves tools: the first, where some are prescribed to move.
     fn moves_tools(&self, first_tool: usize) -> bool {
         let (start, end) = (&self.start.displacement, &self.end.displacement);
-        self.counts.newton == 1 && !start.range(first_tool..).eq(end.range(first_tool..))
+        let moves = !start.range(first_tool..).eq(end.range(first_tool..));
+        self.counts.newton == 1 && (moves || self.start.turn != self.end.turn)
     }
 
     /// Takes note of what the system did since `before`, its counts at the start.
@@ -97,7 +98,7 @@ impl<const D: usize> Driver<D> {
             }
             other => other?,
         };
-        self.check_passage(&candidate.d_u)?;
+        self.check_passage(&candidate.d_u, end)?;
         self.commit(start, end, candidate)
     }
 
@@ -323,7 +324,7 @@ impl<const D: usize> Driver<D> {
             false => increment.iterate.once_arrived(&balance.residual),
         };
         increment.counts.newton += 1;
-        self.renew_tangent(system, increment, balance.largest, balance.accepted)?;
+        self.renew_tangent(system, increment, &balance)?;
         // What a tool has moved is missing in the first iterate as well.
         let moved = increment.moves_tools(self.mesh_dofs());
         let flows = increment.iterate.assembly.flows;
@@ -387,16 +388,21 @@ impl<const D: usize> Driver<D> {
         &mut self,
         system: &mut System,
         increment: &mut Increment<'_, '_, D>,
-        imbalance: f64,
-        accepted: f64,
+        balance: &Balance<D>,
     ) -> Result<(), IncrementError> {
+        let (imbalance, accepted) = (balance.largest, balance.accepted);
         let worth = system.steps_per_factorisation();
         // What a symmetric tangent lacks is that of its own iterate.
         let serves = self.is_symmetric()
             && increment.has_arrived()
             && increment.chord.serves(imbalance, accepted, worth);
         if !serves {
-            self.linearise(system, &mut increment.iterate, &increment.missing)?;
+            let force = match &increment.solution {
+                Some(solution) => solution.force.clone(),
+                None => self.previous_forces(&balance.kinematics),
+            };
+            let contact = (balance.kinematics.as_slice(), force.as_slice());
+            self.linearise(system, &mut increment.iterate, &increment.missing, contact)?;
         }
         increment.chord.begin(imbalance, !serves);
         Ok(())

@@ -111,7 +111,7 @@ impl<const D: usize> Driver<D> {
                 status: &response.status,
             });
             if left <= tolerance * scale {
-                self.check_passage(&iterate.d_u)?;
+                self.check_passage(&iterate.d_u, end)?;
                 increment.count(system);
                 let out_of_balance = largest(residual.into_iter());
                 let candidate = candidate(increment, uzawa.force, response, out_of_balance);

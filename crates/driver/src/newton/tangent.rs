@@ -5,29 +5,64 @@ use crate::driver::Driver;
 use crate::error::{IncrementError, ModelError};
 use crate::linear::system::System;
 use crate::model::load::axis_letter;
+use crate::model::points::Kinematics;
 use crate::newton::iterate::Iterate;
 use crate::vector::SparseVector;
+use moreau_laws::Local;
 
 /// Parts of what flow adds to the stiffness that are tried in turn where the tangent is a mechanism.
 const BLENDS: [f64; 4] = [1.0 - 1e-4, 0.99, 0.8, 0.0];
 
 impl<const D: usize> Driver<D> {
-    /// Makes the system that of the tangent at an iterate: factorised, where contacts are not tied in its
-    /// factor.
+    /// Makes the system that of the tangent at an iterate, under contact forces in the frames of their points:
+    /// factorised, where contacts are not tied in its factor.
     pub(crate) fn linearise(
         &mut self,
         system: &mut System,
         now: &mut Iterate,
         missing: &SparseVector,
+        contact: (&[Kinematics<D>], &[Local<D>]),
     ) -> Result<(), IncrementError> {
-        if !system.is_tied() {
-            return self.factorise(system, now, missing);
-        }
-        if !now.assembly.stiffness {
+        let turns = self.has_large_strains();
+        if !now.assembly.stiffness && (turns || system.is_tied()) {
             let tangent = Stiffness::Plastic(1.0);
             now.assembly = self.assemble(system, &now.d_u, missing, tangent);
         }
-        Ok(())
+        if turns {
+            self.add_turning(system, contact);
+        }
+        match system.is_tied() {
+            true => Ok(()),
+            false => self.factorise(system, now, missing),
+        }
+    }
+
+    /// Adds the stiffness of contact forces that turn with the normal of their tool, W = ∂n/∂x: the force n t_n + τ
+    /// changes by t_n W v − n (τ · W v). Where n is held, as in contact, its symmetric part is as good:
+    /// −t_n W + n ⊗ W τ + W τ ⊗ n. That of a tool that is driven by its force is left out.
+    fn add_turning(
+        &self,
+        system: &mut System,
+        (kinematics, force): (&[Kinematics<D>], &[Local<D>]),
+    ) {
+        for ((motion_row, k), t) in self.motion_rows.iter().zip(kinematics).zip(force) {
+            if k.curvature.amax() == 0.0 || t.norm() == 0.0 {
+                continue;
+            }
+            let n = k.axes.column(0);
+            let along = k.curvature * (k.force(t) - n * t[0]);
+            let own = n * along.transpose();
+            let stiffness = own + own.transpose() - k.curvature * t[0];
+            for &(a, w) in &motion_row.own {
+                for &(b, v) in &motion_row.own {
+                    let entry = |ij: usize| {
+                        let (i, j) = (ij / D, ij % D);
+                        (D * a + i, D * b + j, w * v * stiffness[(i, j)])
+                    };
+                    system.add((0..D * D).map(entry));
+                }
+            }
+        }
     }
 
     /// Factorises the tangent at an iterate. Where that is a mechanism, as a plastic tangent may be

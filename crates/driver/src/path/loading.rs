@@ -4,7 +4,7 @@
 use crate::driver::Driver;
 use crate::error::ModelError;
 use crate::model::load::{Condition, Loading, Step, axis_letter};
-use crate::model::points::tool_index;
+use crate::model::points::{Turn, tool_index};
 use std::collections::BTreeMap;
 
 impl<const D: usize> Driver<D> {
@@ -68,7 +68,7 @@ impl<const D: usize> Driver<D> {
                         add(node, share, density);
                     }
                 }
-                Condition::Tool { .. } | Condition::Push { .. } => {}
+                Condition::Tool { .. } | Condition::Turn { .. } | Condition::Push { .. } => {}
             }
         }
         // A tool that is not mentioned stays where it is.
@@ -78,6 +78,15 @@ impl<const D: usize> Driver<D> {
             if let Condition::Tool { name, displacement } = condition {
                 let node = self.tool_node(tool_index(&self.tools, name)?);
                 moved.extend((0..D).map(|i| (D * node + i, displacement[i])));
+            }
+        }
+        // Nor does one turn on.
+        loading.turn = self.state.loading.turn.clone();
+        for condition in &step.conditions {
+            if let Condition::Turn { name, axis, angle } = condition {
+                let tool = tool_index(&self.tools, name)?;
+                let turn = self.turn(name, axis, *angle)? - loading.turn_of(tool);
+                (0..3).for_each(|i| loading.turn.add(3 * tool + i, turn[i]));
             }
         }
         for condition in &step.conditions {
@@ -101,6 +110,32 @@ impl<const D: usize> Driver<D> {
         loading.displacement = moved;
         loading.check(self.mesh.nodes().len(), self.state.displacement.len())?;
         Ok(loading)
+    }
+
+    /// A turn of a tool about an axis of any length by an angle \[rad\].
+    fn turn(&self, name: &str, axis: &[f64; 3], angle: f64) -> Result<Turn, ModelError> {
+        let axis = Turn::from(*axis);
+        let unit = axis
+            .try_normalize(0.0)
+            .filter(|a| a.iter().all(|x| x.is_finite()));
+        let Some(unit) = unit.filter(|a| D == 3 || a.z.abs() == 1.0) else {
+            return Err(ModelError::OutOfRange {
+                what: format!("axis that tool {name:?} turns about, its length"),
+                value: axis.norm(),
+                expected: match D {
+                    3 => "a positive number",
+                    _ => "that of a normal of the plane",
+                },
+            });
+        };
+        if self.measure.rigid_modes(&[1.0; D]).len() < 3 {
+            return Err(ModelError::OutOfRange {
+                what: format!("turn of tool {name:?}"),
+                value: angle,
+                expected: "none: the analysis lets no tool turn",
+            });
+        }
+        Ok(unit * angle)
     }
 
     /// The loading that holds now, with the prescribed displacements of `end`: those that are new

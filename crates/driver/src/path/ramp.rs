@@ -147,7 +147,7 @@ impl<const D: usize> Ramp<D> {
 
     /// Whether something that the step prescribes is moved.
     fn moves(&self) -> bool {
-        self.start.displacement != self.end.displacement
+        self.start.displacement != self.end.displacement || self.start.turn != self.end.turn
     }
 
     /// Takes note of an increment from λ = `before`, and of the work that the loads of the whole step
