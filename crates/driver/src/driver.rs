@@ -134,8 +134,8 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// Whether displacements change the stiffness.
-    pub(crate) fn has_large_strains(&self) -> bool {
+    /// Whether strains and rotations are large: displacements change the stiffness.
+    pub fn has_large_strains(&self) -> bool {
         !self.blocks.iter().all(|b| b.keeps_elastic_stiffness())
     }
 
@@ -298,7 +298,7 @@ impl<const D: usize> Driver<D> {
         let mut before = 0;
         for block in &self.blocks {
             let points = block.points(&self.state.displacement).len();
-            for own in block.fields() {
+            for own in block.fields(&self.state.displacement) {
                 let same = |f: &PointField| (&f.name, f.components) == (&own.name, own.components);
                 match all.iter_mut().find(|f| same(f)) {
                     Some(field) => field.values.extend(own.values),

@@ -3,8 +3,8 @@
 
 use crate::bulk::{BulkLaw, Numbers};
 use moreau_mandel::{
-    GradientTangent, Spectrum, Sym2, Sym4, from_matrix, logarithmic_slope, rotation, to_matrix,
-    trace,
+    GradientTangent, Spectrum, Sym2, Sym4, from_matrix, logarithmic_slope, of_gradients, rotation,
+    to_matrix, trace,
 };
 use nalgebra::{Matrix3, SVector};
 
@@ -58,12 +58,35 @@ pub struct LargeResponse<S> {
     /// Of b − 1 of the trial.
     trial: Spectrum,
     turn: Turn,
+    is_isotropic: bool,
 }
 
 impl<S> LargeResponse<S> {
     /// ∂τ/∂l at the end of the step \[MPa\], of the gradient l = ∂v/∂x there, with a tangent of the law in the
     /// frame; where a dilatation was given, of a gradient whose trace is its rate.
     pub fn tangent(&self, of_law: &Sym4) -> GradientTangent {
+        match self.is_isotropic {
+            true => self.isotropic_tangent(of_law),
+            false => self.turning_tangent(of_law),
+        }
+    }
+
+    /// Where the frame does not matter: of the strain as space sees it. In its directions
+    /// ėᵢⱼ = ½ (lᵢⱼ bⱼ + lⱼᵢ bᵢ) (ln bᵢ − ln bⱼ)/(bᵢ − bⱼ).
+    fn isotropic_tangent(&self, of_law: &Sym4) -> GradientTangent {
+        let q = &self.trial.directions;
+        let r = rotation(&(q.transpose() * self.state.frame));
+        let mut own = of_gradients(&(r * of_law * r.transpose()));
+        let b = self.trial.values.map(|b| 1.0 + b);
+        for (k, m) in [(0, 1), (0, 2), (1, 2)] {
+            let slope = logarithmic_slope(b[k], b[m]);
+            own.column_mut(3 * k + m).scale_mut(slope * b[m]);
+            own.column_mut(3 * m + k).scale_mut(slope * b[k]);
+        }
+        in_space(&own, q)
+    }
+
+    fn turning_tangent(&self, of_law: &Sym4) -> GradientTangent {
         let q = rotation(&self.state.frame);
         let c = q * of_law * q.transpose();
         let mut tangent = GradientTangent::zeros();
@@ -141,7 +164,28 @@ pub fn respond_large<L: BulkLaw>(
         strain,
         trial,
         turn,
+        is_isotropic: law.is_isotropic(),
     })
+}
+
+/// A tensor aᵢⱼₖₘ of the directions in the columns of q, in space.
+fn in_space(a: &GradientTangent, q: &Matrix3<f64>) -> GradientTangent {
+    let mut inner = [[Matrix3::zeros(); 3]; 3];
+    for (i, k) in (0..3).flat_map(|i| (0..3).map(move |k| (i, k))) {
+        let block: Matrix3<f64> = a.fixed_view::<3, 3>(3 * i, 3 * k).into();
+        inner[i][k] = q * block * q.transpose();
+    }
+    let mut out = GradientTangent::zeros();
+    for i in 0..3 {
+        let row: [Matrix3<f64>; 3] = std::array::from_fn(|b| {
+            inner[0][b] * q[(i, 0)] + inner[1][b] * q[(i, 1)] + inner[2][b] * q[(i, 2)]
+        });
+        for k in 0..3 {
+            let block = row[0] * q[(k, 0)] + row[1] * q[(k, 1)] + row[2] * q[(k, 2)];
+            out.fixed_view_mut::<3, 3>(3 * i, 3 * k).copy_from(&block);
+        }
+    }
+    out
 }
 
 /// det(1 + h) − 1, without loss where h is small.

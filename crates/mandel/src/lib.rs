@@ -18,7 +18,7 @@ mod spectral;
 pub use spectral::{Spectrum, logarithmic_slope};
 
 use nalgebra::{Matrix3, SMatrix, SVector};
-use std::f64::consts::SQRT_2;
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 /// Symmetric second-order tensor: `[11, 22, 33, √2·23, √2·13, √2·12]`, so that a : b = a·b.
 pub type Sym2 = SVector<f64, 6>;
@@ -129,13 +129,25 @@ pub fn to_matrix(a: &Sym2) -> Matrix3<f64> {
 
 /// The 6×6 matrix of a ↦ Q a Qᵀ for an orthogonal Q; itself orthogonal.
 pub fn rotation(q: &Matrix3<f64>) -> Sym4 {
-    let mut r = Sym4::zeros();
-    for k in 0..6 {
-        let mut basis = Sym2::zeros();
-        basis[k] = 1.0;
-        r.set_column(k, &from_matrix(&(q * to_matrix(&basis) * q.transpose())));
-    }
-    r
+    const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
+    Sym4::from_fn(|a, b| {
+        let ((i, j), (k, m)) = (PAIRS[a], PAIRS[b]);
+        match (a < 3, b < 3) {
+            (true, true) => q[(i, k)] * q[(i, k)],
+            (false, false) => q[(i, k)] * q[(j, m)] + q[(i, m)] * q[(j, k)],
+            _ => SQRT_2 * q[(i, k)] * q[(j, m)],
+        }
+    })
+}
+
+/// A tensor with minor symmetries as one that works on gradients: cᵢⱼₖₘ at (3 i + j, 3 k + m).
+pub fn of_gradients(c: &Sym4) -> GradientTangent {
+    const MANDEL: [usize; 9] = [0, 5, 4, 5, 1, 3, 4, 3, 2];
+    let factor = |row: usize| if row < 3 { 1.0 } else { FRAC_1_SQRT_2 };
+    GradientTangent::from_fn(|r, s| {
+        let (r, s) = (MANDEL[r], MANDEL[s]);
+        factor(r) * factor(s) * c[(r, s)]
+    })
 }
 
 #[cfg(test)]

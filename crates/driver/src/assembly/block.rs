@@ -112,8 +112,8 @@ pub trait Block<const D: usize>: Send + Sync {
     fn points(&self, u: &[f64]) -> Vec<PointState<D>>;
 
     /// The fields that the law has of its own, in the committed state at every quadrature point, in the
-    /// order of [`Block::points`].
-    fn fields(&self) -> Vec<PointField> {
+    /// order of [`Block::points`], and those of large strains; `u` has an entry a degree of freedom of the mesh.
+    fn fields(&self, _u: &[f64]) -> Vec<PointField> {
         Vec::new()
     }
 
@@ -400,26 +400,36 @@ impl<C: CellLaw<D>, const D: usize> Block<D> for SolidBlock<C, D> {
         points
     }
 
-    fn fields(&self) -> Vec<PointField> {
+    fn fields(&self, u: &[f64]) -> Vec<PointField> {
         let mut fields: Vec<PointField> = Vec::new();
-        for state in &self.old {
+        let count = self.cells.points_per_cell();
+        let mut gradient = [Matrix3::zeros(); MAX_POINTS];
+        for (point, state) in self.old.iter().enumerate() {
+            if point % count == 0 {
+                self.cells
+                    .gradient(point / count, u, &mut gradient[..count]);
+            }
             let mut index = 0;
-            self.of_cell
-                .law()
-                .fields(C::material(state), &mut |name, values| {
-                    if index == fields.len() {
-                        fields.push(PointField {
-                            name: name.to_owned(),
-                            components: values.len(),
-                            values: Vec::with_capacity(values.len() * self.old.len()),
-                        });
-                    }
-                    match C::frame(state) {
-                        Some(frame) => fields[index].values.extend(turned(&frame, values)),
-                        None => fields[index].values.extend(values),
-                    }
-                    index += 1;
-                });
+            let mut add = |name: &str, values: &[f64]| {
+                if index == fields.len() {
+                    fields.push(PointField {
+                        name: name.to_owned(),
+                        components: values.len(),
+                        values: Vec::with_capacity(values.len() * self.old.len()),
+                    });
+                }
+                fields[index].values.extend(values);
+                index += 1;
+            };
+            C::fields(&gradient[point % count], &mut add);
+            let law = self.of_cell.law();
+            law.fields(
+                C::material(state),
+                &mut |name, values| match C::frame(state) {
+                    Some(frame) => add(name, &turned(&frame, values)),
+                    None => add(name, values),
+                },
+            );
         }
         fields
     }

@@ -112,6 +112,10 @@ pub trait CellLaw<const D: usize>: 'static + Send + Sync {
     /// Cauchy stress of a point where the displacements have this gradient \[MPa\].
     fn stress(&self, state: &Self::State, gradient: &Matrix3<f64>) -> Sym2;
 
+    /// Fields of what the displacements do to a point where they have this gradient, by name and components,
+    /// beside those of the law.
+    fn fields(_gradient: &Matrix3<f64>, _sink: &mut dyn FnMut(&str, &[f64])) {}
+
     /// The frame in which the tensors of the material are, where that is not space.
     fn frame(state: &Self::State) -> Option<Matrix3<f64>>;
 }

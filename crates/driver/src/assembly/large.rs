@@ -4,7 +4,7 @@
 use crate::assembly::cell_law::{CellLaw, CellOutput, Motion, Stiffness};
 use crate::assembly::cells::{Cells, MAX_POINTS};
 use moreau_laws::{BulkLaw, FlowPower, LargeResponse, Turned, respond_large, volume_change};
-use moreau_mandel::{GradientTangent, Sym2, Sym4};
+use moreau_mandel::{GradientTangent, Spectrum, Sym2, from_matrix, of_gradients};
 use nalgebra::{Matrix3, SMatrix, SVector};
 
 /// A law of small strains under large ones: [`respond_large`].
@@ -38,11 +38,15 @@ struct Mean {
 
 /// A cell at the end of a step.
 struct Cell<S> {
-    points: Vec<Point<S>>,
+    points: [Option<Point<S>>; MAX_POINTS],
     mean: Option<Mean>,
 }
 
 impl<S> Cell<S> {
+    fn points(&self) -> impl Iterator<Item = &Point<S>> {
+        self.points.iter().map_while(Option::as_ref)
+    }
+
     /// Stress in balance with the forces: τ, or dev τ + J P̄ 1.
     fn stress(&self, point: &Point<S>) -> Matrix3<f64> {
         let mut stress = point.response.stress;
@@ -61,10 +65,12 @@ impl<S> Cell<S> {
         force: &mut [f64],
     ) {
         let mut flux = [Matrix3::zeros(); MAX_POINTS];
-        for (flux, point) in flux.iter_mut().zip(&self.points) {
+        let mut count = 0;
+        for (flux, point) in flux.iter_mut().zip(self.points()) {
             *flux = tensor(point) * point.inverse.transpose();
+            count += 1;
         }
-        cells.gradient_force(k, &flux[..self.points.len()], force);
+        cells.gradient_force(k, &flux[..count], force);
     }
 }
 
@@ -101,14 +107,14 @@ impl<L: BulkLaw> Large<L> {
         }
         let dilatation = (change / volume).ln_1p();
         let dilatation = cells.averages_dilatation().then_some(dilatation);
-        let mut points = Vec::with_capacity(count);
+        let mut points = [const { None }; MAX_POINTS];
         let mut pressure = 0.0;
         for g in 0..count {
             let response = respond_large(&self.0, &old[g], &step[g], dilatation)?;
             let now = (Matrix3::identity() + step[g]) * before[g];
             let weight = cells.weight(k * count + g);
             pressure += weight * response.stress.trace() / 3.0;
-            points.push(Point {
+            points[g] = Some(Point {
                 response,
                 inverse: now.try_inverse()?,
                 jacobian: now.determinant(),
@@ -130,9 +136,9 @@ impl<L: BulkLaw> Large<L> {
         part: f64,
         complete: bool,
     ) -> GradientTangent {
-        let elastic = from_law(&self.0.elastic_tangent());
+        let elastic = || of_gradients(&self.0.elastic_tangent());
         if part == 0.0 {
-            return elastic;
+            return elastic();
         }
         let mut of_law = point.response.law_tangent;
         if complete {
@@ -141,7 +147,7 @@ impl<L: BulkLaw> Large<L> {
         let tangent = point.response.tangent(&of_law);
         match part == 1.0 {
             true => tangent,
-            false => elastic + (tangent - elastic) * part,
+            false => elastic() * (1.0 - part) + tangent * part,
         }
     }
 
@@ -158,7 +164,7 @@ impl<L: BulkLaw> Large<L> {
         let mut left = [Matrix3::zeros(); MAX_POINTS];
         let mut right = [Matrix3::zeros(); MAX_POINTS];
         let mut bulk = 0.0;
-        for (g, point) in cell.points.iter().enumerate() {
+        for (g, point) in cell.points().enumerate() {
             let mut a = self.tangent((&old[g], point), part, complete);
             if let Some(mean) = cell.mean {
                 let by_dilatation = column_mean(&a);
@@ -189,7 +195,7 @@ impl<L: BulkLaw> Large<L> {
             right: [0.0; MOST],
             bulk: (bulk / mean.volume - part * mean.pressure) / mean.volume,
         };
-        let (count, size) = (cell.points.len(), D * cells.nodes(k).len());
+        let (count, size) = (old.len(), D * cells.nodes(k).len());
         cells.gradient_force(k, &left[..count], &mut coupling.left[..size]);
         cells.gradient_force(k, &right[..count], &mut coupling.right[..size]);
         let dilates = |p: &Point<L::State>| Matrix3::identity() * p.jacobian;
@@ -231,7 +237,7 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Large<L> {
             out.stiffness.fill(f64::NAN);
             return true;
         };
-        for (new, point) in out.new.iter_mut().zip(&cell.points) {
+        for (new, point) in out.new.iter_mut().zip(cell.points()) {
             *new = point.response.state;
         }
         cell.force(of, |point| cell.stress(point), out.force);
@@ -337,25 +343,16 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Large<L> {
         state.in_space(&self.0.stress(&state.material)) / (1.0 + volume_change(gradient))
     }
 
+    fn fields(gradient: &Matrix3<f64>, sink: &mut dyn FnMut(&str, &[f64])) {
+        sink("jacobian", &[1.0 + volume_change(gradient)]);
+        let stretch = gradient + gradient.transpose() + gradient * gradient.transpose();
+        let strain = Spectrum::new(&stretch).map(|b| 0.5 * b.ln_1p());
+        sink("logarithmic_strain", from_matrix(&strain).as_slice());
+    }
+
     fn frame(state: &Self::State) -> Option<Matrix3<f64>> {
         Some(state.frame)
     }
-}
-
-/// A tensor with minor symmetries, of gradients.
-fn from_law(c: &Sym4) -> GradientTangent {
-    const MANDEL: [usize; 9] = [0, 5, 4, 5, 1, 3, 4, 3, 2];
-    let factor = |row: usize| {
-        if row < 3 {
-            1.0
-        } else {
-            std::f64::consts::FRAC_1_SQRT_2
-        }
-    };
-    GradientTangent::from_fn(|r, s| {
-        let (r, s) = (MANDEL[r], MANDEL[s]);
-        factor(r) * factor(s) * c[(r, s)]
-    })
 }
 
 /// a : ⅓ 1.

@@ -9,7 +9,7 @@ mod parts;
 mod penetrations;
 mod slips;
 
-use super::entries::{Analysis, Deck, Method};
+use super::entries::{Action, Analysis, Deck, Method};
 use super::finding::{Class, Findings};
 use crate::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
 use crate::driver::{
@@ -72,8 +72,10 @@ pub struct Setup<const D: usize> {
     pub held: Vec<[String; 2]>,
     /// Tools, in the order of the deck.
     pub tools: Vec<String>,
-    /// Surfaces of bodies that touch each other and are not held: each once, in the order of the
-    /// contacts.
+    /// Whether tools have moments worth telling: where strains are large, or a tool turns.
+    pub moments: bool,
+    /// Surfaces of bodies that touch each other, and probes, that are not held: each once, in the order of the
+    /// contacts and of the probes.
     pub surfaces: Vec<String>,
     /// Groups of the mesh.
     pub groups: Vec<GroupFacts>,
@@ -141,6 +143,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
         }
     }
     let deck = &*deck;
+    unfinished(deck, findings);
     names::check(deck, groups.as_ref(), findings);
     let parts = parts::parts(deck, findings);
     let groups = groups?;
@@ -177,6 +180,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
         driver,
         stages,
         surfaces: surfaces(deck, &held),
+        moments: moments(deck),
         held,
         tools: deck.tools.iter().map(|t| t.name.value.clone()).collect(),
         groups: groups.facts(&hypothesis),
@@ -250,7 +254,38 @@ fn driver<const D: usize>(
     }
 }
 
-/// Surfaces of the contacts between bodies, without those whose name the history has already.
+fn moments(deck: &Deck) -> bool {
+    let mut all = deck.steps.iter().flat_map(|s| &s.conditions);
+    let turns = all.any(|c| matches!(c.action, Action::Tool(_, Some(_))));
+    deck.analysis != Analysis::Axisymmetric && (turns || deck.finite.is_some())
+}
+
+/// What large strains do not go with.
+fn unfinished(deck: &Deck, findings: &mut Findings) {
+    let Some(finite) = &deck.finite else { return };
+    let mut refuse = |problem: &str, remedy: &str| {
+        findings.error_with(
+            &finite.span,
+            format!("strain = \"finite\" with {problem}"),
+            "not with this",
+            remedy,
+        );
+    };
+    if deck.steps.iter().any(|s| s.until_collapse) {
+        refuse(
+            "until = \"collapse\": a limit load is that of the undeformed structure",
+            "strain = \"small\"",
+        );
+    }
+    if deck.solver.outside {
+        refuse(
+            "nesting = \"outside\": the nesting of the paper is one for small strains",
+            "nesting = \"inside\"",
+        );
+    }
+}
+
+/// Surfaces of the contacts between bodies, and probes, without those whose name the history has already.
 fn surfaces(deck: &Deck, held: &[[String; 2]]) -> Vec<String> {
     let is_tool = |name: &String| deck.tools.iter().any(|t| t.name.value == *name);
     let is_held = |name: &String| held.iter().any(|[n, _]| n == name);
@@ -260,6 +295,11 @@ fn surfaces(deck: &Deck, held: &[[String; 2]]) -> Vec<String> {
             if !list.contains(name) && !is_held(name) {
                 list.push(name.clone());
             }
+        }
+    }
+    for probe in deck.probes.iter().map(|p| &p.value) {
+        if !list.contains(probe) && !is_held(probe) {
+            list.push(probe.clone());
         }
     }
     list

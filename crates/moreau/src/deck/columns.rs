@@ -53,18 +53,30 @@ impl Unit {
 }
 
 /// Names and units: those of every history, then force and displacement of the groups that are
-/// held or moved, of the tools, and of the surfaces of bodies that touch each other; then the largest
+/// held or moved, of the tools, with their moments where they may turn, and of the surfaces of bodies that touch each other; then the largest
 /// size of every field that a law has of its own.
 pub(crate) fn columns<const D: usize>(setup: &Setup<D>) -> Vec<(String, Unit)> {
     let mut list: Vec<(String, Unit)> = FIXED.iter().map(|(n, u)| ((*n).into(), *u)).collect();
-    let held = setup.held.iter().map(|[name, _]| name);
-    for name in held.chain(&setup.tools).chain(&setup.surfaces) {
+    let add = |list: &mut Vec<_>, name: &String| {
         for (what, unit) in [("force", Unit::Force), ("u", Unit::Length)] {
             for axis in &AXES[..D] {
                 list.push((format!("{what}.{name}.{axis}"), unit));
             }
         }
+    };
+    setup.held.iter().for_each(|[name, _]| add(&mut list, name));
+    for name in &setup.tools {
+        add(&mut list, name);
+        match (setup.moments, D) {
+            (false, _) => {}
+            (true, 3) => {
+                let of = |axis| (format!("moment.{name}.{axis}"), Unit::Energy);
+                list.extend(AXES.map(of));
+            }
+            (true, _) => list.push((format!("moment.{name}"), Unit::Energy)),
+        }
     }
+    setup.surfaces.iter().for_each(|name| add(&mut list, name));
     for field in setup.driver.fields() {
         let unit = match field.name.contains("stress") {
             true => Unit::Stress,

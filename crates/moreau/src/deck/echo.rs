@@ -56,7 +56,7 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
         contact(entry, out)?;
     }
     for entry in &deck.steps {
-        step(entry, out)?;
+        step(entry, deck.analysis.dimension(), out)?;
     }
     tail(deck, out)
 }
@@ -65,6 +65,12 @@ fn head(deck: &Deck, out: &mut String) -> fmt::Result {
     writeln!(out, "title = {}", text(&deck.title))?;
     writeln!(out, "units = \"{}\"", deck.units.name())?;
     writeln!(out, "analysis = \"{}\"", deck.analysis.name())?;
+    let strain = if deck.finite.is_some() {
+        "finite"
+    } else {
+        "small"
+    };
+    writeln!(out, "strain = \"{strain}\"")?;
     if deck.analysis == super::Analysis::PlaneStrain {
         writeln!(out, "thickness = {:?}", deck.thickness.value)?;
     }
@@ -112,7 +118,10 @@ fn material(deck: &Deck, material: &MaterialEntry, out: &mut String) -> fmt::Res
     writeln!(out, "poisson = {:?}", material.poisson.value)?;
     if let Some(yield_stress) = &material.yield_stress {
         writeln!(out, "yield-stress = {:?}", yield_stress.value)?;
-        let none = Hardening::Linear(0.0);
+        let none = Hardening {
+            linear: 0.0,
+            curve: None,
+        };
         let hardening = material.isotropic.as_ref().map_or(&none, |h| &h.value);
         writeln!(out, "hardening = {hardening}")?;
         let terms = material.kinematic.iter().map(|[modulus, recall]| {
@@ -156,15 +165,18 @@ fn tool(tool: &ToolEntry, out: &mut String) -> fmt::Result {
         }
         Shape::Polyline(points) => writeln!(out, "polyline = {points:?}")?,
     }
+    if let Some(reference) = &tool.reference {
+        writeln!(out, "reference = {:?}", reference.value)?;
+    }
     Ok(())
 }
 
 fn contact(contact: &ContactEntry, out: &mut String) -> fmt::Result {
-    writeln!(
-        out,
-        "\n[[contact]]\nsurface = {}",
-        text(&contact.surface.value)
-    )?;
+    let parts: Vec<String> = contact.parts.iter().map(|p| text(&p.value)).collect();
+    match parts.as_slice() {
+        [one] => writeln!(out, "\n[[contact]]\nsurface = {one}")?,
+        _ => writeln!(out, "\n[[contact]]\nsurface = [{}]", parts.join(", "))?,
+    }
     writeln!(out, "against = {}", text(&contact.against.value))?;
     writeln!(out, "friction = {}", contact.friction)?;
     if let Some(offset) = &contact.gap_offset {
@@ -178,7 +190,7 @@ fn contact(contact: &ContactEntry, out: &mut String) -> fmt::Result {
     Ok(())
 }
 
-fn step(step: &StepEntry, out: &mut String) -> fmt::Result {
+fn step(step: &StepEntry, dimension: usize, out: &mut String) -> fmt::Result {
     writeln!(out, "\n[[step]]\nname = {}", text(&step.name.value))?;
     if step.until_collapse {
         writeln!(out, "until = \"collapse\"")?;
@@ -191,14 +203,14 @@ fn step(step: &StepEntry, out: &mut String) -> fmt::Result {
             "increments = {{ start = {start:?}, min = {min:?}, max = {max:?} }}"
         )?,
     }
-    for (key, list) in lists(&step.conditions) {
+    for (key, list) in lists(&step.conditions, dimension) {
         writeln!(out, "{key} = [{}]", list.join(", "))?;
     }
     Ok(())
 }
 
 /// The conditions of a step, by key.
-fn lists(conditions: &[ConditionEntry]) -> [(&'static str, Vec<String>); 4] {
+fn lists(conditions: &[ConditionEntry], dimension: usize) -> [(&'static str, Vec<String>); 4] {
     let mut lists = [
         ("fix", Vec::new()),
         ("move", Vec::new()),
@@ -223,7 +235,18 @@ fn lists(conditions: &[ConditionEntry]) -> [(&'static str, Vec<String>); 4] {
             Action::Traction(v) => (2, format!("{{ on = {on}, traction = {v:?} }}")),
             Action::Force(v) => (2, format!("{{ on = {on}, force = {v:?} }}")),
             Action::BodyForce(v) => (2, format!("{{ on = {on}, body-force = {v:?} }}")),
-            Action::Tool(v) => (3, format!("{{ name = {on}, move = {v:?} }}")),
+            Action::Tool(motion, turn) => {
+                let motion = motion.iter().map(|v| format!(", move = {v:?}"));
+                let turn = turn.iter().map(|turn| match dimension {
+                    2 => format!(", turn = {:?}", turn.angle),
+                    _ => format!(
+                        ", turn = {{ axis = {:?}, angle = {:?} }}",
+                        turn.axis, turn.angle
+                    ),
+                });
+                let all: String = motion.chain(turn).collect();
+                (3, format!("{{ name = {on}{all} }}"))
+            }
             Action::Push(v, None) => (3, format!("{{ name = {on}, force = {v:?} }}")),
             Action::Push(v, Some(u)) => {
                 (3, format!("{{ name = {on}, move = {u:?}, force = {v:?} }}"))
@@ -263,6 +286,10 @@ fn tail(deck: &Deck, out: &mut String) -> fmt::Result {
         writeln!(out, "{key} = \"{}\"", Vtu::NAMES[which as usize])?;
     }
     writeln!(out, "checkpoint = {}", deck.checkpoint)?;
+    if !deck.probes.is_empty() {
+        let probes: Vec<String> = deck.probes.iter().map(|p| text(&p.value)).collect();
+        writeln!(out, "probes = [{}]", probes.join(", "))?;
+    }
     if !deck.expectations.is_empty() {
         writeln!(out, "\n[expect]")?;
     }

@@ -100,11 +100,18 @@ pub struct GroupEntry {
     pub part: At<Part>,
 }
 
-/// Isotropic hardening; shown as it is written in a deck.
+/// Isotropic hardening, shown as it is written in a deck: a curve, and a linear part on top.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Hardening {
-    /// Modulus.
-    Linear(f64),
+pub struct Hardening {
+    /// Modulus of the linear part.
+    pub linear: f64,
+    /// The curve; none: linear.
+    pub curve: Option<Curve>,
+}
+
+/// A curve of isotropic hardening.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Curve {
     /// Saturation and rate.
     Voce([f64; 2]),
     /// Strength, offset and exponent.
@@ -115,15 +122,17 @@ pub enum Hardening {
 
 impl fmt::Display for Hardening {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Linear(modulus) => write!(f, "{{ linear = {modulus:?} }}"),
-            Self::Voce(given) => write!(f, "{{ voce = {given:?} }}"),
-            Self::Swift(given) => write!(f, "{{ swift = {given:?} }}"),
-            Self::Table(rows) => {
+        write!(f, "{{ linear = {:?}", self.linear)?;
+        match &self.curve {
+            None => {}
+            Some(Curve::Voce(given)) => write!(f, ", voce = {given:?}")?,
+            Some(Curve::Swift(given)) => write!(f, ", swift = {given:?}")?,
+            Some(Curve::Table(rows)) => {
                 let rows: Vec<[f64; 2]> = rows.iter().map(|row| row.value).collect();
-                write!(f, "{{ table = {rows:?} }}")
+                write!(f, ", table = {rows:?}")?;
             }
         }
+        write!(f, " }}")
     }
 }
 
@@ -189,6 +198,8 @@ pub struct ToolEntry {
     pub name: At<String>,
     /// Surface.
     pub shape: At<Shape>,
+    /// What it turns about, if given.
+    pub reference: Option<At<Vec<f64>>>,
 }
 
 /// Up to which gap or penetration nodes touch where they are.
@@ -245,8 +256,10 @@ impl fmt::Display for FrictionEntry {
 /// `[[contact]]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactEntry {
-    /// Group of facets.
+    /// Group of facets: that of the deck, or that of all of the parts.
     pub surface: At<String>,
+    /// Groups of the deck that are one surface.
+    pub parts: Vec<At<String>>,
     /// Tool.
     pub against: At<String>,
     /// Friction.
@@ -268,6 +281,15 @@ pub struct ConditionEntry {
     pub span: Range<usize>,
 }
 
+/// A turn of a tool.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TurnEntry {
+    /// Along the axis; the normal of the plane in a plane analysis.
+    pub axis: [f64; 3],
+    /// Angle in degrees.
+    pub angle: f64,
+}
+
 /// What a condition does.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
@@ -283,8 +305,8 @@ pub enum Action {
     Force(Vec<f64>),
     /// Force per volume.
     BodyForce(Vec<f64>),
-    /// Translation of a tool.
-    Tool(Vec<f64>),
+    /// Translation of a tool, and its turn; at least one of both.
+    Tool(Option<Vec<f64>>, Option<TurnEntry>),
     /// Force on a tool, and its translation where no force drives it.
     Push(Vec<f64>, Option<Vec<f64>>),
 }
@@ -377,6 +399,8 @@ pub struct Deck {
     pub units: Units,
     /// Modelling hypothesis.
     pub analysis: Analysis,
+    /// Whether strains are large.
+    pub finite: Option<At<bool>>,
     /// Thickness of plane strain.
     pub thickness: At<f64>,
     /// Path of the mesh file, if there is one.
@@ -407,6 +431,8 @@ pub struct Deck {
     pub points: Vtu,
     /// Increments between checkpoints; 0: none.
     pub checkpoint: usize,
+    /// Groups whose forces and displacements are told beside those that conditions name.
+    pub probes: Vec<At<String>>,
     /// Expectations.
     pub expectations: Vec<Expectation>,
 }

@@ -61,6 +61,8 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
         _ => Analysis::PlaneStrain,
     };
     let dimension = analysis.dimension();
+    let strain = root.choice_if("strain", &["small", "finite"]);
+    let finite = strain.map(|s| At::new(s.value == "finite", s.span));
     let thickness = root.number_if("thickness");
     if let (Some(t), true) = (&thickness, analysis != Analysis::PlaneStrain) {
         log.borrow_mut().error(
@@ -95,11 +97,12 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
         missing(root, "[[step]]", "name, increments, fix, move and load");
     }
     let solver = solver::read_solver(root);
-    let (directory, [vtu, points], checkpoint) = solver::read_output(root);
+    let output = solver::read_output(root);
     Deck {
         title: title.map_or_else(String::new, |t| t.value),
         units: units.unwrap_or(Units::MmNMpa),
         analysis,
+        finite: finite.filter(|f| f.value),
         thickness: thickness.unwrap_or(At::new(1.0, 0..0)),
         mesh_file: mesh.file,
         blocks: mesh.blocks,
@@ -111,10 +114,11 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
         contacts,
         steps,
         solver,
-        directory,
-        vtu,
-        points,
-        checkpoint,
+        directory: output.directory,
+        vtu: output.vtu,
+        points: output.points,
+        checkpoint: output.checkpoint,
+        probes: output.probes,
         expectations: solver::read_expectations(root),
     }
 }

@@ -13,7 +13,8 @@ pub(super) fn header(units: Units) -> String {
     let (l, f, s) = (units.length(), units.force(), units.stress());
     format!(
         "step,increment,contact,node,x [{l}],y [{l}],z [{l}],kind,gap [{l}],slip_1 [{l}],\
-         slip_2 [{l}],t_n [{f}],t_1 [{f}],t_2 [{f}],p_n [{s}],p_1 [{s}],p_2 [{s}],status"
+         slip_2 [{l}],t_n [{f}],t_1 [{f}],t_2 [{f}],p_n [{s}],p_1 [{s}],p_2 [{s}],status,x_now [{l}],y_now [{l}],\
+         z_now [{l}]"
     )
 }
 
@@ -42,6 +43,9 @@ pub(super) fn rows<const D: usize>(
             fields.extend((0..3).map(|k| at(k, v.as_slice())));
         }
         fields.push(status_name(touch.status).to_owned());
+        let u = driver.displacement(c.node);
+        let now: Vec<f64> = c.position.iter().zip(&u).map(|(x, u)| x + u).collect();
+        fields.extend((0..3).map(|k| at(k, &now)));
         fields.join(",")
     };
     let records = driver.contacts().iter();

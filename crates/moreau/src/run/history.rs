@@ -22,6 +22,8 @@ pub(super) struct History {
     held: Vec<[String; 2]>,
     tools: Vec<String>,
     surfaces: Vec<String>,
+    /// Whether there are moments of tools.
+    moments: bool,
     /// The last row; empty before the first.
     pub(super) last: Vec<f64>,
 }
@@ -34,6 +36,7 @@ impl History {
             held: setup.held.clone(),
             tools: setup.tools.clone(),
             surfaces: setup.surfaces.clone(),
+            moments: setup.moments,
             last: Vec::new(),
         }
     }
@@ -90,9 +93,17 @@ impl History {
             row.extend((0..D).map(|i| force.map_or(f64::NAN, |f| f[i])));
             let motion = driver.tool_displacement(tool).ok();
             row.extend((0..D).map(|i| motion.map_or(f64::NAN, |u| u[i])));
+            if self.moments {
+                let moment = driver.tool_moment(tool).ok();
+                let axes = if D == 3 { 0..3 } else { 2..3 };
+                row.extend(axes.map(|i| moment.map_or(f64::NAN, |m| m[i])));
+            }
         }
         for surface in &self.surfaces {
-            let force = driver.contact_force(surface).ok();
+            // What a probe is held by beside contact.
+            let held = driver.reaction(surface).ok();
+            let force = driver.contact_force(surface).ok().zip(held);
+            let force = force.map(|(contact, held)| contact + held);
             row.extend((0..D).map(|i| force.map_or(f64::NAN, |f| f[i])));
             row.extend(mean_displacement(driver, surface));
         }

@@ -130,7 +130,7 @@ impl Warnings {
         to_collapse: bool,
     ) {
         self.balance.add(&report.energies, report.increment);
-        if !to_collapse {
+        if !(to_collapse || driver.has_large_strains()) {
             self.deformed(&driver.deformation(), report.increment);
         }
         if let Some(Between {

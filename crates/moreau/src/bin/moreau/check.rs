@@ -276,7 +276,15 @@ fn conditions(deck: &Deck) {
                 Action::Traction(t) => format!("traction {t:?} {stress}"),
                 Action::Force(f) => format!("force {f:?} {force}"),
                 Action::BodyForce(f) => format!("body force {f:?} {force}/{length}³"),
-                Action::Tool(u) => format!("tool moves by {u:?} {length}"),
+                Action::Tool(motion, turn) => {
+                    let motion = motion.iter().map(|u| format!("moves by {u:?} {length}"));
+                    let turn = turn.iter().map(|turn| match deck.analysis.dimension() {
+                        2 => format!("turns by {}°", turn.angle),
+                        _ => format!("turns by {}° about {:?}", turn.angle, turn.axis),
+                    });
+                    let all: Vec<String> = motion.chain(turn).collect();
+                    format!("tool {}", all.join(" and "))
+                }
                 Action::Push(f, None) => format!("tool is driven by {f:?} {force}"),
                 Action::Push(f, Some(u)) => {
                     format!("tool is driven by {f:?} {force}, else moves by {u:?} {length}")

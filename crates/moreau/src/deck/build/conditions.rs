@@ -2,7 +2,7 @@
 
 use super::Stage;
 use super::groups::Groups;
-use crate::deck::entries::{Action, Deck};
+use crate::deck::entries::{Action, Deck, TurnEntry};
 use crate::deck::finding::Findings;
 use crate::driver::{Axis, Step};
 use crate::mesh::Facet;
@@ -31,7 +31,13 @@ pub(super) fn stages<const D: usize>(deck: &Deck, groups: &Groups<D>) -> Vec<Sta
                 Action::Pressure(pressure) => step.pressure(on, *pressure),
                 Action::Traction(traction) => step.traction(on, fixed(traction)),
                 Action::BodyForce(density) => step.body_force(on, fixed(density)),
-                Action::Tool(motion) => step.tool(on, fixed(motion)),
+                Action::Tool(motion, turn) => {
+                    let moved = motion.iter().fold(step, |s, u| s.tool(on, fixed(u)));
+                    let turned = |s: Step<D>, turn: &TurnEntry| {
+                        s.turn(on, turn.axis, turn.angle.to_radians())
+                    };
+                    turn.iter().fold(moved, turned)
+                }
                 Action::Push(force, motion) => {
                     let moved = motion.iter().fold(step, |s, u| s.tool(on, fixed(u)));
                     let driven = (0..D).filter(|&i| force[i] != 0.0 || drives(deck, on, i));
@@ -90,8 +96,10 @@ pub(super) fn doubts(deck: &Deck, findings: &mut Findings) {
             Action::Fix(_) => None,
             Action::Move(components) => Some(components.iter().fold(0.0, |m, c| c.1.abs().max(m))),
             Action::Pressure(p) => Some(p.abs()),
-            Action::Traction(v) | Action::Force(v) | Action::BodyForce(v) | Action::Tool(v) => {
-                Some(largest(v))
+            Action::Traction(v) | Action::Force(v) | Action::BodyForce(v) => Some(largest(v)),
+            Action::Tool(motion, turn) => {
+                let moved = motion.as_ref().map_or(0.0, |u| largest(u));
+                Some(moved.max(turn.map_or(0.0, |t| t.angle.abs())))
             }
             Action::Push(force, motion) => {
                 let moved = motion.as_ref().map_or(0.0, |u| largest(u));

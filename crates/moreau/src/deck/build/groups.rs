@@ -1,8 +1,8 @@
 //! The groups of a deck on its mesh: parts by limits and by nearness, and what they measure.
 
 use super::{Body, GroupFacts};
-use crate::deck::entries::{BlockEntry, Deck, GroupEntry, Part};
-use crate::deck::finding::{Class, Findings, did_you_mean};
+use crate::deck::entries::{BlockEntry, ContactEntry, Deck, GroupEntry, Part};
+use crate::deck::finding::{At, Class, Findings, did_you_mean};
 use crate::driver::{Analysis, Support};
 use crate::mesh::{CellKind, Facet, Mesh};
 use crate::numbers::shown;
@@ -37,7 +37,26 @@ impl<const D: usize> Groups<D> {
                 groups.broken.push(entry.name.value.clone());
             }
         }
+        for contact in deck.contacts.iter().filter(|c| c.parts.len() > 1) {
+            groups.join(contact);
+        }
         groups
+    }
+
+    /// The facets of all parts of a surface as one group, each once; of parts that have some.
+    fn join(&mut self, contact: &ContactEntry) {
+        let name = &contact.surface.value;
+        let own = |part: &At<String>| self.mesh.facet_group(&part.value).unwrap_or_default();
+        let facets: BTreeSet<Facet> = contact.parts.iter().flat_map(own).copied().collect();
+        if self.has(name) || facets.is_empty() {
+            return;
+        }
+        if let Err(_) = self
+            .mesh
+            .add_facet_group(name, facets.into_iter().collect())
+        {
+            self.broken.push(name.clone());
+        }
     }
 
     /// The box around some nodes, in words.

@@ -51,8 +51,9 @@ fn used<const D: usize>(
         group(on, Needed::Cells, tools, groups, &mut used, findings);
     }
     for contact in &deck.contacts {
-        let on = &contact.surface;
-        group(on, Needed::Facets, tools, groups, &mut used, findings);
+        for on in &contact.parts {
+            group(on, Needed::Facets, tools, groups, &mut used, findings);
+        }
         opposite(&contact.against, deck, groups, &mut used, findings);
     }
     for condition in deck.steps.iter().flat_map(|step| &step.conditions) {
@@ -62,6 +63,9 @@ fn used<const D: usize>(
             None => tool(on, deck, &mut used, findings),
         }
     }
+    for probe in &deck.probes {
+        group(probe, Needed::Nodes, tools, groups, &mut used, findings);
+    }
     used.extend(deck.groups.iter().map(|g| g.on.value.clone()));
     used
 }
@@ -69,7 +73,7 @@ fn used<const D: usize>(
 /// What the group of a condition must hold; `None` where the condition is on a tool.
 fn needed(action: &Action) -> Option<Needed> {
     match action {
-        Action::Tool(_) | Action::Push(..) => None,
+        Action::Tool(..) | Action::Push(..) => None,
         Action::Fix(_) | Action::Move(_) | Action::Force(_) => Some(Needed::Nodes),
         Action::Pressure(_) | Action::Traction(_) => Some(Needed::Facets),
         Action::BodyForce(_) => Some(Needed::Cells),

@@ -4,7 +4,7 @@
 use super::groups::HIDDEN;
 use crate::contact::{Ball, ContactError, Cylinder, Obstacle, Plane, Polyline};
 use crate::deck::entries::{
-    Adjust, Deck, FrictionEntry, Hardening, MaterialEntry, Shape, SoilEntry,
+    Adjust, Curve, Deck, FrictionEntry, Hardening, MaterialEntry, Shape, SoilEntry,
 };
 use crate::deck::finding::{At, Findings};
 use crate::driver::{Analysis, Model, ModelError};
@@ -201,15 +201,18 @@ fn hardening(
             ),
         )),
     };
-    match &given.value {
-        Hardening::Linear(modulus) => Isotropic::linear(*modulus).map_err(wrong),
-        Hardening::Voce([saturation, rate]) => Isotropic::voce(*saturation, *rate).map_err(wrong),
-        Hardening::Swift([strength, offset, exponent]) => {
+    let linear = given.value.linear;
+    let Some(curve) = &given.value.curve else {
+        return Isotropic::linear(linear).map_err(wrong);
+    };
+    let law = match curve {
+        Curve::Voce([saturation, rate]) => Isotropic::voce(*saturation, *rate).map_err(wrong),
+        Curve::Swift([strength, offset, exponent]) => {
             let law = Isotropic::swift(*strength, *offset, *exponent).map_err(wrong)?;
             law.initial().map_or(Ok(()), |s| start(s, &given.span))?;
             Ok(law)
         }
-        Hardening::Table(rows) => {
+        Curve::Table(rows) => {
             let mut points: Vec<[f64; 2]> = rows.iter().map(|row| row.value).collect();
             let mut added = 0;
             match points.first() {
@@ -230,7 +233,8 @@ fn hardening(
                 error => wrong(error),
             })
         }
-    }
+    };
+    law?.with_linear(linear).map_err(wrong)
 }
 
 /// The rule that the deck asks for, or else the one of the element.
@@ -416,7 +420,10 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
             pieces.push((entry, law.clone(), name, rule));
         }
     }
-    let mut model = Model::new(mesh, hypothesis);
+    let mut model = match deck.finite.is_some() {
+        true => Model::with_large_strains(mesh, hypothesis),
+        false => Model::new(mesh, hypothesis),
+    };
     for (entry, law, name, rule) in pieces {
         let added = match law {
             Law::Elastic(law) => model.material(&name, law, rule),
@@ -430,6 +437,10 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
         let name = &tool.name.value;
         let added = model.tool(name, surface(&tool.shape.value)?.ok()?);
         model = added.map_err(|e| note(&tool.name.span, e)).ok()?;
+        if let Some(point) = &tool.reference {
+            let at = model.reference(fixed(&point.value));
+            model = at.map_err(|e| note(&point.span, e)).ok()?;
+        }
     }
     for (entry, law) in deck.contacts.iter().zip(&parts.frictions) {
         let added = model.contact(&entry.surface.value, &entry.against.value, *law);

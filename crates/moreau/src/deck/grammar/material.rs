@@ -1,6 +1,6 @@
 //! `[[material]]`: moduli as they are given; whether they define a law is for the laws to say.
 
-use crate::deck::entries::{Hardening, MaterialEntry, SoilEntry};
+use crate::deck::entries::{Curve, Hardening, MaterialEntry, SoilEntry};
 use crate::deck::finding::At;
 use crate::deck::reader::{self, Log, Table, Value};
 use crate::mesh::Integration;
@@ -103,27 +103,36 @@ fn isotropic(table: &Table<'_>) -> Option<At<Hardening>> {
         .filter_map(|(k, v)| Some((*k, (*v)?)))
         .collect();
     inner.finish();
-    let &[(key, law)] = given.as_slice() else {
+    let linear = match given.first() {
+        Some(&("linear", modulus)) => reader::number(modulus, "linear", log)?.value,
+        _ => 0.0,
+    };
+    let curves: Vec<_> = given.iter().filter(|(key, _)| *key != "linear").collect();
+    let &[&(key, law)] = curves.as_slice() else {
+        if curves.is_empty() && !given.is_empty() {
+            let curve = None;
+            return Some(At::new(Hardening { linear, curve }, value.span()));
+        }
         log.borrow_mut().error(
             &value.span(),
-            format!("hardening has {} laws, expected one", given.len()),
-            "expected one of linear, voce, swift and table",
+            format!("hardening has {} curves, expected one", curves.len()),
+            "expected linear, one of voce, swift and table, or both",
         );
         return None;
     };
-    let law = match key {
-        "linear" => Hardening::Linear(reader::number(law, key, log)?.value),
-        "voce" => Hardening::Voce(row(law, "voce", "[q_inf, b]", log)?.value),
-        "swift" => Hardening::Swift(row(law, "swift", "[k, e0, n]", log)?.value),
+    let curve = match key {
+        "voce" => Curve::Voce(row(law, "voce", "[q_inf, b]", log)?.value),
+        "swift" => Curve::Swift(row(law, "swift", "[k, e0, n]", log)?.value),
         _ => {
             let rows = reader::items(law, key, "an array of [p, stress]", log)?;
             let rows = rows
                 .into_iter()
                 .map(|r| row(r, "a row of the table", "[p, stress]", log));
-            Hardening::Table(rows.collect::<Option<_>>()?)
+            Curve::Table(rows.collect::<Option<_>>()?)
         }
     };
-    Some(At::new(law, value.span()))
+    let curve = Some(curve);
+    Some(At::new(Hardening { linear, curve }, value.span()))
 }
 
 /// An array of N numbers.

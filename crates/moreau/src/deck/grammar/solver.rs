@@ -1,6 +1,7 @@
 //! `[solver]`, `[output]` and `[expect]`: how to solve, what to write, what to expect.
 
 use crate::deck::entries::{Expectation, Method, SolverEntry, Vtu};
+use crate::deck::finding::At;
 use crate::deck::reader::{self, Table};
 
 const METHODS: [&str; 3] = ["exact", "uzawa", "gauss-seidel"];
@@ -76,9 +77,24 @@ fn method(table: &Table<'_>) -> Option<Method> {
 }
 
 /// Directory, the increments of which bodies and points are written, increments between checkpoints.
-pub(super) fn read_output(root: &Table<'_>) -> (Option<String>, [Vtu; 2], usize) {
+/// `[output]`.
+pub(super) struct Output {
+    pub(super) directory: Option<String>,
+    pub(super) vtu: Vtu,
+    pub(super) points: Vtu,
+    pub(super) checkpoint: usize,
+    pub(super) probes: Vec<At<String>>,
+}
+
+pub(super) fn read_output(root: &Table<'_>) -> Output {
     let Some(table) = section(root, "output", "[output]") else {
-        return (None, [Vtu::All, Vtu::Last], CHECKPOINT);
+        return Output {
+            directory: None,
+            vtu: Vtu::All,
+            points: Vtu::Last,
+            checkpoint: CHECKPOINT,
+            probes: Vec::new(),
+        };
     };
     let log = table.log();
     let directory = table
@@ -96,12 +112,19 @@ pub(super) fn read_output(root: &Table<'_>) -> (Option<String>, [Vtu; 2], usize)
     let points = which("points", few);
     let every = table.get("checkpoint");
     let every = every.and_then(|v| reader::integer(v, "checkpoint", 0..=1_000_000, log));
+    let probes = table.get("probes").and_then(|value| {
+        let items = reader::items(value, "probes", "an array of groups", log)?;
+        let probe = |item| reader::text(item, "a probe", log);
+        items.into_iter().map(probe).collect()
+    });
     table.finish();
-    (
-        directory.map(|d| d.value),
-        [vtu, points],
-        every.map_or(CHECKPOINT, |e| e.value),
-    )
+    Output {
+        directory: directory.map(|d| d.value),
+        vtu,
+        points,
+        checkpoint: every.map_or(CHECKPOINT, |e| e.value),
+        probes: probes.unwrap_or_default(),
+    }
 }
 
 pub(super) fn read_expectations(root: &Table<'_>) -> Vec<Expectation> {

@@ -1,8 +1,8 @@
 //! `[[step]]`: increments and conditions as they are given.
 
-use crate::deck::entries::{Action, ConditionEntry, StepEntry};
+use crate::deck::entries::{Action, ConditionEntry, StepEntry, TurnEntry};
 use crate::deck::finding::At;
-use crate::deck::reader::{self, Table, Value};
+use crate::deck::reader::{self, Log, Table, Value};
 use crate::driver::Increments;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -160,7 +160,40 @@ fn tool(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
         };
         return condition(name, Action::Push(force, motion), table);
     }
-    let value = table.need("move", "[ … ]")?;
-    let motion = reader::vector(value, "move", dimension, log)?;
-    condition(name, Action::Tool(motion.value), table)
+    let turn = match table.get("turn") {
+        Some(value) => Some(turn(value, dimension, log)?),
+        None => None,
+    };
+    let motion = match turn {
+        None => Some(table.need("move", "[ … ]")?),
+        Some(_) => table.get("move"),
+    };
+    let motion = match motion {
+        Some(value) => Some(reader::vector(value, "move", dimension, log)?.value),
+        None => None,
+    };
+    condition(name, Action::Tool(motion, turn), table)
+}
+
+/// Degrees in the plane, `{ axis = [x, y, z], angle = … }` in space.
+fn turn(value: Value<'_>, dimension: usize, log: &Log) -> Option<TurnEntry> {
+    if dimension == 2 {
+        let angle = reader::number(value, "turn", log)?.value;
+        let axis = [0.0, 0.0, 1.0];
+        return Some(TurnEntry { axis, angle });
+    }
+    if !value.get_ref().is_table() {
+        let expected = "{ axis = [x, y, z], angle = degrees } in a solid";
+        return reader::wrong(value, "turn", expected, log);
+    }
+    let inner = reader::table(value, "turn", "turn", log)?;
+    let axis = inner.need("axis", "[x, y, z]");
+    let axis = axis.and_then(|v| reader::vector(v, "axis", 3, log));
+    let angle = inner.number("angle");
+    inner.finish();
+    let axis = axis?.value;
+    Some(TurnEntry {
+        axis: [axis[0], axis[1], axis[2]],
+        angle: angle?.value,
+    })
 }

@@ -16,10 +16,14 @@ pub(super) fn read_tools(root: &Table<'_>, analysis: Analysis) -> (Vec<ToolEntry
             let name = table.name("name");
             names.extend(name.iter().map(|n| n.value.clone()));
             let shape = shape(&table, analysis);
+            let reference = table.get("reference").and_then(|value| {
+                reader::vector(value, "reference", analysis.dimension(), table.log())
+            });
             table.finish();
             Some(ToolEntry {
                 name: name?,
                 shape: shape?,
+                reference,
             })
         })
         .collect();
@@ -103,14 +107,18 @@ pub(super) fn read_contacts(root: &Table<'_>, dimension: usize) -> Vec<ContactEn
     root.tables("contact", "[[contact]]")
         .into_iter()
         .filter_map(|table| {
-            let surface = table.text("surface");
+            let parts = surface(&table);
             let against = table.text("against");
             let friction = friction(&table, dimension);
             let gap_offset = table.number_if("gap-offset");
             let adjust = adjust(&table);
             table.finish();
+            let parts = parts?;
+            let names: Vec<&str> = parts.iter().map(|p| p.value.as_str()).collect();
+            let whole = At::new(names.join("+"), parts.first()?.span.clone());
             Some(ContactEntry {
-                surface: surface?,
+                surface: whole,
+                parts,
                 against: against?,
                 // A stand-in for what was refused, so that the names are still looked up.
                 friction: friction.unwrap_or(FrictionEntry::Coulomb(At::new(1.0, 0..0))),
@@ -119,6 +127,24 @@ pub(super) fn read_contacts(root: &Table<'_>, dimension: usize) -> Vec<ContactEn
             })
         })
         .collect()
+}
+
+/// One group, or several that are one surface.
+fn surface(table: &Table<'_>) -> Option<Vec<At<String>>> {
+    let log = table.log();
+    let expected = "a group of facets, or an array of them";
+    let value = table.need("surface", expected)?;
+    if !value.get_ref().is_array() {
+        return Some(vec![reader::text(value, "surface", log)?]);
+    }
+    let parts = reader::items(value, "surface", expected, log)?.into_iter();
+    let parts: Vec<At<String>> = parts
+        .map(|part| reader::text(part, "a surface", log))
+        .collect::<Option<_>>()?;
+    match parts.is_empty() {
+        true => reader::wrong(value, "surface", "at least one group", log),
+        false => Some(parts),
+    }
 }
 
 /// `adjust = true`, or a distance.

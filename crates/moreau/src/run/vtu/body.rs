@@ -66,6 +66,16 @@ fn means<const D: usize>(
     fields.into_iter().map(mean).collect()
 }
 
+/// Where a node is drawn: under large strains where it is, else where it was, so that its displacement can be
+/// magnified.
+pub(super) fn place<const D: usize>(driver: &Driver<D>, node: usize) -> [f64; D] {
+    let at = driver.mesh().nodes()[node];
+    match driver.has_large_strains() {
+        true => std::array::from_fn(|i| at[i] + driver.displacement(node)[i]),
+        false => at,
+    }
+}
+
 /// The grid of a body, and the node of each of its points: nodes where materials meet have a point
 /// for each material.
 pub(in crate::run) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usize>) {
@@ -109,7 +119,7 @@ pub(in crate::run) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usi
         values: (0..mesh.cell_count()).map(|c| c as f64).collect(),
     };
     let grid = Grid {
-        points: nodes.iter().map(|&n| three(&mesh.nodes()[n])).collect(),
+        points: nodes.iter().map(|&n| three(&place(driver, n))).collect(),
         cells: recovered.cells.iter().enumerate().map(cell).collect(),
         point_data: std::iter::once(displacement)
             .chain(fields(&values))

@@ -45,6 +45,12 @@ pub(in crate::run) fn points<const D: usize>(driver: &Driver<D>) -> Grid {
         }
         numbers.extend((0..count).map(|k| k as f64));
     }
+    let at = |(p, u): (&PointState<D>, &[f64])| match driver.has_large_strains() {
+        true => three(&std::array::from_fn::<f64, D, _>(|i| p.position[i] + u[i])),
+        false => three(&p.position),
+    };
+    let points = states.iter().zip(displacement.chunks_exact(3));
+    let points = points.map(at).collect();
     let array = |name: &str, components, values| Array {
         name: String::from(name),
         components,
@@ -62,7 +68,7 @@ pub(in crate::run) fn points<const D: usize>(driver: &Driver<D>) -> Grid {
     data.push(array("point", 1, numbers));
     data.push(array("volume", 1, of(&|p| p.weight)));
     Grid {
-        points: states.iter().map(|p| three(&p.position)).collect(),
+        points,
         cells: (0..states.len())
             .map(|k| (vec![k as i64], VERTEX))
             .collect(),

@@ -1,5 +1,6 @@
 //! The contact surfaces with gaps, slips, tractions and statuses as a grid.
 
+use super::body::place;
 use crate::driver::{ContactRecord, Driver};
 use crate::laws::{Local, Status};
 use crate::mesh::Facet;
@@ -39,7 +40,10 @@ pub(in crate::run) fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid
     let shown = |value: &dyn Fn(&Touch<D>) -> Vec<f64>| touches.iter().map(value).collect();
     let tangents = |v: &Local<D>| v.iter().skip(1).copied().collect();
     Some(Grid {
-        points: records.iter().map(|c| three(&c.position)).collect(),
+        points: records
+            .iter()
+            .map(|c| three(&place(driver, c.node)))
+            .collect(),
         cells,
         point_data: vec![
             array(
