@@ -6,6 +6,7 @@ mod cattaneo;
 mod collapse;
 mod compare;
 mod greco;
+mod large;
 mod penalty;
 mod pictures;
 mod prandtl;
@@ -30,5 +31,10 @@ pub fn all() -> Vec<Case> {
         ring::CASE,
         collapse::CASE,
         punch_in_space::CASE,
+        large::UPSETTING,
+        large::RING,
+        large::NECK,
+        large::INDENTATION,
+        large::TURNING,
     ]
 }

@@ -177,6 +177,8 @@ pub enum Chapter {
     Paper,
     /// What the paper's theory is written for and its examples leave out.
     Beyond,
+    /// What the paper names as its next step.
+    Large,
 }
 
 impl Chapter {
@@ -185,6 +187,7 @@ impl Chapter {
         match self {
             Self::Paper => "The paper",
             Self::Beyond => "Beyond the paper",
+            Self::Large => "Large strains",
         }
     }
 }

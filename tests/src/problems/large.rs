@@ -1,54 +1,17 @@
-//! Problems of large strain with reference figures of an independent implementation; not the checks made
-//! on them.
+//! Problems of large strain with reference figures of an independent implementation; not the comparison with
+//! them.
+
+mod reference;
+
+pub use reference::{Difference, Tables};
 
 use super::Fallible;
-use crate::workspace;
 use moreau::contact::{Ball, Plane};
 use moreau::driver::{Analysis, Axis, Driver, Model, Settings, Step};
 use moreau::laws::{Coulomb, Isotropic, VonMises};
 use moreau::mesh::{
     Axisymmetric, CellKind, Facet, Integration, Mesh, PlaneStrain, block2, uniform,
 };
-
-/// A table of `tests/reference/finite`: a header, and rows of numbers and words.
-pub struct Reference {
-    header: Vec<String>,
-    rows: Vec<Vec<String>>,
-}
-
-impl Reference {
-    /// The table of that name.
-    ///
-    /// # Errors
-    /// A file that cannot be read.
-    pub fn read(name: &str) -> Fallible<Self> {
-        let path = workspace::root().join(format!("tests/reference/finite/{name}.csv"));
-        let text =
-            std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
-        let cells = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<_>>();
-        let mut lines = text.lines();
-        let header = cells(lines.next().unwrap_or_default());
-        let rows = lines.map(cells).collect();
-        Ok(Self { header, rows })
-    }
-
-    fn at<'a>(&self, row: &'a [String], column: &str) -> &'a str {
-        let index = self.header.iter().position(|name| name == column);
-        index.and_then(|i| row.get(i)).map_or("", String::as_str)
-    }
-
-    /// A column of numbers; NaN where it has none.
-    pub fn column(&self, column: &str) -> Vec<f64> {
-        let number = |row: &Vec<String>| self.at(row, column).parse().unwrap_or(f64::NAN);
-        self.rows.iter().map(number).collect()
-    }
-
-    /// A column of words.
-    pub fn words(&self, column: &str) -> Vec<&str> {
-        let word = |row| self.at(row, column);
-        self.rows.iter().map(|row| word(row.as_slice())).collect()
-    }
-}
 
 /// Steel of the platens and discs.
 ///

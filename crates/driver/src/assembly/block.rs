@@ -238,6 +238,7 @@ impl<C: CellLaw<D>, const D: usize> Panel<'_, C, D> {
     ) {
         let count = self.cells.points_per_cell();
         let size = D * self.cells.nodes(first).len();
+        let mut room = C::Room::default();
         for (k, force) in forces.chunks_mut(size).enumerate() {
             let cell = first + k;
             let old = &self.old[cell * count..(cell + 1) * count];
@@ -247,7 +248,7 @@ impl<C: CellLaw<D>, const D: usize> Panel<'_, C, D> {
                 stiffness: &mut matrices[k * entries..(k + 1) * entries],
             };
             let of = (self.cells, cell);
-            flows[k] = self.of_cell.respond(of, old, self.motion, self.kind, out);
+            flows[k] = (self.of_cell).respond(of, old, self.motion, self.kind, out, &mut room);
         }
     }
 }

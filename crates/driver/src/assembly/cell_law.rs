@@ -55,6 +55,8 @@ pub trait CellLaw<const D: usize>: 'static + Send + Sync {
     type Law: BulkLaw;
     /// What a point remembers.
     type State: Copy + Send + Sync + Numbers;
+    /// Room for what a cell needs, used again for the next one.
+    type Room: Default;
 
     /// The law.
     fn law(&self) -> &Self::Law;
@@ -74,6 +76,7 @@ pub trait CellLaw<const D: usize>: 'static + Send + Sync {
         motion: Motion<'_>,
         kind: Stiffness,
         out: CellOutput<'_, Self::State>,
+        room: &mut Self::Room,
     ) -> bool;
 
     /// Whether the stiffness is that of the forces, or does for it.

@@ -37,16 +37,24 @@ struct Mean {
 }
 
 /// A cell at the end of a step.
-struct Cell<S> {
-    points: [Option<Point<S>>; MAX_POINTS],
+pub struct Cell<S> {
+    points: Vec<Point<S>>,
     mean: Option<Mean>,
+    /// Tangents at the points.
+    tangents: Vec<GradientTangent>,
+}
+
+impl<S> Default for Cell<S> {
+    fn default() -> Self {
+        Self {
+            points: Vec::new(),
+            mean: None,
+            tangents: Vec::new(),
+        }
+    }
 }
 
 impl<S> Cell<S> {
-    fn points(&self) -> impl Iterator<Item = &Point<S>> {
-        self.points.iter().map_while(Option::as_ref)
-    }
-
     /// Stress in balance with the forces: τ, or dev τ + J P̄ 1.
     fn stress(&self, point: &Point<S>) -> Matrix3<f64> {
         let mut stress = point.response.stress;
@@ -65,12 +73,10 @@ impl<S> Cell<S> {
         force: &mut [f64],
     ) {
         let mut flux = [Matrix3::zeros(); MAX_POINTS];
-        let mut count = 0;
-        for (flux, point) in flux.iter_mut().zip(self.points()) {
+        for (flux, point) in flux.iter_mut().zip(&self.points) {
             *flux = tensor(point) * point.inverse.transpose();
-            count += 1;
         }
-        cells.gradient_force(k, &flux[..count], force);
+        cells.gradient_force(k, &flux[..self.points.len()], force);
     }
 }
 
@@ -85,12 +91,13 @@ struct Coupling {
 
 impl<L: BulkLaw> Large<L> {
     /// The points of a cell at the end of a step; `None` where one is turned inside out.
-    fn cell<const D: usize>(
+    fn place<const D: usize>(
         &self,
         (cells, k): (&dyn Cells<D>, usize),
         old: &[Turned<L::State>],
         motion: Motion<'_>,
-    ) -> Option<Cell<L::State>> {
+        cell: &mut Cell<L::State>,
+    ) -> Option<()> {
         let count = old.len();
         let mut before = [Matrix3::zeros(); MAX_POINTS];
         let mut step = [Matrix3::zeros(); MAX_POINTS];
@@ -107,14 +114,14 @@ impl<L: BulkLaw> Large<L> {
         }
         let dilatation = (change / volume).ln_1p();
         let dilatation = cells.averages_dilatation().then_some(dilatation);
-        let mut points = [const { None }; MAX_POINTS];
+        cell.points.clear();
         let mut pressure = 0.0;
         for g in 0..count {
             let response = respond_large(&self.0, &old[g], &step[g], dilatation)?;
             let now = (Matrix3::identity() + step[g]) * before[g];
             let weight = cells.weight(k * count + g);
             pressure += weight * response.stress.trace() / 3.0;
-            points[g] = Some(Point {
+            cell.points.push(Point {
                 response,
                 inverse: now.try_inverse()?,
                 jacobian: now.determinant(),
@@ -122,11 +129,11 @@ impl<L: BulkLaw> Large<L> {
             });
         }
         let volume = volume + change;
-        let mean = dilatation.map(|_| Mean {
+        cell.mean = dilatation.map(|_| Mean {
             volume,
             pressure: pressure / volume,
         });
-        Some(Cell { points, mean })
+        Some(())
     }
 
     /// ∂τ/∂l at a point, of this part of flow and of the stress that is there.
@@ -157,14 +164,14 @@ impl<L: BulkLaw> Large<L> {
         &self,
         (cells, k): (&dyn Cells<D>, usize),
         old: &[Turned<L::State>],
-        cell: &Cell<L::State>,
+        cell: &mut Cell<L::State>,
         (part, complete): (f64, bool),
-        out: &mut [GradientTangent],
     ) -> Option<Coupling> {
+        cell.tangents.clear();
         let mut left = [Matrix3::zeros(); MAX_POINTS];
         let mut right = [Matrix3::zeros(); MAX_POINTS];
         let mut bulk = 0.0;
-        for (g, point) in cell.points().enumerate() {
+        for (g, point) in cell.points.iter().enumerate() {
             let mut a = self.tangent((&old[g], point), part, complete);
             if let Some(mean) = cell.mean {
                 let by_dilatation = column_mean(&a);
@@ -186,7 +193,7 @@ impl<L: BulkLaw> Large<L> {
                     }
                 }
             }
-            out[g] = pulled_back(&a, &point.inverse);
+            cell.tangents.push(pulled_back(&a, &point.inverse));
         }
         let mean = cell.mean?;
         let mut coupling = Coupling {
@@ -210,6 +217,7 @@ impl<L: BulkLaw> Large<L> {
 impl<L: BulkLaw, const D: usize> CellLaw<D> for Large<L> {
     type Law = L;
     type State = Turned<L::State>;
+    type Room = Cell<L::State>;
 
     fn law(&self) -> &L {
         &self.0
@@ -230,14 +238,15 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Large<L> {
         motion: Motion<'_>,
         kind: Stiffness,
         out: CellOutput<'_, Self::State>,
+        cell: &mut Self::Room,
     ) -> bool {
-        let Some(cell) = self.cell(of, old, motion) else {
+        if self.place(of, old, motion, cell).is_none() {
             // No forces: who is in search of balance turns back.
             out.force.fill(f64::NAN);
             out.stiffness.fill(f64::NAN);
             return true;
-        };
-        for (new, point) in out.new.iter_mut().zip(cell.points()) {
+        }
+        for (new, point) in out.new.iter_mut().zip(cell.points.iter()) {
             *new = point.response.state;
         }
         cell.force(of, |point| cell.stress(point), out.force);
@@ -245,14 +254,12 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Large<L> {
             Stiffness::None => return true,
             Stiffness::Total(part) | Stiffness::Plastic(part) => part,
         };
-        let count = old.len();
-        let mut tangents = [GradientTangent::zeros(); MAX_POINTS];
-        let coupling = self.tangents(of, old, &cell, (part, false), &mut tangents);
-        for a in &mut tangents[..count] {
+        let coupling = self.tangents(of, old, cell, (part, false));
+        for a in &mut cell.tangents {
             *a = 0.5 * (*a + a.transpose());
         }
         let (cells, k) = of;
-        cells.gradient_stiffness(k, &tangents[..count], out.stiffness);
+        cells.gradient_stiffness(k, &cell.tangents, out.stiffness);
         if let Some(Coupling {
             volume,
             left,
@@ -288,15 +295,16 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Large<L> {
         v: &[f64],
         force: &mut [f64],
     ) {
-        let Some(cell) = self.cell(of, old, motion) else {
+        let mut cell = Cell::default();
+        if self.place(of, old, motion, &mut cell).is_none() {
             return force.fill(f64::NAN);
-        };
+        }
         let (cells, k) = of;
         let (count, size) = (old.len(), force.len());
-        let mut all = [GradientTangent::zeros(); MAX_POINTS];
-        let mut given = [GradientTangent::zeros(); MAX_POINTS];
-        let complete = self.tangents(of, old, &cell, (1.0, true), &mut all);
-        let symmetric = self.tangents(of, old, &cell, (1.0, false), &mut given);
+        let complete = self.tangents(of, old, &mut cell, (1.0, true));
+        let all = std::mem::take(&mut cell.tangents);
+        let symmetric = self.tangents(of, old, &mut cell, (1.0, false));
+        let given = cell.tangents;
         let mut rate = [Matrix3::zeros(); MAX_POINTS];
         cells.gradient(k, v, &mut rate[..count]);
         for (rate, (all, given)) in rate[..count].iter_mut().zip(all.iter().zip(&given)) {

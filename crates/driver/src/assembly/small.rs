@@ -14,6 +14,7 @@ pub struct Small<L>(pub L);
 impl<L: BulkLaw, const D: usize> CellLaw<D> for Small<L> {
     type Law = L;
     type State = L::State;
+    type Room = ();
 
     fn law(&self) -> &L {
         &self.0
@@ -34,6 +35,7 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Small<L> {
         motion: Motion<'_>,
         kind: Stiffness,
         out: CellOutput<'_, L::State>,
+        (): &mut (),
     ) -> bool {
         let (law, count) = (&self.0, old.len());
         let elastic = law.elastic_tangent();
