@@ -5,6 +5,7 @@ mod meshes;
 mod micro;
 mod plate;
 mod shaken;
+mod upsetting;
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -40,6 +41,9 @@ pub struct Args {
     /// The kernels one by one instead: element, law, projection, factorisation, contact problem
     #[arg(long)]
     micro: bool,
+    /// Upsetting of a block instead, under small strains and under these
+    #[arg(long, value_name = "STRAIN")]
+    strain: Option<Strain>,
     /// Gmsh file to order and factorise instead, elastic; may be given again
     #[arg(long = "mesh", value_name = "FILE")]
     meshes: Vec<PathBuf>,
@@ -65,6 +69,13 @@ pub struct Args {
     /// File for the figures as JSON
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+}
+
+/// What upsetting is compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Strain {
+    /// Large strains and rotations
+    Finite,
 }
 
 /// How the contact problem is solved.
@@ -158,6 +169,13 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     };
     if args.micro {
         return micro::run();
+    }
+    if let Some(Strain::Finite) = args.strain {
+        let squares = [20, 40, 80, 160].map(|n| [n, n]);
+        let sizes = given(&args.sizes, &squares);
+        let friction = args.friction.unwrap_or(upsetting::FRICTION);
+        let increments = args.increments.unwrap_or(upsetting::INCREMENTS).max(1);
+        return upsetting::run(sizes, (friction, increments), args.runs);
     }
     if !args.meshes.is_empty() {
         return meshes::run(&args.meshes, args.runs);

@@ -59,6 +59,8 @@ pub(crate) struct System {
     elastic_factor: bool,
     /// Whether the values are those that the factor was made of.
     current: bool,
+    /// Negative eigenvalues of the matrix that the factor was made of, where its engine tells.
+    negative: usize,
     /// Factorisations done since the system was set up.
     pub(crate) factorisations: usize,
     /// Iterations of conjugate gradients since then.
@@ -280,6 +282,7 @@ impl System {
             engine,
             elastic_factor: false,
             current: false,
+            negative: 0,
             factorisations: 0,
             conjugate: 0,
             floats: false,
@@ -455,7 +458,7 @@ impl System {
         self.elastic_factor = false;
         self.factorisations += 1;
         let (interface, shift) = (self.interface, self.shift);
-        timed(&mut self.timings.factorisation, || {
+        let inertia = timed(&mut self.timings.factorisation, || {
             let matrix = match &mut self.coarse {
                 Some(coarse) => {
                     coarse.space.project(&self.matrix)?;
@@ -476,9 +479,15 @@ impl System {
                 _ => dofs.last().copied().unwrap_or(0),
             }
         })?;
+        self.negative = inertia.negative;
         self.elastic_factor = elastic;
         self.current = true;
         Ok(())
+    }
+
+    /// Whether the matrix that the factor was made of has negative eigenvalues, its kept unknowns aside.
+    pub(crate) fn is_indefinite(&self) -> bool {
+        self.negative > 0
     }
 
     /// Adds entries (row, column) of a symmetric stiffness at degrees of freedom to K, those of its lower triangle

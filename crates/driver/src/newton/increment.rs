@@ -23,6 +23,9 @@ use std::borrow::Cow;
 /// residual smaller.
 const WELL: f64 = 0.1;
 
+/// Imbalance over the forces in play, from which on a tangent that is not positive definite leads nowhere.
+const FAR: f64 = 0.1;
+
 /// Parts of an increment that is followed along its loading: the first, and the shortest.
 const PART: f64 = 0.25;
 const SHORTEST: f64 = 1.0 / 128.0;
@@ -402,7 +405,9 @@ impl<const D: usize> Driver<D> {
                 None => self.previous_forces(&balance.kinematics),
             };
             let contact = (balance.kinematics.as_slice(), force.as_slice());
-            self.linearise(system, &mut increment.iterate, &increment.missing, contact)?;
+            let far = imbalance > FAR * balance.scale;
+            let (iterate, missing) = (&mut increment.iterate, &increment.missing);
+            self.linearise(system, iterate, missing, contact, far)?;
         }
         increment.chord.begin(imbalance, !serves);
         Ok(())

@@ -13,6 +13,10 @@ use moreau_laws::Local;
 /// Parts of what flow adds to the stiffness that are tried in turn where the tangent is a mechanism.
 const BLENDS: [f64; 4] = [1.0 - 1e-4, 0.99, 0.8, 0.0];
 
+/// The same where stresses of large strains make it indefinite far from the solution: a twentieth of the elastic
+/// stiffness is more than they take.
+const STIFFENED: [f64; 3] = [0.95, 0.8, 0.0];
+
 impl<const D: usize> Driver<D> {
     /// Makes the system that of the tangent at an iterate, under contact forces in the frames of their points:
     /// factorised, where contacts are not tied in its factor.
@@ -22,6 +26,7 @@ impl<const D: usize> Driver<D> {
         now: &mut Iterate,
         missing: &SparseVector,
         contact: (&[Kinematics<D>], &[Local<D>]),
+        far: bool,
     ) -> Result<(), IncrementError> {
         let turns = self.has_large_strains();
         if !now.assembly.stiffness && (turns || system.is_tied()) {
@@ -33,7 +38,7 @@ impl<const D: usize> Driver<D> {
         }
         match system.is_tied() {
             true => Ok(()),
-            false => self.factorise(system, now, missing),
+            false => self.factorise(system, now, missing, far),
         }
     }
 
@@ -73,6 +78,7 @@ impl<const D: usize> Driver<D> {
         system: &mut System,
         now: &mut Iterate,
         missing: &SparseVector,
+        far: bool,
     ) -> Result<(), IncrementError> {
         let elastic = !now.assembly.flows;
         if !(now.assembly.stiffness || elastic && system.holds_elastic_factor()) {
@@ -80,8 +86,13 @@ impl<const D: usize> Driver<D> {
             now.assembly = self.assemble(system, &now.d_u, missing, tangent);
         }
         let mut outcome = system.factorise(elastic);
-        for part in BLENDS {
-            if outcome.is_ok() {
+        let leads_nowhere = |system: &System| far && system.is_indefinite();
+        let blends: &[f64] = match leads_nowhere(system) {
+            true => &STIFFENED,
+            false => &BLENDS,
+        };
+        for &part in blends {
+            if outcome.is_ok() && !leads_nowhere(system) {
                 break;
             }
             let blended = Stiffness::Plastic(part);
