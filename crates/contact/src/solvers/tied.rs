@@ -31,6 +31,10 @@ const ROUNDED: f64 = 100.0;
 const COLD: usize = 5;
 const FAINT: [f64; 2] = [0.03, 0.1];
 
+/// How much larger the merit may be after a step with the statuses of the last solution: where few contacts hold
+/// a body it may tip over them into all that it rests on, which then has to be opened again.
+const WORSE: f64 = 4.0;
+
 /// Newton's method on the natural map of a tied problem.
 ///
 /// With statuses come ties R: nothing where a contact is open, stiff springs across a closed gap and along
@@ -113,13 +117,13 @@ pub fn solve_tied<const D: usize>(
                 newton.rows(&now, faint)
             }
         };
-        // The first steps are those of guesses.
-        let allowed = match (progress.allowed(now.merit), iterations) {
-            (_, 0) => f64::INFINITY,
-            (_, 1) if cold => f64::INFINITY,
-            (allowed, _) => allowed,
+        // The first steps are those of guesses, and taken as they come.
+        let bounds = match (progress.allowed(now.merit), iterations) {
+            (_, 0 | 1) if cold => [f64::INFINITY; 2],
+            (_, 0) => [WORSE * now.merit; 2],
+            (allowed, _) => [allowed, now.merit],
         };
-        now = match newton.step(&rows, &now, allowed) {
+        now = match newton.step(&rows, &now, bounds) {
             Some(next) => next,
             None if newton.factor.is_used() && newton.stale(&status) > 0 => {
                 newton.renew(now, &status)?
