@@ -14,7 +14,7 @@ use super::{ContactSolution, Tolerance};
 use crate::ContactError;
 use crate::problem::split;
 use crate::tied::TiedProblem;
-use factor::Factor;
+pub use factor::TiedFactor;
 use guess::Guess;
 use moreau_laws::Local;
 use nalgebra::DVector;
@@ -52,7 +52,7 @@ struct Tied<'a, 'b, const D: usize> {
     problem: &'a mut TiedProblem<'b, D>,
     /// Which of the parts α is.
     part: usize,
-    factor: Factor<D>,
+    factor: TiedFactor<D>,
 }
 
 /// Where the iteration stands.
@@ -71,6 +71,8 @@ struct At<const D: usize> {
 /// Solves a tied problem to a tolerance, or to a residual that is `enough` \[N\] where that is larger. Returns with the
 /// solution z = t + R v of the ties R that were the last, for which (K + BᵀRB) Δu = f + Bᵀ z.
 ///
+/// `held` is the factor at hand, with K and B as they are now, and what was the last at the end.
+///
 /// Where the statuses leave the structure a rigid motion it is one of the solutions.
 ///
 /// # Errors
@@ -79,13 +81,14 @@ pub fn solve_tied<const D: usize>(
     problem: &mut TiedProblem<'_, D>,
     guess: Option<&ContactSolution<D>>,
     (tolerance, enough): (Tolerance, f64),
+    held: &mut TiedFactor<D>,
 ) -> Result<(ContactSolution<D>, DVector<f64>), ContactError> {
     let cold = guess.is_none();
     let mut guess = Guess::new(problem, guess);
     let mut newton = Tied {
         problem,
         part: 0,
-        factor: Factor::default(),
+        factor: std::mem::take(held),
     };
     let mut now = newton.begin(&mut guess)?;
     let mut first = Some(guess);
@@ -98,7 +101,9 @@ pub fn solve_tied<const D: usize>(
         if now.residual <= target.max(PARTS[0] * enough) {
             if newton.part == 0 {
                 let exact = now.residual <= target;
-                return Ok(newton.solution(now, iterations, exact));
+                let found = newton.solution(now, iterations, exact);
+                *held = newton.factor;
+                return Ok(found);
             }
             // Residuals are comparable at one α only.
             now = newton.with_part(0, now);
@@ -131,6 +136,7 @@ pub fn solve_tied<const D: usize>(
             None if again && !newton.factor.propped.is_empty() => {
                 again = false;
                 progress.forget();
+                newton.factor = TiedFactor::default();
                 let mut closed = Guess::from(now);
                 newton.part = 0;
                 let now = newton.begin(&mut closed)?;
