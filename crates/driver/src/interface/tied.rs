@@ -106,6 +106,24 @@ struct Border {
 }
 
 impl Border {
+    /// Sets up the equations of the amounts from what the factor makes of each of them; false where nothing decides
+    /// them.
+    fn decide(&mut self, answers: Vec<Vec<f64>>) -> bool {
+        // q·(x + Σ a y) + c λ = m, and a spring is as long as its node is displaced: s = x + Σ a y.
+        let size = answers.len();
+        let mut equations = DMatrix::identity(size, size);
+        equations[(0, 0)] = self.compliance;
+        for (k, answer) in answers.iter().enumerate() {
+            equations[(0, k)] += dot(&self.load, answer);
+            for (j, &p) in self.pivot.iter().enumerate() {
+                equations[(1 + j, k)] -= answer[p];
+            }
+        }
+        self.answers = answers;
+        self.equations = equations.lu();
+        self.equations.is_invertible()
+    }
+
     /// Amounts of the load and of the spring forces, where the others displace by x.
     fn amounts(&self, x: &[f64], missing: f64) -> DVector<f64> {
         let mut value = DVector::zeros(1 + self.pivot.len());
@@ -418,22 +436,7 @@ impl<const D: usize> Tied<'_, D> {
             self.system.solve_tied(answer);
             self.solves += 1;
         }
-        // q·(x + Σ a y) + c λ = m, and a spring is as long as its node is displaced: s = x + Σ a y.
-        let size = answers.len();
-        let mut equations = DMatrix::zeros(size, size);
-        for (k, answer) in answers.iter().enumerate() {
-            equations[(0, k)] = dot(&border.load, answer);
-            for (j, &p) in border.pivot.iter().enumerate() {
-                equations[(1 + j, k)] = -answer[p];
-            }
-        }
-        equations[(0, 0)] += border.compliance;
-        for j in 1..size {
-            equations[(j, j)] += 1.0;
-        }
-        border.answers = answers;
-        border.equations = equations.lu();
-        let decided = border.equations.is_invertible();
+        let decided = border.decide(answers);
         self.border = Some(border);
         decided
     }
@@ -451,5 +454,47 @@ impl<const D: usize> Driver<D> {
                 .map(RelativeMotionRow::nodes)
                 .collect()
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chain whose end only a spring holds, under f and a load of unknown factor.
+    #[test]
+    fn amounts_leave_the_springs_without_force_and_decide_the_factor() {
+        // Two masses that nothing but their own spring connects: K alone is singular.
+        let k = DMatrix::from_row_slice(2, 2, &[3.0, -3.0, -3.0, 3.0]);
+        let (load, compliance, missing, spring) = (vec![1.0, 2.0], 0.5, 0.7, 40.0);
+        let mut held = k.clone();
+        held[(1, 1)] += spring;
+        let solve = |f: &[f64]| -> Vec<f64> {
+            let x = held.clone().lu().solve(&DVector::from_column_slice(f));
+            x.expect("regular").as_slice().to_vec()
+        };
+        let mut border = Border {
+            load: load.clone(),
+            compliance,
+            missing,
+            pivot: vec![1],
+            spring,
+            answers: Vec::new(),
+            equations: DMatrix::zeros(0, 0).lu(),
+        };
+        let answers = vec![solve(&load), solve(&[0.0, spring])];
+        assert!(border.decide(answers.clone()));
+        let f = [0.4, -0.9];
+        let mut x = solve(&f);
+        let amounts = border.amounts(&x, missing);
+        for (x, k) in x.iter_mut().zip(0..) {
+            *x += amounts[0] * answers[0][k] + amounts[1] * answers[1][k];
+        }
+        let factor = amounts[0];
+        let left = &k * DVector::from_column_slice(&x);
+        for i in 0..2 {
+            assert!((left[i] - f[i] - factor * load[i]).abs() < 1e-12);
+        }
+        assert!((dot(&load, &x) + compliance * factor - missing).abs() < 1e-12);
     }
 }

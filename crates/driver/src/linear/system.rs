@@ -482,7 +482,9 @@ impl System {
     /// Factorises K and what `ties` adds to its values; false where the sum leaves a motion without
     /// stiffness.
     pub(crate) fn tie(&mut self, ties: impl FnOnce(&Pattern, &mut [f64])) -> bool {
-        let mut sum = self.matrix.values().to_vec();
+        let mut sum = self.tied.take().unwrap_or_default();
+        sum.clear();
+        sum.extend_from_slice(self.matrix.values());
         ties(&self.matrix.pattern, &mut sum);
         self.elastic_factor = false;
         self.factorisations += 1;
@@ -490,8 +492,11 @@ impl System {
             self.engine.factorise(&sum)
         });
         let holds = outcome.is_ok() && self.engine.least_pivot() > RIGID;
-        let values = self.matrix.values();
-        self.tied = Some(if holds { values.to_vec() } else { Vec::new() });
+        match holds {
+            true => sum.copy_from_slice(self.matrix.values()),
+            false => sum.clear(),
+        }
+        self.tied = Some(sum);
         holds
     }
 

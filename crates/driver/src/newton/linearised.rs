@@ -84,42 +84,21 @@ impl<const D: usize> Driver<D> {
         let loading = linearised.loading;
         let Held { rows, factor } = &mut *linearised.held;
         let border = linearised.border;
-        let mut tied = Tied::new(
-            self,
-            system,
-            kinematics,
-            &load,
-            border,
-            (rows, &mut *factor),
-        );
+        let kept = (rows, &mut *factor);
+        let mut tied = Tied::new(self, system, kinematics, &load, border, kept);
         let method = self.settings.contact.springs();
         let (compliance, tolerance) = method.ok_or(ContactError::Singular).map_err(contact)?;
         let previous = self.previous_forces(kinematics);
+        let suspended = tied.suspended(self, kinematics);
         let last = match linearised.guess {
             Some(s) if counts.newton > 1 => &s.force,
             _ => &previous,
         };
-        let suspended = tied.suspended(self, kinematics);
-        let springs: Vec<Springs<D>> = (0..previous.len())
-            .map(|i| Springs {
-                compliance: compliance + suspended[i],
-                force: Local::from_fn(|j, _| match suspended[i][j] > 0.0 {
-                    true => last[i][j],
-                    false => {
-                        if j > 0 {
-                            previous[i][j]
-                        } else {
-                            0.0
-                        }
-                    }
-                }),
-            })
-            .collect();
+        let springs = springs(&compliance, &suspended, (last, &previous));
         let largest_load = tied.largest_load();
-        let given = previous
-            .iter()
-            .map(|t| t.norm())
-            .fold(largest_load, f64::max);
+        let largest_of =
+            |forces: &[Local<D>], other: f64| forces.iter().map(|t| t.norm()).fold(other, f64::max);
+        let given = largest_of(&previous, largest_load);
         let mut solve = |c: f64, enough: f64| {
             if tied.hold(c) {
                 *factor = TiedFactor::default();
@@ -146,11 +125,7 @@ impl<const D: usize> Driver<D> {
                 counts.undetermined |= error == ContactError::Singular;
                 nearest(error, stiffest, |c| {
                     let (solution, z) = solve(c, 0.0)?;
-                    let scale = solution
-                        .force
-                        .iter()
-                        .map(|t| t.norm())
-                        .fold(given, f64::max);
+                    let scale = largest_of(&solution.force, given);
                     Ok((solution, z, scale))
                 })
             })
@@ -240,6 +215,24 @@ impl<const D: usize> Driver<D> {
             growth,
         })
     }
+}
+
+/// Springs in series with every contact: those of the method, of which a slip stretches those along it from the
+/// forces t₀ at the start of the step, and those of what is suspended, from the last forces.
+fn springs<const D: usize>(
+    compliance: &Local<D>,
+    suspended: &[Local<D>],
+    (last, previous): (&[Local<D>], &[Local<D>]),
+) -> Vec<Springs<D>> {
+    let of = |i: usize| Springs {
+        compliance: compliance + suspended[i],
+        force: Local::from_fn(|j, _| match j {
+            _ if suspended[i][j] > 0.0 => last[i][j],
+            0 => 0.0,
+            _ => previous[i][j],
+        }),
+    };
+    (0..previous.len()).map(of).collect()
 }
 
 /// A contact problem that is singular, as where all that touches slips or nothing is left to press: of its

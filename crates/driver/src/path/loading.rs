@@ -3,7 +3,7 @@
 
 use crate::driver::Driver;
 use crate::error::ModelError;
-use crate::model::load::{Condition, Loading, Step, axis_letter};
+use crate::model::load::{Axis, Condition, Loading, Step, axis_letter};
 use crate::model::points::tool_index;
 use std::collections::BTreeMap;
 
@@ -24,28 +24,7 @@ impl<const D: usize> Driver<D> {
         for condition in &step.conditions {
             match condition {
                 Condition::Displace { on, axis, value } => {
-                    if axis.index() >= D {
-                        return Err(ModelError::OutOfRange {
-                            what: format!("direction of the displacement of {on:?}"),
-                            value: axis.index() as f64,
-                            expected: "a direction below the dimension of the model",
-                        });
-                    }
-                    for node in mesh.node_group(on)? {
-                        let dof = D * node + axis.index();
-                        if let Some(&first) = moved.get(&dof)
-                            && first != *value
-                        {
-                            return Err(ModelError::TwoDisplacements {
-                                step: step.name.clone(),
-                                node,
-                                axis: axis_letter(axis.index()),
-                                first,
-                                second: *value,
-                            });
-                        }
-                        moved.insert(dof, *value);
-                    }
+                    self.displace(&step.name, (on, *axis, *value), &mut moved)?;
                 }
                 Condition::Force { on, force } => {
                     let nodes = mesh.node_group(on)?;
@@ -71,7 +50,57 @@ impl<const D: usize> Driver<D> {
                 Condition::Tool { .. } | Condition::Push { .. } => {}
             }
         }
-        // A tool that is not mentioned stays where it is.
+        self.move_tools(step, &mut moved)?;
+        for condition in &step.conditions {
+            if let Condition::Push { name, axis, force } = condition {
+                let dof = self.pushed(name, *axis)?;
+                moved.remove(&dof);
+                loading.force.add(dof, *force);
+            }
+        }
+        loading.displacement = moved;
+        loading.check(self.mesh.nodes().len(), self.state.displacement.len())?;
+        Ok(loading)
+    }
+
+    /// Prescribes a displacement of a group along an axis.
+    fn displace(
+        &self,
+        step: &str,
+        (on, axis, value): (&str, Axis, f64),
+        moved: &mut BTreeMap<usize, f64>,
+    ) -> Result<(), ModelError> {
+        if axis.index() >= D {
+            return Err(ModelError::OutOfRange {
+                what: format!("direction of the displacement of {on:?}"),
+                value: axis.index() as f64,
+                expected: "a direction below the dimension of the model",
+            });
+        }
+        for node in self.mesh.node_group(on)? {
+            let dof = D * node + axis.index();
+            if let Some(&first) = moved.get(&dof)
+                && first != value
+            {
+                return Err(ModelError::TwoDisplacements {
+                    step: step.to_owned(),
+                    node,
+                    axis: axis_letter(axis.index()),
+                    first,
+                    second: value,
+                });
+            }
+            moved.insert(dof, value);
+        }
+        Ok(())
+    }
+
+    /// Prescribes where tools go; one that is not mentioned stays where it is.
+    fn move_tools(
+        &self,
+        step: &Step<D>,
+        moved: &mut BTreeMap<usize, f64>,
+    ) -> Result<(), ModelError> {
         let tools = self.mesh_dofs()..self.state.displacement.len();
         moved.extend(tools.map(|dof| (dof, self.state.displacement[dof])));
         for condition in &step.conditions {
@@ -80,27 +109,22 @@ impl<const D: usize> Driver<D> {
                 moved.extend((0..D).map(|i| (D * node + i, displacement[i])));
             }
         }
-        for condition in &step.conditions {
-            if let Condition::Push { name, axis, force } = condition {
-                let node = self.tool_node(tool_index(&self.tools, name)?);
-                let translations = self.measure.rigid_modes(&[0.0; D]);
-                if !translations
-                    .iter()
-                    .any(|m| m.get(axis.index()) == Some(&1.0))
-                {
-                    return Err(ModelError::OutOfRange {
-                        what: format!("direction of the force on tool {name:?}"),
-                        value: axis.index() as f64,
-                        expected: "a direction in which the analysis lets a tool move",
-                    });
-                }
-                moved.remove(&(D * node + axis.index()));
-                loading.force.add(D * node + axis.index(), *force);
-            }
+        Ok(())
+    }
+
+    /// The degree of freedom along which a force drives a tool.
+    fn pushed(&self, name: &str, axis: Axis) -> Result<usize, ModelError> {
+        let node = self.tool_node(tool_index(&self.tools, name)?);
+        let translations = self.measure.rigid_modes(&[0.0; D]);
+        let along = |m: &[f64; D]| m.get(axis.index()) == Some(&1.0);
+        if !translations.iter().any(along) {
+            return Err(ModelError::OutOfRange {
+                what: format!("direction of the force on tool {name:?}"),
+                value: axis.index() as f64,
+                expected: "a direction in which the analysis lets a tool move",
+            });
         }
-        loading.displacement = moved;
-        loading.check(self.mesh.nodes().len(), self.state.displacement.len())?;
-        Ok(loading)
+        Ok(D * node + axis.index())
     }
 
     /// The loading that holds now, with the prescribed displacements of `end`: those that are new
