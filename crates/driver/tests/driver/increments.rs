@@ -162,7 +162,7 @@ fn what_a_tool_does_is_stored_and_the_way_to_the_block_is_free() {
         (driver.energies(), 0.5 * squares.sum::<f64>() / STIFF)
     };
     for increments in [1, 2, 5] {
-        let (exact, _) = energies(Box::new(SemismoothNewton::default()), increments);
+        let (exact, _) = energies(Box::<SemismoothNewton>::default(), increments);
         assert!(exact.stored > 1.0 && exact.penalty == 0.0, "{exact:?}");
         assert!(exact.imbalance().abs() < 1e-9 * exact.stored, "{exact:?}");
         let penalty = Penalty::new(STIFF, STIFF).expect("valid");
