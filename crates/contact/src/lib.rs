@@ -42,7 +42,7 @@ pub use polyline::Polyline;
 pub use problem::{BlockMatrix, Certificate, CondensedProblem, LocalProblem, Residual};
 pub use solvers::{
     Admm, Anderson, Auto, ContactSolution, ContactSolver, Dual, GaussSeidel, LocalSolution,
-    LocalSolver, Newton, NewtonMap, Penalty, ProximalNewton, Reason, SemismoothNewton, Tolerance,
-    TrescaFixedPoint, Unsolved, Uzawa, solve_tied, uzawa_steps,
+    LocalSolver, Newton, NewtonMap, Penalty, ProximalNewton, Reason, SemismoothNewton, TiedFactor,
+    Tolerance, TrescaFixedPoint, Unsolved, Uzawa, solve_tied, uzawa_steps,
 };
 pub use tied::{Springs, Structure, TiedProblem};

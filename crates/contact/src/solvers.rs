@@ -30,7 +30,7 @@ pub use newton::map::NewtonMap;
 pub use penalty::Penalty;
 pub use proximal::{Newton, ProximalNewton};
 pub use semismooth::SemismoothNewton;
-pub use tied::solve_tied;
+pub use tied::{TiedFactor, solve_tied};
 pub use tresca::TrescaFixedPoint;
 pub use uzawa::{Uzawa, uzawa_steps};
 

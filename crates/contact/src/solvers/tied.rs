@@ -14,7 +14,7 @@ use super::{ContactSolution, Tolerance};
 use crate::ContactError;
 use crate::problem::split;
 use crate::tied::TiedProblem;
-use factor::Factor;
+pub use factor::TiedFactor;
 use guess::Guess;
 use moreau_laws::Local;
 use nalgebra::DVector;
@@ -30,6 +30,10 @@ const ROUNDED: f64 = 100.0;
 /// the residual in the others.
 const COLD: usize = 5;
 const FAINT: [f64; 2] = [0.03, 0.1];
+
+/// How much larger the merit may be after a step with the statuses of the last solution: where few contacts hold
+/// a body it may tip over them into all that it rests on, which then has to be opened again.
+const WORSE: f64 = 4.0;
 
 /// Newton's method on the natural map of a tied problem.
 ///
@@ -48,7 +52,7 @@ struct Tied<'a, 'b, const D: usize> {
     problem: &'a mut TiedProblem<'b, D>,
     /// Which of the parts α is.
     part: usize,
-    factor: Factor<D>,
+    factor: TiedFactor<D>,
 }
 
 /// Where the iteration stands.
@@ -67,6 +71,8 @@ struct At<const D: usize> {
 /// Solves a tied problem to a tolerance, or to a residual that is `enough` \[N\] where that is larger. Returns with the
 /// solution z = t + R v of the ties R that were the last, for which (K + BᵀRB) Δu = f + Bᵀ z.
 ///
+/// `held` is the factor at hand, with K and B as they are now, and what was the last at the end.
+///
 /// Where the statuses leave the structure a rigid motion it is one of the solutions.
 ///
 /// # Errors
@@ -75,13 +81,14 @@ pub fn solve_tied<const D: usize>(
     problem: &mut TiedProblem<'_, D>,
     guess: Option<&ContactSolution<D>>,
     (tolerance, enough): (Tolerance, f64),
+    held: &mut TiedFactor<D>,
 ) -> Result<(ContactSolution<D>, DVector<f64>), ContactError> {
     let cold = guess.is_none();
     let mut guess = Guess::new(problem, guess);
     let mut newton = Tied {
         problem,
         part: 0,
-        factor: Factor::default(),
+        factor: std::mem::take(held),
     };
     let mut now = newton.begin(&mut guess)?;
     let mut first = Some(guess);
@@ -94,7 +101,9 @@ pub fn solve_tied<const D: usize>(
         if now.residual <= target.max(PARTS[0] * enough) {
             if newton.part == 0 {
                 let exact = now.residual <= target;
-                return Ok(newton.solution(now, iterations, exact));
+                let found = newton.solution(now, iterations, exact);
+                *held = newton.factor;
+                return Ok(found);
             }
             // Residuals are comparable at one α only.
             now = newton.with_part(0, now);
@@ -113,13 +122,13 @@ pub fn solve_tied<const D: usize>(
                 newton.rows(&now, faint)
             }
         };
-        // The first steps are those of guesses.
-        let allowed = match (progress.allowed(now.merit), iterations) {
-            (_, 0) => f64::INFINITY,
-            (_, 1) if cold => f64::INFINITY,
-            (allowed, _) => allowed,
+        // The first steps are those of guesses, and taken as they come.
+        let bounds = match (progress.allowed(now.merit), iterations) {
+            (_, 0 | 1) if cold => [f64::INFINITY; 2],
+            (_, 0) => [WORSE * now.merit; 2],
+            (allowed, _) => [allowed, now.merit],
         };
-        now = match newton.step(&rows, &now, allowed) {
+        now = match newton.step(&rows, &now, bounds) {
             Some(next) => next,
             None if newton.factor.is_used() && newton.stale(&status) > 0 => {
                 newton.renew(now, &status)?
@@ -127,6 +136,7 @@ pub fn solve_tied<const D: usize>(
             None if again && !newton.factor.propped.is_empty() => {
                 again = false;
                 progress.forget();
+                newton.factor = TiedFactor::default();
                 let mut closed = Guess::from(now);
                 newton.part = 0;
                 let now = newton.begin(&mut closed)?;

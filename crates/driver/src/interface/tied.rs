@@ -10,7 +10,7 @@ use crate::model::points::{Kinematics, RelativeMotionRow};
 use crate::settings::{Nesting, Seam};
 use crate::vector::SparseVector;
 use crate::vector::largest;
-use moreau_contact::Structure;
+use moreau_contact::{Structure, TiedFactor};
 use moreau_laws::{Local, Status};
 use nalgebra::{DMatrix, DVector, Dyn, LU, SMatrix};
 use std::collections::BTreeMap;
@@ -25,11 +25,58 @@ const AT_ONCE: usize = 8;
 /// engines 16 24 30`.
 const TOGETHER: f64 = 0.3;
 
+/// How much an entry of B may have changed, with frames that turn, since a factor of which the ties serve on: as
+/// often as they are firmer than the structure, this is the part by which a step is wrong, and what is wrong vanishes
+/// with the steps.
+const TURNED: f64 = 1e-6;
+
+/// B: rows of all components of all contacts, empty of those that are switched off.
+type Rows = Vec<Vec<(u32, f64)>>;
+
+/// The factor that the last contact problem of an increment has left.
+#[derive(Debug, Default)]
+pub(crate) struct Held<const D: usize> {
+    /// The rows that its ties are in.
+    pub(crate) rows: Rows,
+    pub(crate) factor: TiedFactor<D>,
+}
+
+/// Whether rows are those of frames that have hardly turned; what an entry is of rounding may be left out.
+fn are_near(a: &Rows, b: &Rows) -> bool {
+    let at = |row: &[(u32, f64)], p: u32| {
+        let found = row.binary_search_by_key(&p, |&(q, _)| q);
+        found.map_or(0.0, |k| row[k].1)
+    };
+    let within = |a: &[(u32, f64)], b: &[(u32, f64)]| {
+        (a.iter()).all(|&(p, value)| (value - at(b, p)).abs() <= TURNED)
+    };
+    a.len() == b.len() && (a.iter().zip(b)).all(|(a, b)| within(a, b) && within(b, a))
+}
+
+/// The rows of all contacts.
+fn rows<const D: usize>(driver: &Driver<D>, system: &System, kinematics: &[Kinematics<D>]) -> Rows {
+    let unknown = |dof: usize| system.unknown(dof).map(|p| p as usize);
+    let mut rows = Vec::with_capacity(D * kinematics.len());
+    for (motion_row, k) in driver.motion_rows.iter().zip(kinematics) {
+        for j in 0..D {
+            rows.push(match k.active[j] {
+                true => {
+                    let row = row(motion_row, k, j, unknown).into_iter();
+                    row.map(|(p, c)| (p as u32, c)).collect()
+                }
+                false => Vec::new(),
+            });
+        }
+    }
+    rows
+}
+
 /// A linearised increment seen from its contacts.
 pub(crate) struct Tied<'a, const D: usize> {
     system: &'a mut System,
-    /// B: rows of all components of all contacts, empty of those that are switched off.
-    rows: Vec<Vec<(u32, f64)>>,
+    rows: Rows,
+    /// The rows that ties are in.
+    tied_rows: &'a mut Rows,
     /// f at the unknowns \[N\].
     load: Vec<f64>,
     /// Of every contact \[N/mm\].
@@ -37,7 +84,7 @@ pub(crate) struct Tied<'a, const D: usize> {
     ties: Vec<SMatrix<f64, D, D>>,
     border: Option<Border>,
     /// Stiffness of a proximal term on the contacts, part of K \[N/mm\].
-    soft: f64,
+    pub(crate) soft: f64,
     pub(crate) solves: usize,
 }
 
@@ -59,6 +106,24 @@ struct Border {
 }
 
 impl Border {
+    /// Sets up the equations of the amounts from what the factor makes of each of them; false where nothing decides
+    /// them.
+    fn decide(&mut self, answers: Vec<Vec<f64>>) -> bool {
+        // q·(x + Σ a y) + c λ = m, and a spring is as long as its node is displaced: s = x + Σ a y.
+        let size = answers.len();
+        let mut equations = DMatrix::identity(size, size);
+        equations[(0, 0)] = self.compliance;
+        for (k, answer) in answers.iter().enumerate() {
+            equations[(0, k)] += dot(&self.load, answer);
+            for (j, &p) in self.pivot.iter().enumerate() {
+                equations[(1 + j, k)] -= answer[p];
+            }
+        }
+        self.answers = answers;
+        self.equations = equations.lu();
+        self.equations.is_invertible()
+    }
+
     /// Amounts of the load and of the spring forces, where the others displace by x.
     fn amounts(&self, x: &[f64], missing: f64) -> DVector<f64> {
         let mut value = DVector::zeros(1 + self.pivot.len());
@@ -71,22 +136,42 @@ impl Border {
     }
 }
 
+/// x ← x + Bᵀ z.
+fn spread(rows: &Rows, z: impl Iterator<Item = f64>, x: &mut [f64]) {
+    for (row, z) in rows.iter().zip(z) {
+        for &(p, c) in row {
+            x[p as usize] += c * z;
+        }
+    }
+}
+
+/// B x.
+fn relative(rows: &Rows, x: &[f64]) -> DVector<f64> {
+    let sum = |row: &Vec<(u32, f64)>| row.iter().map(|&(p, c)| c * x[p as usize]).sum();
+    DVector::from_iterator(rows.len(), rows.iter().map(sum))
+}
+
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl<'a, const D: usize> Tied<'a, D> {
-    /// Under a load at every degree of freedom \[N\], and one of unknown factor with c and m of its equation.
+    /// Under a load at every degree of freedom \[N\], and one of unknown factor with c and m of its equation. What is
+    /// held is kept if it serves here.
     pub(crate) fn new(
         driver: &Driver<D>,
         system: &'a mut System,
         kinematics: &[Kinematics<D>],
         load: &[f64],
         border: Option<(&SparseVector, f64, f64)>,
+        (tied_rows, factor): (&'a mut Rows, &mut TiedFactor<D>),
     ) -> Self {
-        let mut rows = Vec::with_capacity(D * kinematics.len());
-        let mut stiffness = Vec::with_capacity(kinematics.len());
-        for (motion_row, k) in driver.motion_rows.iter().zip(kinematics) {
+        let rows = rows(driver, system, kinematics);
+        if border.is_some() || !system.holds_ties() || !are_near(tied_rows, &rows) {
+            *factor = TiedFactor::default();
+        }
+        let mut stiffness = Vec::with_capacity(driver.motion_rows.len());
+        for motion_row in &driver.motion_rows {
             let own = (motion_row.own.iter()).flat_map(|&(a, _)| (0..D).map(move |i| D * a + i));
             let own = own.filter_map(|dof| system.unknown(dof));
             let largest = own.map(|p| system.diagonal(p)).fold(0.0, f64::max);
@@ -95,16 +180,6 @@ impl<'a, const D: usize> Tied<'a, D> {
             } else {
                 system.shift()
             });
-            for j in 0..D {
-                rows.push(match k.active[j] {
-                    true => {
-                        let unknown = |dof: usize| system.unknown(dof).map(|p| p as usize);
-                        let row = row(motion_row, k, j, unknown).into_iter();
-                        row.map(|(p, c)| (p as u32, c)).collect()
-                    }
-                    false => Vec::new(),
-                });
-            }
         }
         let pivot = system.pivot.map_or(0..0, |a| D * a..D * a + D);
         let pivot = pivot.filter_map(|dof| system.unknown(dof));
@@ -120,8 +195,9 @@ impl<'a, const D: usize> Tied<'a, D> {
         Self {
             load: system.unknowns().map(|dof| load[dof]).collect(),
             rows,
+            tied_rows,
             stiffness,
-            ties: Vec::new(),
+            ties: factor.ties().to_vec(),
             border,
             soft: 0.0,
             solves: 0,
@@ -178,29 +254,14 @@ impl<'a, const D: usize> Tied<'a, D> {
         largest(self.load.iter().copied())
     }
 
-    /// A proximal term c/2 |v|² on the contacts, which makes K regular.
-    pub(crate) fn hold(&mut self, c: f64) {
-        self.soft = c;
-    }
-
-    /// x ← x + Bᵀ z.
-    fn spread(&self, z: impl Iterator<Item = f64>, x: &mut [f64]) {
-        for (row, z) in self.rows.iter().zip(z) {
-            for &(p, c) in row {
-                x[p as usize] += c * z;
-            }
-        }
-    }
-
-    /// B x.
-    fn relative(&self, x: &[f64]) -> DVector<f64> {
-        let sum = |row: &Vec<(u32, f64)>| row.iter().map(|&(p, c)| c * x[p as usize]).sum();
-        DVector::from_iterator(self.rows.len(), self.rows.iter().map(sum))
+    /// A proximal term c/2 |v|² on the contacts, which makes K regular; whether it was another.
+    pub(crate) fn hold(&mut self, c: f64) -> bool {
+        std::mem::replace(&mut self.soft, c) != c
     }
 
     /// (R + c) B x.
     fn held(&self, x: &[f64]) -> DVector<f64> {
-        let v = self.relative(x);
+        let v = relative(self.tied_rows, x);
         let mut held = DVector::zeros(v.len());
         for (i, tie) in self.ties.iter().enumerate() {
             let own: Local<D> = v.fixed_rows::<D>(D * i).into();
@@ -238,7 +299,7 @@ impl<'a, const D: usize> Tied<'a, D> {
     /// [`Inaccurate`] where the factor does not solve the system.
     pub(crate) fn expand(mut self, z: &DVector<f64>, step: &mut [f64]) -> Result<f64, Inaccurate> {
         let mut f = std::mem::take(&mut self.load);
-        self.spread(z.iter().copied(), &mut f);
+        spread(&self.rows, z.iter().copied(), &mut f);
         let mut x = f.clone();
         let missing = self.border.as_ref().map_or(0.0, |b| b.missing);
         let mut factor = self.solve(&mut x, missing);
@@ -251,7 +312,7 @@ impl<'a, const D: usize> Tied<'a, D> {
             };
             let given = largest(applied.iter().chain(held.iter()).copied());
             let (mut left, expected) = self.system.left(&applied, &x, given);
-            self.spread(held.iter().map(|t| -t), &mut left);
+            spread(self.tied_rows, held.iter().map(|t| -t), &mut left);
             let found = largest(left.iter().copied());
             if found <= expected {
                 break;
@@ -276,6 +337,7 @@ impl<const D: usize> Structure<D> for Tied<'_, D> {
 
     fn tie(&mut self, ties: &[SMatrix<f64, D, D>]) -> bool {
         self.ties = ties.to_vec();
+        self.tied_rows.clone_from(&self.rows);
         let (rows, soft) = (&self.rows, SMatrix::identity() * self.soft);
         let springs = self.border.as_ref().map(|b| (b.pivot.clone(), b.spring));
         let held = self.system.tie(|pattern, values| {
@@ -305,9 +367,9 @@ impl<const D: usize> Structure<D> for Tied<'_, D> {
             false => vec![0.0; self.load.len()],
         };
         let missing = self.border.as_ref().filter(|_| loaded).map(|b| b.missing);
-        self.spread(z.iter().copied(), &mut x);
+        spread(&self.rows, z.iter().copied(), &mut x);
         self.solve(&mut x, missing.unwrap_or(0.0));
-        self.relative(&x)
+        relative(&self.rows, &x)
     }
 
     fn displacements(&mut self, z: &[DVector<f64>]) -> Vec<DVector<f64>> {
@@ -317,14 +379,14 @@ impl<const D: usize> Structure<D> for Tied<'_, D> {
             let mut columns = vec![0.0; size * some.len()];
             let each = |k: usize| size * k..size * (k + 1);
             for (k, z) in some.iter().enumerate() {
-                self.spread(z.iter().copied(), &mut columns[each(k)]);
+                spread(&self.rows, z.iter().copied(), &mut columns[each(k)]);
             }
             self.system.solve_tied(&mut columns);
             self.solves += some.len();
             for k in 0..some.len() {
                 let x = &mut columns[each(k)];
                 self.add_border(x, 0.0);
-                answers.push(self.relative(x));
+                answers.push(relative(&self.rows, x));
             }
         }
         answers
@@ -374,22 +436,7 @@ impl<const D: usize> Tied<'_, D> {
             self.system.solve_tied(answer);
             self.solves += 1;
         }
-        // q·(x + Σ a y) + c λ = m, and a spring is as long as its node is displaced: s = x + Σ a y.
-        let size = answers.len();
-        let mut equations = DMatrix::zeros(size, size);
-        for (k, answer) in answers.iter().enumerate() {
-            equations[(0, k)] = dot(&border.load, answer);
-            for (j, &p) in border.pivot.iter().enumerate() {
-                equations[(1 + j, k)] = -answer[p];
-            }
-        }
-        equations[(0, 0)] += border.compliance;
-        for j in 1..size {
-            equations[(j, j)] += 1.0;
-        }
-        border.answers = answers;
-        border.equations = equations.lu();
-        let decided = border.equations.is_invertible();
+        let decided = border.decide(answers);
         self.border = Some(border);
         decided
     }
@@ -407,5 +454,47 @@ impl<const D: usize> Driver<D> {
                 .map(RelativeMotionRow::nodes)
                 .collect()
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chain whose end only a spring holds, under f and a load of unknown factor.
+    #[test]
+    fn amounts_leave_the_springs_without_force_and_decide_the_factor() {
+        // Two masses that nothing but their own spring connects: K alone is singular.
+        let k = DMatrix::from_row_slice(2, 2, &[3.0, -3.0, -3.0, 3.0]);
+        let (load, compliance, missing, spring) = (vec![1.0, 2.0], 0.5, 0.7, 40.0);
+        let mut held = k.clone();
+        held[(1, 1)] += spring;
+        let solve = |f: &[f64]| -> Vec<f64> {
+            let x = held.clone().lu().solve(&DVector::from_column_slice(f));
+            x.expect("regular").as_slice().to_vec()
+        };
+        let mut border = Border {
+            load: load.clone(),
+            compliance,
+            missing,
+            pivot: vec![1],
+            spring,
+            answers: Vec::new(),
+            equations: DMatrix::zeros(0, 0).lu(),
+        };
+        let answers = vec![solve(&load), solve(&[0.0, spring])];
+        assert!(border.decide(answers.clone()));
+        let f = [0.4, -0.9];
+        let mut x = solve(&f);
+        let amounts = border.amounts(&x, missing);
+        for (x, k) in x.iter_mut().zip(0..) {
+            *x += amounts[0] * answers[0][k] + amounts[1] * answers[1][k];
+        }
+        let factor = amounts[0];
+        let left = &k * DVector::from_column_slice(&x);
+        for i in 0..2 {
+            assert!((left[i] - f[i] - factor * load[i]).abs() < 1e-12);
+        }
+        assert!((dot(&load, &x) + compliance * factor - missing).abs() < 1e-12);
     }
 }

@@ -50,7 +50,8 @@ pub(crate) struct System {
     matrix: Matrix,
     /// What is factorised instead where the factor of K is too large.
     coarse: Option<Coarse>,
-    /// Where contacts are tied in the factor instead of condensed: room for K and what ties add to it.
+    /// Where contacts are tied in the factor instead of condensed: the values of K that went into the factor at
+    /// hand; empty where there is none.
     tied: Option<Vec<f64>>,
     shift: f64,
     stiffest: f64,
@@ -513,20 +514,27 @@ impl System {
     /// Factorises K and what `ties` adds to its values; false where the sum leaves a motion without
     /// stiffness.
     pub(crate) fn tie(&mut self, ties: impl FnOnce(&Pattern, &mut [f64])) -> bool {
-        let mut sum = self.matrix.values().to_vec();
+        let mut sum = self.tied.take().unwrap_or_default();
+        sum.clear();
+        sum.extend_from_slice(self.matrix.values());
         ties(&self.matrix.pattern, &mut sum);
-        if self.tied.as_ref() == Some(&sum) {
-            return true;
-        }
         self.elastic_factor = false;
         self.factorisations += 1;
         let outcome = timed(&mut self.timings.factorisation, || {
             self.engine.factorise(&sum)
         });
         let holds = outcome.is_ok() && self.engine.least_pivot() > RIGID;
-        // What does not hold is not kept.
-        self.tied = Some(if holds { sum } else { Vec::new() });
+        match holds {
+            true => sum.copy_from_slice(self.matrix.values()),
+            false => sum.clear(),
+        }
+        self.tied = Some(sum);
         holds
+    }
+
+    /// Whether the factor at hand is that of K and of ties.
+    pub(crate) fn holds_ties(&self) -> bool {
+        self.tied.as_deref() == Some(self.matrix.values())
     }
 
     /// The next increment does the same whatever factor the last one has left.

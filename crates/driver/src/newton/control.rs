@@ -110,3 +110,32 @@ impl<const D: usize> Driver<D> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The increment before, as many times as the far end of the spring moves on, is a guess that leaves nothing
+    /// undone; and one that falls short of it leaves that.
+    #[test]
+    fn the_increment_before_is_repeated_as_far_as_the_spring_is_pulled() {
+        let mut load = SparseVector::default();
+        load.add(0, 2.0);
+        load.add(2, -1.0);
+        let last = [0.3, 5.0, 0.1];
+        let mut control = Control {
+            factor: 0.4,
+            load: &load,
+            start: 0.4,
+            last: 0.05,
+            compliance: 3.0,
+            length: 1.3,
+        };
+        let ratio = control.ratio(&last);
+        let guess = last.map(|u| ratio * u);
+        assert!((control.missing(&guess) - 3.0 * ratio * 0.05).abs() < 1e-14);
+        control.factor += ratio * control.last;
+        assert!(control.missing(&guess).abs() < 1e-14);
+        assert!((control.missing(&[0.0; 3]) - (1.3 - 3.0 * ratio * 0.05)).abs() < 1e-14);
+    }
+}

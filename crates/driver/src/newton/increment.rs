@@ -4,6 +4,7 @@
 use crate::assembly::cell_law::Stiffness;
 use crate::driver::Driver;
 use crate::error::IncrementError;
+use crate::interface::tied::Held;
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::model::points::Kinematics;
@@ -42,6 +43,7 @@ pub(crate) struct Increment<'a, 'c, const D: usize> {
     /// The last solution of the contact problem.
     solution: Option<ContactSolution<D>>,
     chord: Chord,
+    held: Held<D>,
     pub(crate) counts: Counts,
 }
 
@@ -182,6 +184,7 @@ impl<const D: usize> Driver<D> {
             missing,
             solution: self.state.solution.clone(),
             chord: Chord::default(),
+            held: Held::default(),
             counts: Counts {
                 solves: 1,
                 before: (system.factorisations, system.conjugate),
@@ -342,7 +345,7 @@ impl<const D: usize> Driver<D> {
         let missing = std::mem::take(&mut increment.missing);
         let load = increment.iterate.assembly.load(&[&increment.end.force]);
         let (step, factor, contact) = loop {
-            let linearised = Linearised {
+            let mut linearised = Linearised {
                 kinematics: &balance.kinematics,
                 loading: &increment.end,
                 missing: &missing,
@@ -352,12 +355,13 @@ impl<const D: usize> Driver<D> {
                     .as_ref()
                     .map(|c| (c.load, c.compliance, c.missing(&increment.iterate.d_u))),
                 enough,
+                held: &mut increment.held,
             };
             let load = match &unsymmetric {
                 None => load.clone(),
                 Some(u) => u.load(&load),
             };
-            let answer = self.answer(system, &linearised, load, &mut increment.counts)?;
+            let answer = self.answer(system, &mut linearised, load, &mut increment.counts)?;
             let contact = self.contact_forces(&balance.kinematics, &answer.solution.force);
             increment.solution = Some(answer.solution);
             let (iterate, prescribed) = (&increment.iterate, system.prescribed());

@@ -4,7 +4,7 @@
 use crate::driver::Driver;
 use crate::error::IncrementError;
 use crate::interface::condensation::Condensation;
-use crate::interface::tied::Tied;
+use crate::interface::tied::{Held, Tied};
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::model::points::Kinematics;
@@ -12,7 +12,7 @@ use crate::newton::candidate::Counts;
 use crate::vector::SparseVector;
 use crate::vector::largest;
 use moreau_algebra::Interface;
-use moreau_contact::{ContactError, ContactSolution, Springs, TiedProblem, solve_tied};
+use moreau_contact::{ContactError, ContactSolution, Springs, TiedFactor, TiedProblem, solve_tied};
 use moreau_laws::Local;
 use nalgebra::DVector;
 use std::time::Instant;
@@ -37,6 +37,8 @@ pub(crate) struct Linearised<'a, const D: usize> {
     pub(crate) border: Option<(&'a SparseVector, f64, f64)>,
     /// Residual that the contact solution may keep \[N\].
     pub(crate) enough: f64,
+    /// The factor that the last contact problem has left, where contacts are tied.
+    pub(crate) held: &'a mut Held<D>,
 }
 
 /// Its solution.
@@ -53,7 +55,7 @@ impl<const D: usize> Driver<D> {
     pub(crate) fn answer(
         &self,
         system: &mut System,
-        linearised: &Linearised<'_, D>,
+        linearised: &mut Linearised<'_, D>,
         load: Vec<f64>,
         counts: &mut Counts,
     ) -> Result<Answer<D>, IncrementError> {
@@ -69,7 +71,7 @@ impl<const D: usize> Driver<D> {
     fn answer_tied(
         &self,
         system: &mut System,
-        linearised: &Linearised<'_, D>,
+        linearised: &mut Linearised<'_, D>,
         load: Vec<f64>,
         counts: &mut Counts,
     ) -> Result<Answer<D>, IncrementError> {
@@ -80,37 +82,27 @@ impl<const D: usize> Driver<D> {
         linearised.missing.add_to(&mut step, 1.0);
         let (stiffest, floats) = (system.shift(), system.floats);
         let loading = linearised.loading;
-        let mut tied = Tied::new(self, system, kinematics, &load, linearised.border);
+        let Held { rows, factor } = &mut *linearised.held;
+        let border = linearised.border;
+        let kept = (rows, &mut *factor);
+        let mut tied = Tied::new(self, system, kinematics, &load, border, kept);
         let method = self.settings.contact.springs();
         let (compliance, tolerance) = method.ok_or(ContactError::Singular).map_err(contact)?;
         let previous = self.previous_forces(kinematics);
+        let suspended = tied.suspended(self, kinematics);
         let last = match linearised.guess {
             Some(s) if counts.newton > 1 => &s.force,
             _ => &previous,
         };
-        let suspended = tied.suspended(self, kinematics);
-        let springs: Vec<Springs<D>> = (0..previous.len())
-            .map(|i| Springs {
-                compliance: compliance + suspended[i],
-                force: Local::from_fn(|j, _| match suspended[i][j] > 0.0 {
-                    true => last[i][j],
-                    false => {
-                        if j > 0 {
-                            previous[i][j]
-                        } else {
-                            0.0
-                        }
-                    }
-                }),
-            })
-            .collect();
+        let springs = springs(&compliance, &suspended, (last, &previous));
         let largest_load = tied.largest_load();
-        let given = previous
-            .iter()
-            .map(|t| t.norm())
-            .fold(largest_load, f64::max);
+        let largest_of =
+            |forces: &[Local<D>], other: f64| forces.iter().map(|t| t.norm()).fold(other, f64::max);
+        let given = largest_of(&previous, largest_load);
         let mut solve = |c: f64, enough: f64| {
-            tied.hold(c);
+            if tied.hold(c) {
+                *factor = TiedFactor::default();
+            }
             let mut problem = TiedProblem {
                 structure: &mut tied,
                 origin: kinematics.iter().map(|k| k.u).collect(),
@@ -119,7 +111,7 @@ impl<const D: usize> Driver<D> {
                 load: largest_load,
                 previous: previous.clone(),
             };
-            solve_tied(&mut problem, linearised.guess, (tolerance, enough))
+            solve_tied(&mut problem, linearised.guess, (tolerance, enough), factor)
         };
         let determined = |(s, z): (ContactSolution<D>, DVector<f64>)| match floats
             && !self.is_held(loading, &s.status)
@@ -133,11 +125,7 @@ impl<const D: usize> Driver<D> {
                 counts.undetermined |= error == ContactError::Singular;
                 nearest(error, stiffest, |c| {
                     let (solution, z) = solve(c, 0.0)?;
-                    let scale = solution
-                        .force
-                        .iter()
-                        .map(|t| t.norm())
-                        .fold(given, f64::max);
+                    let scale = largest_of(&solution.force, given);
                     Ok((solution, z, scale))
                 })
             })
@@ -148,6 +136,9 @@ impl<const D: usize> Driver<D> {
             (0..D).filter(|&j| c[j] > 0.0).for_each(|j| u[j] = obeys[j]);
         }
         counts.contact_solves += tied.solves;
+        if tied.soft > 0.0 {
+            *factor = TiedFactor::default();
+        }
         let growth = tied.expand(&z, &mut step)?;
         Ok(Answer {
             solution,
@@ -159,7 +150,7 @@ impl<const D: usize> Driver<D> {
     fn answer_condensed(
         &self,
         system: &mut System,
-        linearised: &Linearised<'_, D>,
+        linearised: &mut Linearised<'_, D>,
         load: Vec<f64>,
         counts: &mut Counts,
     ) -> Result<Answer<D>, IncrementError> {
@@ -229,6 +220,24 @@ impl<const D: usize> Driver<D> {
             growth,
         })
     }
+}
+
+/// Springs in series with every contact: those of the method, of which a slip stretches those along it from the
+/// forces t₀ at the start of the step, and those of what is suspended, from the last forces.
+fn springs<const D: usize>(
+    compliance: &Local<D>,
+    suspended: &[Local<D>],
+    (last, previous): (&[Local<D>], &[Local<D>]),
+) -> Vec<Springs<D>> {
+    let of = |i: usize| Springs {
+        compliance: compliance + suspended[i],
+        force: Local::from_fn(|j, _| match j {
+            _ if suspended[i][j] > 0.0 => last[i][j],
+            0 => 0.0,
+            _ => previous[i][j],
+        }),
+    };
+    (0..previous.len()).map(of).collect()
 }
 
 /// A contact problem that is singular, as where all that touches slips or nothing is left to press: of its

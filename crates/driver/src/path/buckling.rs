@@ -4,7 +4,7 @@
 use crate::assembly::cell_law::Stiffness;
 use crate::driver::Driver;
 use crate::interface::condensation::Condensation;
-use crate::interface::tied::Tied;
+use crate::interface::tied::{Held, Tied};
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::vector::SparseVector;
@@ -90,7 +90,8 @@ impl<const D: usize> Driver<D> {
         };
         if system.is_tied() {
             let held = !system.floats || self.is_held(&self.state.loading, &status);
-            let mut tied = Tied::new(self, system, &kinematics, &rest, None);
+            let Held { rows, factor } = &mut Held::default();
+            let mut tied = Tied::new(self, system, &kinematics, &rest, None, (rows, factor));
             if !(held && tied.hold_statuses(&status)) {
                 return None;
             }

@@ -3,8 +3,9 @@
 
 use crate::driver::Driver;
 use crate::error::ModelError;
-use crate::model::load::{Condition, Loading, Step, axis_letter};
+use crate::model::load::{Axis, Condition, Loading, Step, axis_letter};
 use crate::model::points::{Turn, tool_index};
+use crate::vector::SparseVector;
 use std::collections::BTreeMap;
 
 impl<const D: usize> Driver<D> {
@@ -24,28 +25,7 @@ impl<const D: usize> Driver<D> {
         for condition in &step.conditions {
             match condition {
                 Condition::Displace { on, axis, value } => {
-                    if axis.index() >= D {
-                        return Err(ModelError::OutOfRange {
-                            what: format!("direction of the displacement of {on:?}"),
-                            value: axis.index() as f64,
-                            expected: "a direction below the dimension of the model",
-                        });
-                    }
-                    for node in mesh.node_group(on)? {
-                        let dof = D * node + axis.index();
-                        if let Some(&first) = moved.get(&dof)
-                            && first != *value
-                        {
-                            return Err(ModelError::TwoDisplacements {
-                                step: step.name.clone(),
-                                node,
-                                axis: axis_letter(axis.index()),
-                                first,
-                                second: *value,
-                            });
-                        }
-                        moved.insert(dof, *value);
-                    }
+                    self.displace(&step.name, (on, *axis, *value), &mut moved)?;
                 }
                 Condition::Force { on, force } => {
                     let nodes = mesh.node_group(on)?;
@@ -54,6 +34,9 @@ impl<const D: usize> Driver<D> {
                     }
                 }
                 Condition::Pressure { on, pressure } => {
+                    if self.has_large_strains() {
+                        return Err(ModelError::FollowingPressure { on: on.clone() });
+                    }
                     for s in self.measure.facet_shares(mesh, mesh.facet_group(on)?) {
                         add(s.node, -pressure, &s.normal);
                     }
@@ -71,7 +54,58 @@ impl<const D: usize> Driver<D> {
                 Condition::Tool { .. } | Condition::Turn { .. } | Condition::Push { .. } => {}
             }
         }
-        // A tool that is not mentioned stays where it is.
+        self.move_tools(step, &mut moved)?;
+        loading.turn = self.turns(step)?;
+        for condition in &step.conditions {
+            if let Condition::Push { name, axis, force } = condition {
+                let dof = self.pushed(name, *axis)?;
+                moved.remove(&dof);
+                loading.force.add(dof, *force);
+            }
+        }
+        loading.displacement = moved;
+        loading.check(self.mesh.nodes().len(), self.state.displacement.len())?;
+        Ok(loading)
+    }
+
+    /// Prescribes a displacement of a group along an axis.
+    fn displace(
+        &self,
+        step: &str,
+        (on, axis, value): (&str, Axis, f64),
+        moved: &mut BTreeMap<usize, f64>,
+    ) -> Result<(), ModelError> {
+        if axis.index() >= D {
+            return Err(ModelError::OutOfRange {
+                what: format!("direction of the displacement of {on:?}"),
+                value: axis.index() as f64,
+                expected: "a direction below the dimension of the model",
+            });
+        }
+        for node in self.mesh.node_group(on)? {
+            let dof = D * node + axis.index();
+            if let Some(&first) = moved.get(&dof)
+                && first != value
+            {
+                return Err(ModelError::TwoDisplacements {
+                    step: step.to_owned(),
+                    node,
+                    axis: axis_letter(axis.index()),
+                    first,
+                    second: value,
+                });
+            }
+            moved.insert(dof, value);
+        }
+        Ok(())
+    }
+
+    /// Prescribes where tools go; one that is not mentioned stays where it is.
+    fn move_tools(
+        &self,
+        step: &Step<D>,
+        moved: &mut BTreeMap<usize, f64>,
+    ) -> Result<(), ModelError> {
         let tools = self.mesh_dofs()..self.state.displacement.len();
         moved.extend(tools.map(|dof| (dof, self.state.displacement[dof])));
         for condition in &step.conditions {
@@ -80,36 +114,36 @@ impl<const D: usize> Driver<D> {
                 moved.extend((0..D).map(|i| (D * node + i, displacement[i])));
             }
         }
-        // Nor does one turn on.
-        loading.turn = self.state.loading.turn.clone();
+        Ok(())
+    }
+
+    /// How far tools have turned in the end; one that is not mentioned turns no further.
+    fn turns(&self, step: &Step<D>) -> Result<SparseVector, ModelError> {
+        let before = &self.state.loading;
+        let mut turns = before.turn.clone();
         for condition in &step.conditions {
             if let Condition::Turn { name, axis, angle } = condition {
                 let tool = tool_index(&self.tools, name)?;
-                let turn = self.turn(name, axis, *angle)? - loading.turn_of(tool);
-                (0..3).for_each(|i| loading.turn.add(3 * tool + i, turn[i]));
+                let by = self.turn(name, axis, *angle)? - before.turn_of(tool);
+                (0..3).for_each(|i| turns.add(3 * tool + i, by[i]));
             }
         }
-        for condition in &step.conditions {
-            if let Condition::Push { name, axis, force } = condition {
-                let node = self.tool_node(tool_index(&self.tools, name)?);
-                let translations = self.measure.rigid_modes(&[0.0; D]);
-                if !translations
-                    .iter()
-                    .any(|m| m.get(axis.index()) == Some(&1.0))
-                {
-                    return Err(ModelError::OutOfRange {
-                        what: format!("direction of the force on tool {name:?}"),
-                        value: axis.index() as f64,
-                        expected: "a direction in which the analysis lets a tool move",
-                    });
-                }
-                moved.remove(&(D * node + axis.index()));
-                loading.force.add(D * node + axis.index(), *force);
-            }
+        Ok(turns)
+    }
+
+    /// The degree of freedom along which a force drives a tool.
+    fn pushed(&self, name: &str, axis: Axis) -> Result<usize, ModelError> {
+        let node = self.tool_node(tool_index(&self.tools, name)?);
+        let translations = self.measure.rigid_modes(&[0.0; D]);
+        let along = |m: &[f64; D]| m.get(axis.index()) == Some(&1.0);
+        if !translations.iter().any(along) {
+            return Err(ModelError::OutOfRange {
+                what: format!("direction of the force on tool {name:?}"),
+                value: axis.index() as f64,
+                expected: "a direction in which the analysis lets a tool move",
+            });
         }
-        loading.displacement = moved;
-        loading.check(self.mesh.nodes().len(), self.state.displacement.len())?;
-        Ok(loading)
+        Ok(D * node + axis.index())
     }
 
     /// A turn of a tool about an axis of any length by an angle \[rad\].

@@ -1,7 +1,10 @@
 //! How steps are divided into increments, and what is told of them.
 
 use crate::steps::on_floor;
-use moreau_driver::{Axis, IncrementError, Increments, Settings, Step};
+use moreau_contact::{ContactSolver, Penalty, Plane, SemismoothNewton};
+use moreau_driver::{Axis, Driver, IncrementError, Increments, Model, Settings, Step};
+use moreau_laws::{Coulomb, Elastic};
+use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
 
 #[test]
 fn a_step_that_is_too_long_is_cut_and_ends_where_it_should() {
@@ -126,5 +129,49 @@ fn increments_are_cut_to_the_least() {
             assert!((1e-3..2e-3).contains(&smallest), "{smallest}");
         }
         other => panic!("{other:?}"),
+    }
+}
+
+/// An elastic block that a plate comes down on through a gap: no work is done on the way there, and all that is done
+/// from there on is stored, in the block and in the springs of a penalty, however many increments it takes.
+#[test]
+fn what_a_tool_does_is_stored_and_the_way_to_the_block_is_free() {
+    const STIFF: f64 = 1e5;
+    let energies = |contact: Box<dyn ContactSolver<2>>, increments: usize| {
+        let (x, y) = (uniform(0.0, 2.0, 2), uniform(0.0, 1.0, 2));
+        let mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
+        let plate = Plane::new([0.0, 1.01], [0.0, -1.0]).expect("valid");
+        let steel = Elastic::new(210e3, 0.3).expect("valid");
+        let smooth = Coulomb::new(0.0).expect("valid");
+        let model = Model::new(mesh, PlaneStrain::default())
+            .material("block", steel, Integration::Reduced)
+            .and_then(|m| m.tool("plate", plate))
+            .and_then(|m| m.contact("block.top", "plate", smooth))
+            .expect("valid");
+        let settings = Settings {
+            contact,
+            ..Settings::default()
+        };
+        let mut driver = Driver::new(model, settings).expect("valid");
+        let press = Step::new("press")
+            .fix("block.left", &[Axis::X])
+            .fix("block.bottom", &[Axis::Y])
+            .tool("plate", [0.0, -0.03]);
+        driver.run(&press, increments, |_, _| {}).expect("solved");
+        let squares = driver.contacts().iter().map(|c| c.t[0] * c.t[0]);
+        (driver.energies(), 0.5 * squares.sum::<f64>() / STIFF)
+    };
+    for increments in [1, 2, 5] {
+        let (exact, _) = energies(Box::<SemismoothNewton>::default(), increments);
+        assert!(exact.stored > 1.0 && exact.penalty == 0.0, "{exact:?}");
+        assert!(exact.imbalance().abs() < 1e-9 * exact.stored, "{exact:?}");
+        let penalty = Penalty::new(STIFF, STIFF).expect("valid");
+        let (soft, springs) = energies(Box::new(penalty), increments);
+        assert!(springs > 1e-2 * soft.stored);
+        assert!(
+            (soft.penalty - springs).abs() < 1e-9 * springs,
+            "{soft:?} {springs}"
+        );
+        assert!(soft.imbalance().abs() < 1e-9 * soft.stored, "{soft:?}");
     }
 }

@@ -257,11 +257,12 @@ impl Saved for Warnings {
     }
 }
 
+fn percent(v: f64) -> String {
+    format!("{} %", shown(100.0 * v, 3))
+}
+
 impl Worst {
     fn sentence<const D: usize>(&self, kind: Kind, driver: &Driver<D>, deck: &Deck) -> String {
-        let number = |k: usize| self.numbers.get(k).copied().unwrap_or(0.0);
-        let percent = |v: f64| format!("{} %", shown(100.0 * v, 3));
-        let length = deck.units.length();
         let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
         match kind {
             Kind::Strain => format!(
@@ -269,85 +270,105 @@ impl Worst {
                  exceed {} in parts of the body that have {} of the work or of the volume; the analysis is \
                  linear in strains, and off by about as much as they are: move less, or take this as an \
                  estimate",
-                percent(number(0)),
+                percent(self.number(0)),
                 percent(Deformation::<D>::STRAIN),
-                percent(number(1))
+                percent(self.number(1))
             ),
             Kind::Rotation => format!(
                 "rotations are no longer small: they reach {}° in cell {index} at {at} in increment {when}, and \
                  exceed {}° in parts of the body that have {} of the work or of the volume; the analysis is \
                  one of small rotations, in the undeformed position: move less, or take this as an estimate",
-                shown(number(0).to_degrees(), 3),
+                shown(self.number(0).to_degrees(), 3),
                 shown(Deformation::<D>::ROTATION.to_degrees(), 3),
-                percent(number(1))
+                percent(self.number(1))
             ),
             Kind::Inverted => format!(
                 "cells are turned inside out by their displacements: cell {index} at {at} in increment {when} is \
                  the first, {} are at most; from there on the result means nothing: move less",
-                shown(number(0), 9)
+                shown(self.number(0), 9)
             ),
-            Kind::Between => {
-                let (surface, tool) = driver.contact_name(index);
-                format!(
-                    "the tool \"{tool}\" is {} {length} within \"{surface}\" between its nodes, at {at} in \
-                     increment {when}, on a facet {} {length} long whose surface is pressed in by {} {length} at \
-                     its nodes: contact acts at nodes, and what is smaller than a facet passes between them; \
-                     use facets of a fifth of that length, or less, where \"{tool}\" touches",
-                    shown(number(0), 3),
-                    shown(number(1), 3),
-                    shown(number(2), 3)
-                )
-            }
-            Kind::Held => {
-                let (surface, opposite) = driver.contact_name(number(2) as usize);
-                format!(
-                    "{} nodes of \"{surface}\" are held inside of \"{opposite}\", node {index} at {at} by {} \
-                     {length} in increment {when}: displacement conditions put them there, and contact cannot \
-                     push them out; release them, or move \"{opposite}\"",
-                    shown(number(1), 9),
-                    shown(number(0), 4)
-                )
-            }
-            Kind::Corner => {
-                let (surface, tool) = driver.contact_name(number(1) as usize);
-                format!(
-                    "node {index} of \"{surface}\" at {at} is at a sharp corner of \"{tool}\" in increment {when}: \
-                     the normal there is any between those of both faces, and a finer mesh gives another stress; \
-                     give the corner a radius of a few facets"
-                )
-            }
-            Kind::Free => {
-                let now = driver.free_motions();
-                let now = match now.is_empty() {
-                    true => String::new(),
-                    false => format!(" (at the end: {})", now.join(", ")),
-                };
-                format!(
-                    "in increment {when} neither conditions nor contact decide where a body is: {} rigid motions \
-                     are free{now}; forces and stresses are what they are, positions are the nearest to those \
-                     before; fix what symmetry fixes if they matter",
-                    shown(number(0), 9)
-                )
-            }
-            Kind::Buckling => {
-                let step = deck.steps.get(when).map_or("", |s| s.name.value.as_str());
-                let factor = 1.0 / number(0);
-                let direction = place(self.numbers.get(1..).unwrap_or_default(), 2);
-                let what = match factor < 1.0 {
-                    true => "the structure has buckled before, and the result is not what happens"
-                        .into(),
-                    false => format!(
-                        "deflections that go with it are larger by about {}",
-                        percent(1.0 / (factor - 1.0))
-                    ),
-                };
-                format!(
-                    "buckling, which small displacements do not see: it begins, if not earlier by plastic flow, \
-                     at {} times the stresses at the end of step \"{step}\", with node {index} at {at} moving \
-                     most, along {direction}; {what}: load less, or hold it against that motion",
-                    shown(factor, 3)
-                )
-            }
+            Kind::Between => self.between(driver, deck),
+            Kind::Held => self.held(driver, deck),
+            Kind::Corner => self.corner(driver),
+            Kind::Free => self.free(driver),
+            Kind::Buckling => self.buckling(deck),
         }
+    }
+
+    fn number(&self, k: usize) -> f64 {
+        self.numbers.get(k).copied().unwrap_or(0.0)
+    }
+
+    fn between<const D: usize>(&self, driver: &Driver<D>, deck: &Deck) -> String {
+        let length = deck.units.length();
+        let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
+        let (surface, tool) = driver.contact_name(index);
+        format!(
+            "the tool \"{tool}\" is {} {length} within \"{surface}\" between its nodes, at {at} in \
+             increment {when}, on a facet {} {length} long whose surface is pressed in by {} {length} at \
+             its nodes: contact acts at nodes, and what is smaller than a facet passes between them; \
+             use facets of a fifth of that length, or less, where \"{tool}\" touches",
+            shown(self.number(0), 3),
+            shown(self.number(1), 3),
+            shown(self.number(2), 3)
+        )
+    }
+
+    fn held<const D: usize>(&self, driver: &Driver<D>, deck: &Deck) -> String {
+        let length = deck.units.length();
+        let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
+        let (surface, opposite) = driver.contact_name(self.number(2) as usize);
+        format!(
+            "{} nodes of \"{surface}\" are held inside of \"{opposite}\", node {index} at {at} by {} \
+             {length} in increment {when}: displacement conditions put them there, and contact cannot \
+             push them out; release them, or move \"{opposite}\"",
+            shown(self.number(1), 9),
+            shown(self.number(0), 4)
+        )
+    }
+
+    fn corner<const D: usize>(&self, driver: &Driver<D>) -> String {
+        let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
+        let (surface, tool) = driver.contact_name(self.number(1) as usize);
+        format!(
+            "node {index} of \"{surface}\" at {at} is at a sharp corner of \"{tool}\" in increment {when}: \
+             the normal there is any between those of both faces, and a finer mesh gives another stress; \
+             give the corner a radius of a few facets"
+        )
+    }
+
+    fn free<const D: usize>(&self, driver: &Driver<D>) -> String {
+        let when = self.when;
+        let now = driver.free_motions();
+        let now = match now.is_empty() {
+            true => String::new(),
+            false => format!(" (at the end: {})", now.join(", ")),
+        };
+        format!(
+            "in increment {when} neither conditions nor contact decide where a body is: {} rigid motions \
+             are free{now}; forces and stresses are what they are, positions are the nearest to those \
+             before; fix what symmetry fixes if they matter",
+            shown(self.number(0), 9)
+        )
+    }
+
+    fn buckling(&self, deck: &Deck) -> String {
+        let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
+        let step = deck.steps.get(when).map_or("", |s| s.name.value.as_str());
+        let factor = 1.0 / self.number(0);
+        let direction = place(self.numbers.get(1..).unwrap_or_default(), 2);
+        let what = match factor < 1.0 {
+            true => "the structure has buckled before, and the result is not what happens".into(),
+            false => format!(
+                "deflections that go with it are larger by about {}",
+                percent(1.0 / (factor - 1.0))
+            ),
+        };
+        format!(
+            "buckling, which small displacements do not see: it begins, if not earlier by plastic flow, \
+             at {} times the stresses at the end of step \"{step}\", with node {index} at {at} moving \
+             most, along {direction}; {what}: load less, or hold it against that motion",
+            shown(factor, 3)
+        )
     }
 }

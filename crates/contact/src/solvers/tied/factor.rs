@@ -16,8 +16,9 @@ const TIGHT: f64 = 1e3;
 /// those of the statuses, but its answer is there.
 const SPENT: f64 = 0.3;
 
-/// Ties of a factor, and the answers it has given.
-pub(super) struct Factor<const D: usize> {
+/// Ties of a factor, and the answers it has given. Nothing of both by default.
+#[derive(Debug)]
+pub struct TiedFactor<const D: usize> {
     pub(super) ties: Vec<SMatrix<f64, D, D>>,
     /// The statuses that the ties are of.
     status: Vec<Status>,
@@ -30,7 +31,7 @@ pub(super) struct Factor<const D: usize> {
     units: BTreeSet<usize>,
 }
 
-impl<const D: usize> Default for Factor<D> {
+impl<const D: usize> Default for TiedFactor<D> {
     fn default() -> Self {
         Self {
             ties: Vec::new(),
@@ -43,7 +44,17 @@ impl<const D: usize> Default for Factor<D> {
     }
 }
 
-impl<const D: usize> Factor<D> {
+impl<const D: usize> TiedFactor<D> {
+    /// The ties R of every contact; empty where nothing is factorised.
+    pub fn ties(&self) -> &[SMatrix<f64, D, D>] {
+        &self.ties
+    }
+
+    /// Whether its ties are those of statuses.
+    fn serves(&self, status: &[Status]) -> bool {
+        !self.ties.is_empty() && self.status == status
+    }
+
     /// Whether it has answered anything since it was made.
     pub(super) fn is_used(&self) -> bool {
         self.pairs.len() > 0
@@ -94,12 +105,12 @@ impl<const D: usize> Tied<'_, '_, D> {
         (u, t): (&[Local<D>], &[Local<D>]),
     ) -> Result<(), ContactError> {
         let count = status.len();
-        self.factor = Factor {
+        self.factor = TiedFactor {
             ties: (0..count)
                 .map(|i| self.tie(i, status[i], &u[i], &t[i]))
                 .collect(),
             status: status.to_vec(),
-            ..Factor::default()
+            ..TiedFactor::default()
         };
         let mut loose: Vec<usize> = (0..count).filter(|&i| status[i] != Status::Stick).collect();
         loose.sort_by(|&a, &b| u[a][0].total_cmp(&u[b][0]));
@@ -120,13 +131,18 @@ impl<const D: usize> Tied<'_, '_, D> {
         Ok(())
     }
 
-    /// Where the ties of a guess lead; what had to be tied beyond it is closed in the guess as well.
+    /// Where the ties of a guess lead, through the factor at hand where that has them; what had to be tied beyond
+    /// the guess is closed in it as well.
     pub(super) fn begin(&mut self, guess: &mut Guess<D>) -> Result<At<D>, ContactError> {
         let (u, t) = (&guess.irreversible, &guess.t);
         let status: Vec<Status> = (0..u.len())
             .map(|i| self.problem.friction[i].status(&u[i], &t[i], self.alpha(i)))
             .collect();
-        self.factorise(&status, (u, t))?;
+        if self.factor.serves(&status) {
+            self.factor.used = 0;
+        } else {
+            self.factorise(&status, (u, t))?;
+        }
         for &i in &self.factor.propped {
             if status[i] == Status::Open {
                 guess.u[i] = Local::zeros();

@@ -86,8 +86,13 @@ impl<const D: usize> Equations<D> {
 
 impl<const D: usize> Tied<'_, '_, D> {
     /// The next iterate; `None` if no step along what the Krylov iteration finds makes the merit smaller than
-    /// allowed.
-    pub(super) fn step(&mut self, rows: &[Row<D>], now: &At<D>, allowed: f64) -> Option<At<D>> {
+    /// allowed. One that makes it smaller than `good` is not looked for better.
+    pub(super) fn step(
+        &mut self,
+        rows: &[Row<D>],
+        now: &At<D>,
+        [allowed, good]: [f64; 2],
+    ) -> Option<At<D>> {
         let equations = Equations::new(self, rows);
         let whole = equations.size(&equations.values);
         let mut least = LeastSquares::new(equations.values.clone());
@@ -109,8 +114,7 @@ impl<const D: usize> Tied<'_, '_, D> {
                 room = if independent { room - 1 } else { 0 };
             }
             if let Some((trial, part)) = self.search(&least, now, allowed) {
-                let better = trial.merit < now.merit || allowed.is_infinite();
-                if part > WORTH_TAKING && better {
+                if part > WORTH_TAKING && trial.merit < good {
                     return Some(trial);
                 }
                 best = Some(trial);
