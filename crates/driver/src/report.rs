@@ -109,6 +109,9 @@ pub struct IncrementReport {
     /// the last iteration; `None` where nothing touches, where contacts are tied in the factor, on a path of unknown load factor, and under
     /// the paper's nesting.
     pub criticality: Option<(usize, f64)>,
+    /// Negative eigenvalues of the last tangent under large strains, with what may touch held where it is: the
+    /// equilibrium is unstable, and since it was not a limit point or a bifurcation has been passed.
+    pub negative_eigenvalues: usize,
     /// Rigid motions that nothing resists in the state that was found, in words, if the statuses left
     /// some free on the way: forces are what they are, and positions are those nearest to the ones before.
     pub free_motions: Vec<String>,

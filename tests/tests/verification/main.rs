@@ -26,6 +26,7 @@ mod patch;
 mod prandtl;
 mod rates;
 mod report;
+mod slender;
 mod sliders;
 mod soils;
 mod sphere;

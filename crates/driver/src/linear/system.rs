@@ -491,6 +491,11 @@ impl System {
         self.negative > 0
     }
 
+    /// How many it has.
+    pub(crate) fn negative(&self) -> usize {
+        self.negative
+    }
+
     /// Adds entries (row, column) of a symmetric stiffness at degrees of freedom to K, those of its lower triangle
     /// and of unknowns that a cell or a contact couples.
     pub(crate) fn add(&mut self, entries: impl Iterator<Item = (usize, usize, f64)>) {

@@ -22,6 +22,8 @@ pub(crate) struct Counts {
     pub(crate) residuals: Vec<f64>,
     /// [`IncrementReport::criticality`].
     pub(crate) criticality: Option<(usize, f64)>,
+    /// [`IncrementReport::negative_eigenvalues`].
+    pub(crate) negative: usize,
     /// Whether the statuses have left a rigid motion free on the way.
     pub(crate) undetermined: bool,
 }
@@ -38,6 +40,7 @@ impl Counts {
         self.contact_solves += part.contact_solves;
         self.undetermined |= part.undetermined;
         self.criticality = part.criticality;
+        self.negative = part.negative;
         self.residuals.extend(&part.residuals);
     }
 

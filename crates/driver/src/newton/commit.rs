@@ -192,6 +192,7 @@ impl<const D: usize> Driver<D> {
             energies: self.state.energies,
             certificate,
             criticality: counts.criticality,
+            negative_eigenvalues: counts.negative,
             free_motions: match counts.undetermined {
                 true => self.free_motions(),
                 false => Vec::new(),

@@ -78,6 +78,7 @@ impl<'a, 'c, const D: usize> Increment<'a, 'c, D> {
     pub(crate) fn count(&mut self, system: &System) {
         let (factorisations, conjugate) = self.counts.before;
         self.counts.factorisations = system.factorisations - factorisations;
+        self.counts.negative = system.negative();
         self.counts.linear += system.conjugate - conjugate;
     }
 }

@@ -25,9 +25,11 @@ enum Kind {
     Corner,
     /// Rigid motions that nothing resists.
     Free,
+    /// An equilibrium that is unstable.
+    Unstable,
 }
 
-const KINDS: [Kind; 8] = [
+const KINDS: [Kind; 9] = [
     Kind::Strain,
     Kind::Rotation,
     Kind::Inverted,
@@ -36,6 +38,7 @@ const KINDS: [Kind; 8] = [
     Kind::Held,
     Kind::Corner,
     Kind::Free,
+    Kind::Unstable,
 ];
 
 /// Where a doubt is worst.
@@ -165,6 +168,10 @@ impl Warnings {
             let at = (point.node, point.position.to_vec());
             self.note(Kind::Corner, numbers, at, when);
         }
+        if report.negative_eigenvalues > 0 && self.worst[Kind::Unstable as usize].is_none() {
+            let numbers = vec![report.negative_eigenvalues as f64];
+            self.note(Kind::Unstable, numbers, (0, Vec::new()), when);
+        }
         if !report.free_motions.is_empty() {
             let numbers = vec![report.free_motions.len() as f64];
             self.note(Kind::Free, numbers, (0, Vec::new()), when);
@@ -199,6 +206,10 @@ impl Warnings {
 
     /// Takes note of the state at the end of a step: loads grow up to there.
     pub(super) fn end_of_step<const D: usize>(&mut self, driver: &mut Driver<D>, stage: usize) {
+        // Large strains see it themselves.
+        if driver.has_large_strains() {
+            return;
+        }
         if let Some(buckling) = driver.buckling()
             && buckling.load_factor < Buckling::<D>::NEAR
         {
@@ -291,6 +302,15 @@ impl Worst {
             Kind::Held => self.held(driver, deck),
             Kind::Corner => self.corner(driver),
             Kind::Free => self.free(driver),
+            Kind::Unstable => format!(
+                "the equilibrium is unstable from increment {when} on: with what may touch held, its tangent has {} \
+                 negative there, so that a limit point or a bifurcation has been passed, and what follows is one path \
+                 among several; take the load there as critical, or follow another path from a slightly crooked part",
+                match self.number(0) as usize {
+                    1 => "an eigenvalue that is".to_owned(),
+                    n => format!("{n} eigenvalues that are"),
+                }
+            ),
             Kind::Buckling => self.buckling(deck),
         }
     }

@@ -213,9 +213,9 @@ fn displacement(arrays: &[Array]) -> Option<Vec<[f64; 2]>> {
     array.values.chunks(array.components).map(plane).collect()
 }
 
-/// How many times displacements are drawn so that they are seen but not out of shape.
-pub(in crate::run) fn usual_magnification(size: f64, largest: f64) -> f64 {
-    match largest > 0.0 && largest.is_finite() {
+/// How many times displacements are drawn so that they are seen but not out of shape; large ones as they are.
+pub(in crate::run) fn usual_magnification(deck: &Deck, size: f64, largest: f64) -> f64 {
+    match largest > 0.0 && largest.is_finite() && deck.finite.is_none() {
         true => round(0.05 * size / largest),
         false => 1.0,
     }
@@ -237,7 +237,7 @@ pub(in crate::run) fn deformed(
         .iter()
         .map(|u| u[0].hypot(u[1]))
         .fold(0.0, f64::max);
-    let magnification = magnification.unwrap_or(usual_magnification(mesh.size(), largest));
+    let magnification = magnification.unwrap_or(usual_magnification(deck, mesh.size(), largest));
     MeshPicture::new(mesh, &deck.title)
         .deformed(displacement, magnification)
         .field(label(name, deck.units), values)

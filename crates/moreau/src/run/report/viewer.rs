@@ -87,7 +87,7 @@ pub(super) fn viewer<const D: usize>(
         "fields": names,
         "labels": labels,
         "usual": usual_field(deck),
-        "magnification": usual_magnification(mesh.size(), largest),
+        "magnification": usual_magnification(deck, mesh.size(), largest),
         "colours": crate::plot::colours(),
         "length": deck.units.length(),
         "frames": frames,

@@ -1,0 +1,117 @@
+//! Slender bars under large rotations: the elastica of a cantilever, and Euler's load as a bifurcation; not
+//! small strains, which know neither.
+//!
+//! Source of the elastica: K. E. Bisshopp, D. C. Drucker, *Quarterly of Applied Mathematics* 3 (1945) 272-275; here by
+//! integration of its equation.
+
+use crate::close;
+use moreau::driver::{Axis, Driver, Model, Settings, Step};
+use moreau::laws::Elastic;
+use moreau::mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
+use std::f64::consts::PI;
+use verification::problems::Fallible;
+
+const YOUNG: f64 = 1000.0;
+
+/// A strip without Poisson's effect, of unit thickness, along x.
+fn strip(
+    length: f64,
+    height: f64,
+    cells: usize,
+    kind: (CellKind, Integration),
+) -> Fallible<Driver<2>> {
+    let (x, y) = (uniform(0.0, length, cells), uniform(0.0, height, 1));
+    let mut mesh = block2("strip", kind.0, &x, &y)?;
+    let end = move |x: &[f64; 2]| x[0] > length - 1e-9 && (x[1] - 0.5 * height).abs() < 1e-9;
+    if mesh.node_group_where("tip", "strip.right", end).is_err() {
+        mesh.node_group_where("tip", "strip.right", |x| x[1] == 0.0)?;
+    }
+    let model = Model::with_large_strains(mesh, PlaneStrain::default()).material(
+        "strip",
+        Elastic::new(YOUNG, 0.0)?,
+        kind.1,
+    )?;
+    Ok(Driver::new(model, Settings::default())?)
+}
+
+/// Where the tip of an elastica of unit length is under a dead load α = P L²/(E I) across it: along and across.
+fn elastica(alpha: f64) -> [f64; 2] {
+    const PIECES: usize = 4000;
+    let h = 1.0 / PIECES as f64;
+    // Angle, curvature and place at the end, of the curvature at the root: θ'' = −α cos θ.
+    let end = |root: f64| {
+        let slope = |s: [f64; 4]| [s[1], -alpha * s[0].cos(), s[0].cos(), s[0].sin()];
+        let along = |s: [f64; 4], k: [f64; 4], h: f64| std::array::from_fn(|i| s[i] + h * k[i]);
+        let step = |s: [f64; 4], _| {
+            let k1 = slope(s);
+            let k2 = slope(along(s, k1, 0.5 * h));
+            let k3 = slope(along(s, k2, 0.5 * h));
+            let k4 = slope(along(s, k3, h));
+            std::array::from_fn(|i| s[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
+        };
+        (0..PIECES).fold([0.0, root, 0.0, 0.0], step)
+    };
+    // No moment acts on the tip.
+    let (mut low, mut high) = (0.0, alpha);
+    for _ in 0..60 {
+        let root = 0.5 * (low + high);
+        match end(root)[1] > 0.0 {
+            true => high = root,
+            false => low = root,
+        }
+    }
+    let [_, _, x, y] = end(0.5 * (low + high));
+    [x, y]
+}
+
+#[test]
+fn the_elastica_is_that_of_the_tables() {
+    // Bisshopp and Drucker: deflection over length.
+    close("α = 1", elastica(1.0)[1], 0.3017, 1e-3);
+    close("α = 10", elastica(10.0)[1], 0.8106, 1e-3);
+}
+
+#[test]
+fn a_cantilever_bends_as_the_elastica() -> Fallible {
+    let (length, height) = (100.0f64, 1.0f64);
+    let stiffness = YOUNG * height.powi(3) / 12.0;
+    for kind in [
+        (CellKind::Quad8, Integration::Reduced),
+        (CellKind::Quad9, Integration::Full),
+    ] {
+        let mut driver = strip(length, height, 50, kind)?;
+        for alpha in [1.0, 3.0, 10.0] {
+            let load = alpha * stiffness / length.powi(2);
+            let step = Step::new("bend")
+                .fix("strip.left", &[Axis::X, Axis::Y])
+                .traction("strip.right", [0.0, -load / height]);
+            driver.run(&step, 8, |_, _| {})?;
+            let node = driver.mesh().node_group("tip")?[0];
+            let u = driver.displacement(node);
+            let [along, across] = elastica(alpha);
+            close("deflection", -u[1] / length, across, 5e-3);
+            close("place of the tip", 1.0 + u[0] / length, along, 5e-3);
+        }
+    }
+    Ok(())
+}
+
+/// A straight column goes on as a straight one: that it need not is told at Euler's load.
+#[test]
+fn a_straight_column_is_unstable_from_eulers_load_on() -> Fallible {
+    let (length, height) = (100.0f64, 2.0f64);
+    let euler = PI.powi(2) * YOUNG * height.powi(3) / 12.0 / (4.0 * length.powi(2));
+    let mut driver = strip(length, height, 40, (CellKind::Quad8, Integration::Reduced))?;
+    let step = Step::new("compress")
+        .fix("strip.left", &[Axis::X, Axis::Y])
+        .traction("strip.right", [-1.1 * euler / height, 0.0]);
+    let mut critical = None;
+    driver.run(&step, 110, |_, report| {
+        if report.negative_eigenvalues > 0 && critical.is_none() {
+            assert_eq!(report.negative_eigenvalues, 1);
+            critical = Some((report.increment as f64 - 0.5) / 100.0 * euler);
+        }
+    })?;
+    close("critical load", critical.ok_or("stable")?, euler, 2e-2);
+    Ok(())
+}
