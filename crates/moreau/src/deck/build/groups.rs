@@ -51,10 +51,10 @@ impl<const D: usize> Groups<D> {
         if self.has(name) || facets.is_empty() {
             return;
         }
-        if let Err(_) = self
+        let joined = self
             .mesh
-            .add_facet_group(name, facets.into_iter().collect())
-        {
+            .add_facet_group(name, facets.into_iter().collect());
+        if joined.is_err() {
             self.broken.push(name.clone());
         }
     }
