@@ -520,7 +520,9 @@ impl<const D: usize> Driver<D> {
         system.floats = self.floats(loading);
         system.paired = self.paired();
         let inside = self.settings.nesting == Nesting::Inside;
-        system.assemble_elastic(&mut self.blocks, &self.state.displacement, inside);
+        // Of the undeformed body, so that what follows from it does not depend on when the system was made.
+        let undeformed = vec![0.0; self.state.displacement.len()];
+        system.assemble_elastic(&mut self.blocks, &undeformed, inside);
         Ok(system)
     }
 

@@ -30,6 +30,9 @@ const TOGETHER: f64 = 0.3;
 /// with the steps.
 const TURNED: f64 = 1e-6;
 
+/// Rounding of the force of a tie, over its stiffness times the largest displacement.
+const ROUNDED: f64 = 64.0 * f64::EPSILON;
+
 /// B: rows of all components of all contacts, empty of those that are switched off.
 type Rows = Vec<Vec<(u32, f64)>>;
 
@@ -311,7 +314,10 @@ impl<'a, const D: usize> Tied<'a, D> {
                 None => f.clone(),
             };
             let given = largest(applied.iter().chain(held.iter()).copied());
-            let (mut left, expected) = self.system.left(&applied, &x, given);
+            let (mut left, mut expected) = self.system.left(&applied, &x, given);
+            // Ties are so firm that what rounding leaves of them is more than that of the structure.
+            let firmest = largest(self.ties.iter().map(|tie| tie.amax()));
+            expected += ROUNDED * firmest * largest(x.iter().copied());
             spread(self.tied_rows, held.iter().map(|t| -t), &mut left);
             let found = largest(left.iter().copied());
             if found <= expected {

@@ -384,7 +384,7 @@ impl<const D: usize> Driver<D> {
             },
             contact,
             complete: !moved && arrived,
-            missing: !arrived,
+            arrives: !arrived,
             slack: increment.solution.as_ref().map_or(0.0, slack),
             tangent: !(elastic || self.is_symmetric() && last),
             allowed: self.allowed(&increment.counts.residuals),
@@ -427,6 +427,10 @@ impl<const D: usize> Driver<D> {
     ) {
         let part = self.search(system, &increment.end, step, &mut increment.iterate);
         increment.chord.taken(part);
+        if part < 1.0 && step.arrives {
+            increment.missing =
+                self.missing(increment.start, &increment.end, &increment.iterate.d_u);
+        }
         increment.counts.shortened += usize::from(part < 1.0);
         if let Some(control) = &mut increment.control {
             control.factor += part * step.factor;

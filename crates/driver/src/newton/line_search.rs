@@ -25,8 +25,8 @@ pub(crate) struct NewtonStep {
     pub(crate) contact: SparseVector,
     /// Whether the iterate has all prescribed displacements and the motions of tools already.
     pub(crate) complete: bool,
-    /// Whether it makes up for prescribed displacements.
-    pub(crate) missing: bool,
+    /// Whether it makes up for prescribed displacements that are missing.
+    pub(crate) arrives: bool,
     /// Out-of-balance force left by the contact solver \[N\].
     pub(crate) slack: f64,
     /// Whether the tangent at its end is likely to be needed.
@@ -41,8 +41,9 @@ struct Line<'a, const D: usize> {
     end: &'a Loading<D>,
     from: &'a Iterate,
     step: &'a NewtonStep,
-    /// Whether the contact forces of the end act on the whole way.
-    lagrangian: bool,
+    /// Whether the contact forces of the end act on the whole way: what is searched then has the slope −vᵀKv at
+    /// the start, wherever tools have moved.
+    under_last: bool,
 }
 
 impl<const D: usize> Line<'_, D> {
@@ -53,7 +54,7 @@ impl<const D: usize> Line<'_, D> {
 
     /// Contact forces between those of both ends.
     fn contact(&self, s: f64) -> SparseVector {
-        if self.lagrangian {
+        if self.under_last {
             return self.step.contact.clone();
         }
         self.from
@@ -106,7 +107,7 @@ impl<const D: usize> Driver<D> {
             end,
             from: iterate,
             step,
-            lagrangian: self.has_large_strains(),
+            under_last: self.has_large_strains(),
         };
         let d_u = line.displacement(1.0);
         let stiffness = match step.tangent {
@@ -134,11 +135,8 @@ impl<const D: usize> Driver<D> {
         // While prescribed displacements or motions are missing, ΔΦ is not what the step minimises; in balance
         // its slope is rounding.
         let enough = self.accepted_residual(system, scale, &d_u) + step.slack;
-        if !inverts
-            && (!(step.complete || line.lagrangian && !step.missing)
-                || !overshoots
-                || left <= enough)
-        {
+        let searched = step.complete || line.under_last && !step.arrives;
+        if !inverts && (!searched || !overshoots || left <= enough) {
             *iterate = Iterate {
                 d_u,
                 assembly,
@@ -323,7 +321,7 @@ mod tests {
             growth: none.clone(),
             contact: none.clone(),
             complete: true,
-            missing: false,
+            arrives: false,
             slack: 0.0,
             tangent: true,
             allowed: None,

@@ -176,12 +176,14 @@ impl<const D: usize> Driver<D> {
                 .map_err(contact)?;
         let problem = &mut condensation.problem;
         let method = &self.settings.contact;
-        let unstable = |_: &ContactError| self.has_large_strains();
         let solution = method
             .approach(problem, guess, linearised.enough)
-            .or_else(|error| match unstable(&error) {
-                true => method.step(problem, &force).ok_or(error),
-                false => Err(error),
+            .or_else(|error| {
+                // Where stresses make the structure unstable there may be none.
+                let step = self
+                    .has_large_strains()
+                    .then(|| method.step(problem, &force));
+                step.flatten().ok_or(error)
             })
             .or_else(|error| {
                 counts.undetermined = true;

@@ -233,7 +233,7 @@ impl<const D: usize> Driver<D> {
                 growth: SparseVector::default(),
                 contact: contact.clone(),
                 complete,
-                missing: !complete,
+                arrives: !complete,
                 slack: 0.0,
                 tangent: true,
                 allowed: self.allowed(&[worst]),

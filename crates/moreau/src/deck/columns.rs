@@ -37,6 +37,7 @@ pub(crate) enum Unit {
     Force,
     Stress,
     Energy,
+    Degree,
 }
 
 impl Unit {
@@ -48,6 +49,7 @@ impl Unit {
             Self::Force => format!("{name} [{}]", units.force()),
             Self::Stress => format!("{name} [{}]", units.stress()),
             Self::Energy => format!("{name} [{}]", units.energy()),
+            Self::Degree => format!("{name} [°]"),
         }
     }
 }
@@ -73,7 +75,10 @@ pub(crate) fn columns<const D: usize>(setup: &Setup<D>) -> Vec<(String, Unit)> {
                 let of = |axis| (format!("moment.{name}.{axis}"), Unit::Energy);
                 list.extend(AXES.map(of));
             }
-            (true, _) => list.push((format!("moment.{name}"), Unit::Energy)),
+            (true, _) => {
+                list.push((format!("moment.{name}"), Unit::Energy));
+                list.push((format!("turn.{name}"), Unit::Degree));
+            }
         }
     }
     setup.surfaces.iter().for_each(|name| add(&mut list, name));

@@ -108,7 +108,9 @@ where
                     expected: all.join(", "),
                 });
             }
-            let svg = pictures::deformed(mesh, deck, &arrays, name, drawing.magnification);
+            let at = increments.iter().position(|t| *t == number.to_string());
+            let at = (&history, at.unwrap_or(0));
+            let svg = pictures::deformed(mesh, deck, &arrays, name, at, drawing.magnification);
             write(format!("deformed{asked}.svg"), svg)?;
         }
     }

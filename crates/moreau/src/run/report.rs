@@ -1,6 +1,7 @@
 //! `report.html`: a run on one page that needs nothing but a browser; its template is beside it.
 
 pub(super) mod pictures;
+mod tools;
 mod viewer;
 
 use super::RunError;

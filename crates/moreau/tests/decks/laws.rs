@@ -89,8 +89,8 @@ fn hardening_that_is_none_is_pointed_at() {
         ),
         ("{ table = [[0.1, 350, 1]] }", "expected [p, stress]"),
         (
-            "{ linear = 1.0, voce = [1, 2] }",
-            "hardening has 2 laws, expected one",
+            "{ swift = [1, 1, 1], voce = [1, 2] }",
+            "hardening has 2 curves, expected one",
         ),
         ("{ line = 1.0 }", "did you mean \"linear\"?"),
     ];

@@ -104,7 +104,7 @@ const IN_THE_PLANE: [(&str, &[&str]); 22] = [
             "kinematic = [{ modulus = 1 }]",
             "yield-stress = 300.0\nhardening = {}",
             "yield-stress = 300.0\nhardening = { linear = -1 }",
-            "yield-stress = 300.0\nhardening = { linear = 1, voce = [1, 1] }",
+            "yield-stress = 300.0\nhardening = { voce = [1, 1], table = [[0, 300], [1, 300]] }",
             "yield-stress = 300.0\nhardening = { voce = [1] }",
             "yield-stress = 300.0\nhardening = { voce = [-1, 1] }",
             "yield-stress = 300.0\nhardening = { voce = [1, -1] }",

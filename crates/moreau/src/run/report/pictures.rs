@@ -5,6 +5,7 @@ use crate::deck::{Deck, Units};
 use crate::mesh::Mesh;
 use crate::plot::{Chart, MeshPicture, Style};
 use crate::run::RunError;
+use crate::run::report::tools::outlines;
 use crate::run::table::Table;
 use crate::vtu::Array;
 use std::collections::HashSet;
@@ -221,12 +222,14 @@ pub(in crate::run) fn usual_magnification(deck: &Deck, size: f64, largest: f64) 
     }
 }
 
-/// The deformed body with a field on it; nothing if the arrays do not have what it takes.
+/// The deformed body with a field on it, and the tools where a row of the history has them; nothing if the arrays
+/// do not have what it takes.
 pub(in crate::run) fn deformed(
     mesh: &Mesh<2>,
     deck: &Deck,
     arrays: &[Array],
     name: &str,
+    (history, row): (&Table, usize),
     magnification: Option<f64>,
 ) -> Option<String> {
     let mut displacement = displacement(arrays)?;
@@ -238,13 +241,14 @@ pub(in crate::run) fn deformed(
         .map(|u| u[0].hypot(u[1]))
         .fold(0.0, f64::max);
     let magnification = magnification.unwrap_or(usual_magnification(deck, mesh.size(), largest));
-    MeshPicture::new(mesh, &deck.title)
+    let picture = MeshPicture::new(mesh, &deck.title)
         .deformed(displacement, magnification)
         .field(label(name, deck.units), values)
         .unit(deck.units.length())
-        .outline()
-        .to_svg()
-        .ok()
+        .outline();
+    let tools = outlines(deck, (history, row), mesh.size(), magnification);
+    let picture = tools.into_iter().fold(picture, MeshPicture::polyline);
+    picture.to_svg().ok()
 }
 
 /// 1, 2 or 5 times a power of ten, at most the value.

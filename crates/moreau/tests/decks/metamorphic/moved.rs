@@ -125,11 +125,17 @@ fn a_mirror_and_a_shift_change_nothing() {
             let in_vector = keys.split('.').any(|k| vectors.contains(&k));
             let first = last == "0" && in_vector;
             let in_move = keys.contains("move.") && last == "x";
-            if first || in_move { -v } else { v }
+            // In the plane; a turn in space is about an axis.
+            let turns = last == "turn";
+            if first || in_move || turns { -v } else { v }
         };
         tools_moved(&mut mirror, horizontal);
         let found = history(&mirror, &at, &format!("{name}-mirror"), false);
-        let factor = |column: &str, _: &str| if column.ends_with(".x") { -1.0 } else { 1.0 };
+        let turns = |column: &str| column.starts_with("moment.") || column.starts_with("turn.");
+        let factor = |column: &str, _: &str| match column.ends_with(".x") || turns(column) {
+            true => -1.0,
+            false => 1.0,
+        };
         same(&base, &found, &format!("{name}, mirrored"), factor);
 
         let by = match is_solid(&deck) {
@@ -139,7 +145,8 @@ fn a_mirror_and_a_shift_change_nothing() {
         let shift = |x: [f64; 3]| [0, 1, 2].map(|i| x[i] + by[i]);
         let (mut shifted, at) = moved(&format!("{name}-shift"), &deck, |n, _| n, shift);
         let along = |keys: &str, v: f64| {
-            let place = keys.contains(".point.") || keys.contains(".center.");
+            let place = [".point.", ".center.", ".reference."];
+            let place = place.iter().any(|p| keys.contains(p));
             let axis = keys
                 .rsplit('.')
                 .next()

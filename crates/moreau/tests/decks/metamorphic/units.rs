@@ -22,7 +22,7 @@ const EXACT: [(&str, f64, f64); 2] = [
 fn powers(keys: &str) -> (i32, i32) {
     let is = |names: &[&str]| keys.split('.').any(|k| names.contains(&k));
     match keys {
-        _ if is(&["normal", "axis", "friction", "poisson"]) => (0, 0),
+        _ if is(&["normal", "axis", "friction", "poisson", "turn"]) => (0, 0),
         _ if is(&["young", "yield-stress", "hardening", "pressure", "traction"]) => (0, 1),
         _ if is(&["body-force"]) => (-1, 1),
         _ if is(&["force"]) => (2, 1),
@@ -31,6 +31,8 @@ fn powers(keys: &str) -> (i32, i32) {
             "y",
             "z",
             "point",
+            "nearest",
+            "reference",
             "center",
             "radius",
             "polyline",
@@ -64,7 +66,7 @@ fn in_units(
         "mm" | "m" | "in" => 1.0 / length,
         "N" | "lbf" => 1.0 / (stress * length * length),
         "N·mm" | "N·m" | "in·lbf" | "lbf·in" => 1.0 / (stress * length.powi(3)),
-        "" => 1.0,
+        "" | "°" => 1.0,
         other => panic!("the unit {other}"),
     };
     (found, factor)
