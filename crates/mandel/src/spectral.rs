@@ -109,15 +109,16 @@ mod tests {
             let a = 0.5 * (a + a.transpose());
             let spectrum = Spectrum::new(&a);
             let size = a.amax();
-            prop_assert!((spectrum.map(|x| x) - a).amax() <= 4e-15 * size);
+            // Each of some dozen rotations rounds: most where rounding alone tells the directions.
+            prop_assert!((spectrum.map(|x| x) - a).amax() <= 2e-14 * size);
             let q = spectrum.directions;
-            prop_assert!((q.transpose() * q - Matrix3::identity()).amax() <= 4e-15);
+            prop_assert!((q.transpose() * q - Matrix3::identity()).amax() <= 2e-14);
             let mut found = spectrum.values;
             let mut given = values;
             found.sort_by(f64::total_cmp);
             given.sort_by(f64::total_cmp);
             for (a, b) in found.iter().zip(given) {
-                prop_assert!((a - b).abs() <= 4e-15 * size, "{a} {b}");
+                prop_assert!((a - b).abs() <= 2e-14 * size, "{a} {b}");
             }
         }
 

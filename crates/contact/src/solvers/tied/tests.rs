@@ -132,8 +132,11 @@ fn assert_solves<const D: usize>(
 ) -> Result<(), TestCaseError> {
     let scale = problem.force_scale(&found.force);
     let left = &structure.stiffness * stack(&found.motion) - &structure.load - stack(&found.force);
+    // Where little holds a body it moves far, and the terms of the balance are large.
+    let moved = found.motion.iter().map(|x| x.amax()).fold(0.0, f64::max);
+    let rounding = 1e-13 * structure.stiffness.amax() * moved;
     prop_assert!(
-        left.amax() < 1e-9 * scale,
+        left.amax() < 1e-9 * scale + rounding,
         "out of balance by {:e}",
         left.amax()
     );
