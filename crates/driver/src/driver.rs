@@ -3,7 +3,7 @@
 use crate::assembly::block::{Block, PointField, PointState};
 use crate::assembly::cell_law::{Motion, Stiffness};
 use crate::error::{IncrementError, ModelError};
-use crate::linear::system::{Assembly, Contacts, System};
+use crate::linear::system::{Contacts, System};
 use crate::model::load::Loading;
 use crate::model::points::{ContactPoint, RelativeMotionRow, Tool, tool_index, turned};
 use crate::model::{Analysis, Contact, Measure, Model};
@@ -25,7 +25,7 @@ pub(crate) struct State<const D: usize> {
     pub(crate) displacement: Vec<f64>,
     /// Displacement increment of the last increment, and the loading that it answered.
     pub(crate) last: Option<(Vec<f64>, Loading<D>)>,
-    /// Internal force at every degree of freedom \[N\].
+    /// [`Assembly::internal`].
     pub(crate) internal: Vec<f64>,
     pub(crate) loading: Loading<D>,
     pub(crate) energies: Energies,
@@ -143,19 +143,6 @@ impl<const D: usize> Driver<D> {
     pub(crate) fn motion<'a>(&'a self, d_u: &'a [f64]) -> Motion<'a> {
         let from = &self.state.displacement;
         Motion { from, by: d_u }
-    }
-
-    /// [`System::assemble`] under displacement increments.
-    pub(crate) fn assemble(
-        &mut self,
-        system: &mut System,
-        d_u: &[f64],
-        missing: &SparseVector,
-        stiffness: Stiffness,
-    ) -> Assembly {
-        let from = &self.state.displacement;
-        let motion = Motion { from, by: d_u };
-        system.assemble(&mut self.blocks, motion, missing, stiffness)
     }
 
     /// Finds what the contact points stand on, at the committed positions, under the displacement
@@ -432,7 +419,7 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
         watch: &mut dyn FnMut(&Iteration<'_>),
     ) -> Result<IncrementReport, IncrementError> {
-        end.check(self.mesh.nodes().len(), self.state.displacement.len())?;
+        end.check(&self.mesh, self.state.displacement.len())?;
         self.pair(end)?;
         self.check_pushes(end)?;
         let mut system = self.prepare(end, None)?;

@@ -34,15 +34,6 @@ pub enum ModelError {
         /// Group of the second material.
         group: String,
     },
-    /// A pressure where strains are large: it would follow the surface, and no load does.
-    #[error(
-        "a pressure on {on:?} would follow the surface under large strains, and no load follows: a traction keeps \
-         its direction and the area of the undeformed surface, a tool presses where the surface is"
-    )]
-    FollowingPressure {
-        /// Group of the pressure.
-        on: String,
-    },
     /// A cell that an element or a block does not fit.
     #[error("cell {cell} {problem}")]
     WrongElement {

@@ -6,13 +6,15 @@ pub(crate) mod points;
 use crate::assembly::block::{Block, SolidBlock};
 use crate::assembly::cells::{Cells, ElementCells};
 use crate::error::ModelError;
+use crate::model::load::facet_of;
 use crate::model::points::{ALONG_NORMAL, ContactPoint, Tool, tool_index};
+use crate::vector::SparseVector;
 use moreau_contact::Obstacle;
 use moreau_laws::{BulkLaw, Friction};
 use moreau_mesh::{
     Axisymmetric, CellKind, Element, Facet, Hex8, Hex20, Hex27, Hypothesis, Integration, Mesh,
-    MortarRow, Pairing, PlaneStrain, PositiveShare, Quad4, Quad8, Quad9, Share, Solid, Tet4, Tet10,
-    Tri3, Tri6, nearest,
+    MortarRow, Pairing, PlaneStrain, PositiveShare, Pressed, Quad4, Quad8, Quad9, Share, Solid,
+    Tet4, Tet10, Tri3, Tri6, nearest,
 };
 use nalgebra::SVector;
 use std::collections::BTreeMap;
@@ -106,6 +108,14 @@ analysis!(Solid, 3, space);
 pub(crate) trait Measure<const D: usize>: Send + Sync {
     fn facet_shares(&self, mesh: &Mesh<D>, facets: &[Facet]) -> Vec<Share<D>>;
     fn volume_shares(&self, mesh: &Mesh<D>, cells: &[usize]) -> Vec<(usize, f64)>;
+    /// [`Mesh::press`] of the entries of [`Loading::pressure`](crate::Loading::pressure).
+    fn press(
+        &self,
+        mesh: &Mesh<D>,
+        pressures: &SparseVector,
+        position: &dyn Fn(usize) -> [f64; D],
+        visit: &mut dyn FnMut(&Pressed),
+    );
     fn rigid_modes(&self, x: &[f64; D]) -> Vec<[f64; D]>;
     fn mortar_rows(
         &self,
@@ -123,6 +133,17 @@ impl<const D: usize, H: Hypothesis<D>> Measure<D> for H {
 
     fn volume_shares(&self, mesh: &Mesh<D>, cells: &[usize]) -> Vec<(usize, f64)> {
         mesh.volume_shares(cells, self)
+    }
+
+    fn press(
+        &self,
+        mesh: &Mesh<D>,
+        pressures: &SparseVector,
+        position: &dyn Fn(usize) -> [f64; D],
+        visit: &mut dyn FnMut(&Pressed),
+    ) {
+        let facets = pressures.iter().map(|(k, p)| (facet_of(k), p));
+        mesh.press(facets, position, self, visit);
     }
 
     fn rigid_modes(&self, x: &[f64; D]) -> Vec<[f64; D]> {

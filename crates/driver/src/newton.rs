@@ -10,5 +10,6 @@ pub(crate) mod iterate;
 pub(crate) mod line_search;
 pub(crate) mod linearised;
 pub(crate) mod nested;
+pub(crate) mod pressures;
 pub(crate) mod tangent;
 pub(crate) mod unsymmetric;

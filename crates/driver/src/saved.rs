@@ -190,6 +190,7 @@ impl<const D: usize> Saved for Loading<D> {
     fn visit(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
         numbers.sparse(&mut self.displacement)?;
         numbers.sparse(&mut self.force)?;
+        numbers.sparse(&mut self.pressure)?;
         numbers.sparse(&mut self.turn)
     }
 }
@@ -308,13 +309,13 @@ impl<const D: usize> Driver<D> {
     /// driver is then of no use.
     pub fn read(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
         self.state.read(numbers)?;
-        let (nodes, dofs) = (self.mesh.nodes().len(), self.state.displacement.len());
+        let dofs = self.state.displacement.len();
         let contact = Loading::<D> {
             force: self.state.contact.clone(),
             ..Loading::default()
         };
-        contact.check(nodes, dofs)?;
-        self.state.loading.check(nodes, dofs)?;
+        contact.check(&self.mesh, dofs)?;
+        self.state.loading.check(&self.mesh, dofs)?;
         for block in &mut self.blocks {
             let mut state = Vec::new();
             numbers.list(&mut state)?;

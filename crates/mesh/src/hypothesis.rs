@@ -62,6 +62,11 @@ pub trait Hypothesis<const D: usize>: 'static + Copy + Send + Sync {
     /// thickness \[mm\], 2πr \[mm\] or 1.
     fn measure(&self, x: &[f64; D]) -> f64;
 
+    /// The gradient of that factor, which is linear in x.
+    fn measure_gradient(&self) -> [f64; D] {
+        [0.0; D]
+    }
+
     /// A basis of the rigid motions that the hypothesis allows, as displacements at `x` \[mm\];
     /// their strain is zero, and those of the rotations are not of unit length.
     fn rigid_modes(x: &[f64; D]) -> Vec<[f64; D]>;
@@ -149,6 +154,10 @@ impl Hypothesis<2> for Axisymmetric {
 
     fn measure(&self, &[r, _]: &[f64; 2]) -> f64 {
         TAU * r
+    }
+
+    fn measure_gradient(&self) -> [f64; 2] {
+        [TAU, 0.0]
     }
 
     /// The axial translation.

@@ -67,7 +67,7 @@ pub use error::{GroupKind, MeshError};
 pub use generate::{block2, block3, geometric, refine, uniform};
 pub use gmsh::{read_gmsh, read_gmsh_noting, write_gmsh};
 pub use hypothesis::{Axisymmetric, Entry, Hypothesis, PlaneStrain, Solid};
-pub use mesh::{Facet, Mesh, NodeKind, PositiveShare, Share};
+pub use mesh::{Facet, Mesh, NodeKind, PositiveShare, Pressed, Share};
 pub use nearest::nearest;
 pub use pairing::{MortarRow, Pairing};
 pub use quadrature::{Integration, Point, Rule, gauss};

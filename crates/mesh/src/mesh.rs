@@ -4,11 +4,13 @@
 mod groups;
 mod integrals;
 mod positive;
+mod pressure;
 mod topology;
 
 pub use integrals::{NodeKind, Share};
 pub(crate) use positive::Change;
 pub use positive::PositiveShare;
+pub use pressure::Pressed;
 pub(crate) use topology::facet_key;
 
 use crate::geometry::{bounds, diagonal};
@@ -111,6 +113,12 @@ impl<const D: usize> Mesh<D> {
     /// Nodes of a cell, in the order of its kind.
     pub fn cell_nodes(&self, cell: usize) -> &[usize] {
         &self.connectivity[self.offsets[cell]..self.offsets[cell + 1]]
+    }
+
+    /// Whether a cell has such a side.
+    pub fn has_facet(&self, facet: Facet) -> bool {
+        let in_mesh = facet.cell < self.cell_count();
+        in_mesh && facet.facet < self.kind(facet.cell).facets().len()
     }
 
     /// Kind of a facet.

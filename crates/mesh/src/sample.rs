@@ -31,6 +31,25 @@ impl<const D: usize> Sample<D> {
     pub(crate) fn area_vector(&self, nodes: &[[f64; D]]) -> [f64; D] {
         cofactors(&basis(&self.gradient, nodes))[0]
     }
+
+    /// Derivatives of [`Self::area_vector`] by the coordinates of one of the nodes.
+    pub(crate) fn area_vector_by(&self, nodes: &[[f64; D]], node: usize) -> [[f64; D]; D] {
+        let tangents = basis(&self.gradient, nodes);
+        std::array::from_fn(|i| {
+            let mut sum = [0.0; D];
+            // Linear in each of the tangents.
+            for k in 1..D {
+                let mut varied = tangents;
+                varied[k] = [0.0; D];
+                varied[k][i] = self.gradient[node][k];
+                let part = cofactors(&varied)[0];
+                sum.iter_mut()
+                    .zip(part)
+                    .for_each(|(sum, part)| *sum += part);
+            }
+            sum
+        })
+    }
 }
 
 fn tabulate<const D: usize, const M: usize, const N: usize, E: Element<M, N>>(

@@ -2,6 +2,7 @@
 //! unit tests of the crates.
 
 mod bars;
+mod blown;
 mod bodies;
 mod cattaneo;
 mod contact_patch;

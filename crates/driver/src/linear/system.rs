@@ -76,8 +76,10 @@ pub(crate) struct System {
 /// Internal forces of an assembly.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Assembly {
-    /// ∫ Bᵀσ dΩ at every degree of freedom \[N\].
+    /// ∫ Bᵀσ dΩ at every degree of freedom, less the forces of pressures that follow their surface \[N\].
     pub(crate) internal: Vec<f64>,
+    /// The largest of those \[N\].
+    pub(crate) pressed: f64,
     /// K times the prescribed displacements that are still missing \[N\]; empty if none are.
     pub(crate) prescribed_load: Vec<f64>,
     /// Whether plastic strain grows anywhere.
@@ -377,6 +379,7 @@ impl System {
         self.timings.assembly += clock.elapsed();
         Assembly {
             internal,
+            pressed: 0.0,
             prescribed_load,
             flows,
             stiffness: with_stiffness,

@@ -3,6 +3,7 @@
 use crate::error::ModelError;
 use crate::model::points::Turn;
 use crate::vector::SparseVector;
+use moreau_mesh::{Facet, Mesh};
 use std::collections::BTreeMap;
 
 /// A coordinate direction.
@@ -173,6 +174,17 @@ impl<const D: usize> Step<D> {
     }
 }
 
+/// Most sides of a cell.
+const SIDES: usize = 6;
+
+/// The facet of an entry of [`Loading::pressure`].
+pub(crate) fn facet_of(entry: usize) -> Facet {
+    Facet {
+        cell: entry / SIDES,
+        facet: entry % SIDES,
+    }
+}
+
 /// All that acts on the model at an instant: totals, not increments. A tool is a body of one node,
 /// after those of the mesh.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -181,6 +193,8 @@ pub struct Loading<const D: usize> {
     pub displacement: BTreeMap<usize, f64>,
     /// Applied forces \[N\].
     pub force: SparseVector,
+    /// Pressures that follow their surface, under large strains \[MPa\]: on side s of cell c the entry 6c + s.
+    pub pressure: SparseVector,
     /// How far tools have turned \[rad\]: of tool k the components 3k, 3k + 1 and 3k + 2 of a vector along
     /// the axis, as long as the angle.
     pub turn: SparseVector,
@@ -206,8 +220,22 @@ impl<const D: usize> Loading<D> {
                 })
                 .collect(),
             force: self.force.with(&end.force, mix),
+            pressure: self.pressure.with(&end.pressure, mix),
             turn: self.turn.with(&end.turn, mix),
         }
+    }
+
+    /// Adds a multiple of a vector to the force on a node.
+    pub(crate) fn push(&mut self, node: usize, share: f64, vector: &[f64; D]) {
+        for i in 0..D {
+            self.force.add(D * node + i, share * vector[i]);
+        }
+    }
+
+    /// Adds a pressure on a facet \[MPa\].
+    pub(crate) fn press(&mut self, facet: Facet, pressure: f64) {
+        self.pressure
+            .add(SIDES * facet.cell + facet.facet, pressure);
     }
 
     /// How far a tool has turned.
@@ -215,9 +243,10 @@ impl<const D: usize> Loading<D> {
         Turn::from_fn(|i, _| self.turn.at(3 * tool + i))
     }
 
-    /// The first number that is not finite, or that is of none of so many degrees of freedom; nodes
-    /// from `tools` on are tools.
-    pub(crate) fn check(&self, tools: usize, dofs: usize) -> Result<(), ModelError> {
+    /// The first number that is not finite, or that is of none of so many degrees of freedom or of no facet of
+    /// the mesh; nodes beyond those of the mesh are tools.
+    pub(crate) fn check(&self, mesh: &Mesh<D>, dofs: usize) -> Result<(), ModelError> {
+        let tools = mesh.nodes().len();
         let place = |node: usize| match node.checked_sub(tools) {
             Some(tool) => format!("tool {tool}"),
             None => format!("node {node}"),
@@ -247,6 +276,18 @@ impl<const D: usize> Loading<D> {
                 return Err(error(format!("force f_{axis} on {}", place(node)), f));
             }
         }
+        for (k, pressure) in self.pressure.iter() {
+            if !mesh.has_facet(facet_of(k)) {
+                return Err(ModelError::OutOfRange {
+                    what: "facet of a pressure".into(),
+                    value: k as f64,
+                    expected: "one of the mesh",
+                });
+            }
+            if !pressure.is_finite() {
+                return Err(error(format!("pressure on cell {}", k / SIDES), pressure));
+            }
+        }
         for (k, angle) in self.turn.iter() {
             if !angle.is_finite() {
                 return Err(error(format!("turn of tool {}", k / 3), angle));
@@ -265,12 +306,16 @@ impl<const D: usize> Loading<D> {
         if moved > 0.0 {
             return (dot(&new, &old) + self.turn.inner(&previous.turn)) / moved;
         }
-        let loaded = previous.force.inner(&previous.force);
-        if loaded > 0.0 {
-            self.force.inner(&previous.force) / loaded
-        } else {
-            0.0
+        for (new, old) in [
+            (&self.force, &previous.force),
+            (&self.pressure, &previous.pressure),
+        ] {
+            let loaded = old.inner(old);
+            if loaded > 0.0 {
+                return new.inner(old) / loaded;
+            }
         }
+        0.0
     }
 
     /// `self − start`, for loadings with the same prescribed degrees of freedom.
@@ -282,6 +327,7 @@ impl<const D: usize> Loading<D> {
                 .map(|(d, &u)| (*d, u - start.displacement.get(d).copied().unwrap_or(u)))
                 .collect(),
             force: self.force.with(&start.force, |b, a| b - a),
+            pressure: self.pressure.with(&start.pressure, |b, a| b - a),
             turn: self.turn.with(&start.turn, |b, a| b - a),
         }
     }

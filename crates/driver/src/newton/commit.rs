@@ -212,8 +212,10 @@ impl<const D: usize> Driver<D> {
         contact: &SparseVector,
     ) -> f64 {
         let state = &self.state;
-        let mean = start.force.with(&end.force, |a, b| 0.5 * (a + b));
-        let mut work = mean.dot(d_u);
+        let mean = |a: f64, b: f64| 0.5 * (a + b);
+        let mut work = start.force.with(&end.force, mean).dot(d_u);
+        let at_start = self.pressure_force(start, &vec![0.0; d_u.len()]);
+        work += at_start.with(&self.pressure_force(end, d_u), mean).dot(d_u);
         for &dof in end.displacement.keys() {
             let before = state.internal[dof] - start.force.at(dof) - state.contact.at(dof);
             let after = internal[dof] - end.force.at(dof) - contact.at(dof);

@@ -53,6 +53,7 @@ impl Control<'_> {
     pub(crate) fn loading<const D: usize>(&self, start: &Loading<D>) -> Loading<D> {
         let grown = |f, q| f + (self.factor - self.start) * q;
         Loading {
+            pressure: start.pressure.clone(),
             turn: start.turn.clone(),
             displacement: start.displacement.clone(),
             force: start.force.with(self.load, grown),

@@ -177,7 +177,7 @@ impl<const D: usize> Driver<D> {
             end: Cow::Borrowed(end),
             control,
             iterate: Iterate {
-                assembly: self.assemble(system, &d_u, &missing, tangent),
+                assembly: self.assemble(system, end, (&d_u, &missing), tangent),
                 d_u,
                 contact: self.state.contact.clone(),
                 part: 0.0,
@@ -411,8 +411,8 @@ impl<const D: usize> Driver<D> {
             };
             let contact = (balance.kinematics.as_slice(), force.as_slice());
             let far = imbalance > FAR * balance.scale;
-            let (iterate, missing) = (&mut increment.iterate, &increment.missing);
-            self.linearise(system, iterate, missing, contact, far)?;
+            let given = (&*increment.end, &increment.missing);
+            self.linearise(system, &mut increment.iterate, given, contact, far)?;
         }
         increment.chord.begin(imbalance, !serves);
         Ok(())

@@ -114,7 +114,7 @@ impl<const D: usize> Driver<D> {
             true => Stiffness::Plastic(1.0),
             false => Stiffness::None,
         };
-        let assembly = self.assemble(system, &d_u, &none, stiffness);
+        let assembly = self.assemble(system, end, (&d_u, &none), stiffness);
         let scale = self.force_scale(&assembly, end, &step.contact);
         let before = line.residual(
             system,
@@ -154,7 +154,7 @@ impl<const D: usize> Driver<D> {
         };
         let d_u = line.displacement(s);
         *iterate = Iterate {
-            assembly: self.assemble(system, &d_u, &none, Stiffness::Plastic(1.0)),
+            assembly: self.assemble(system, end, (&d_u, &none), Stiffness::Plastic(1.0)),
             contact: line.contact(s),
             d_u,
             part: s,
@@ -165,7 +165,7 @@ impl<const D: usize> Driver<D> {
     /// The residual at the part s of a step.
     fn residual_along(&mut self, system: &mut System, line: &Line<'_, D>, s: f64) -> Vec<f64> {
         let (trial, none) = (line.displacement(s), SparseVector::default());
-        let at = self.assemble(system, &trial, &none, Stiffness::None);
+        let at = self.assemble(system, line.end, (&trial, &none), Stiffness::None);
         line.residual(system, &at.internal, &line.contact(s), s)
     }
 
@@ -295,7 +295,7 @@ mod tests {
         let mut system = driver.prepare(&end, None).expect("held");
         let rest = vec![0.0; 2 * driver.mesh.nodes().len()];
         let none = SparseVector::default();
-        let assembly = driver.assemble(&mut system, &rest, &none, Stiffness::Plastic(1.0));
+        let assembly = driver.assemble(&mut system, &end, (&rest, &none), Stiffness::Plastic(1.0));
         system.factorise(true).expect("elastic");
         let (mut load, mut step) = (rest.clone(), rest.clone());
         end.force.add_to(&mut load, 1.0);

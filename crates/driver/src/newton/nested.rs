@@ -143,7 +143,8 @@ impl<const D: usize> Driver<D> {
         };
         let kinematics = self.kinematics(system, end, &increment.iterate.d_u);
         let force = self.previous_forces(&kinematics);
-        self.factorise(system, &mut increment.iterate, &increment.missing, false)?;
+        let given = (end, &increment.missing);
+        self.factorise(system, &mut increment.iterate, given, false)?;
         let condensed = system.condense(vec![0.0; increment.iterate.d_u.len()]);
         let points = (self.points.as_slice(), self.motion_rows.as_slice());
         let seam = (condensed.stiffness, &condensed.load);
@@ -212,7 +213,7 @@ impl<const D: usize> Driver<D> {
                 return Err(self.not_converged(&residual, self.settings.iterations, accepted));
             }
             increment.counts.newton += 1;
-            self.factorise(system, iterate, &increment.missing, false)?;
+            self.factorise(system, iterate, (end, &increment.missing), false)?;
             let load = iterate.assembly.load(&[&end.force, &iterate.contact]);
             let mut step = vec![0.0; load.len()];
             std::mem::take(&mut increment.missing).add_to(&mut step, 1.0);

@@ -4,7 +4,7 @@ use crate::assembly::cell_law::Stiffness;
 use crate::driver::Driver;
 use crate::error::{IncrementError, ModelError};
 use crate::linear::system::System;
-use crate::model::load::axis_letter;
+use crate::model::load::{Loading, axis_letter};
 use crate::model::points::Kinematics;
 use crate::newton::iterate::Iterate;
 use crate::vector::SparseVector;
@@ -18,27 +18,29 @@ const BLENDS: [f64; 4] = [1.0 - 1e-4, 0.99, 0.8, 0.0];
 const STIFFENED: [f64; 3] = [0.95, 0.8, 0.0];
 
 impl<const D: usize> Driver<D> {
-    /// Makes the system that of the tangent at an iterate, under contact forces in the frames of their points:
+    /// Makes the system that of the tangent at an iterate, under a loading with displacements that are missing
+    /// and contact forces in the frames of their points:
     /// factorised, where contacts are not tied in its factor.
     pub(crate) fn linearise(
         &mut self,
         system: &mut System,
         now: &mut Iterate,
-        missing: &SparseVector,
+        given: (&Loading<D>, &SparseVector),
         contact: (&[Kinematics<D>], &[Local<D>]),
         far: bool,
     ) -> Result<(), IncrementError> {
         let turns = self.has_large_strains();
+        let (end, missing) = given;
         if !now.assembly.stiffness && (turns || system.is_tied()) {
             let tangent = Stiffness::Plastic(1.0);
-            now.assembly = self.assemble(system, &now.d_u, missing, tangent);
+            now.assembly = self.assemble(system, end, (&now.d_u, missing), tangent);
         }
         if turns {
             self.add_turning(system, contact);
         }
         match system.is_tied() {
             true => Ok(()),
-            false => self.factorise(system, now, missing, far),
+            false => self.factorise(system, now, given, far),
         }
     }
 
@@ -77,13 +79,13 @@ impl<const D: usize> Driver<D> {
         &mut self,
         system: &mut System,
         now: &mut Iterate,
-        missing: &SparseVector,
+        (end, missing): (&Loading<D>, &SparseVector),
         far: bool,
     ) -> Result<(), IncrementError> {
         let elastic = !now.assembly.flows;
         if !(now.assembly.stiffness || elastic && system.holds_elastic_factor()) {
             let tangent = Stiffness::Plastic(1.0);
-            now.assembly = self.assemble(system, &now.d_u, missing, tangent);
+            now.assembly = self.assemble(system, end, (&now.d_u, missing), tangent);
         }
         let mut outcome = system.factorise(elastic);
         let leads_nowhere = |system: &System| far && system.is_indefinite();
@@ -96,7 +98,7 @@ impl<const D: usize> Driver<D> {
                 break;
             }
             let blended = Stiffness::Plastic(part);
-            now.assembly = self.assemble(system, &now.d_u, missing, blended);
+            now.assembly = self.assemble(system, end, (&now.d_u, missing), blended);
             outcome = system.factorise(false);
         }
         if let Err(dof) = outcome

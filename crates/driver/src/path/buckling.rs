@@ -82,7 +82,9 @@ impl<const D: usize> Driver<D> {
     fn nearest_instability(&mut self, system: &mut System) -> Option<Buckling<D>> {
         let rest = vec![0.0; self.state.displacement.len()];
         let elastic = Stiffness::Plastic(0.0);
-        self.assemble(system, &rest, &SparseVector::default(), elastic);
+        let none = SparseVector::default();
+        let loading = self.state.loading.clone();
+        self.assemble(system, &loading, (&rest, &none), elastic);
         let kinematics = self.kinematics(system, &self.state.loading, &rest);
         let status: Vec<Status> = match &self.state.solution {
             Some(solution) => solution.status.clone(),

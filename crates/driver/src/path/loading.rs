@@ -16,11 +16,6 @@ impl<const D: usize> Driver<D> {
     pub fn loading(&self, step: &Step<D>) -> Result<Loading<D>, ModelError> {
         let mesh = &self.mesh;
         let mut loading = Loading::default();
-        let mut add = |node: usize, share: f64, vector: &[f64; D]| {
-            for i in 0..D {
-                loading.force.add(D * node + i, share * vector[i]);
-            }
-        };
         let mut moved: BTreeMap<usize, f64> = BTreeMap::new();
         for condition in &step.conditions {
             match condition {
@@ -30,25 +25,27 @@ impl<const D: usize> Driver<D> {
                 Condition::Force { on, force } => {
                     let nodes = mesh.node_group(on)?;
                     for &node in &nodes {
-                        add(node, 1.0 / nodes.len() as f64, force);
+                        loading.push(node, 1.0 / nodes.len() as f64, force);
                     }
                 }
                 Condition::Pressure { on, pressure } => {
+                    let facets = mesh.facet_group(on)?;
                     if self.has_large_strains() {
-                        return Err(ModelError::FollowingPressure { on: on.clone() });
+                        facets.iter().for_each(|&f| loading.press(f, *pressure));
+                        continue;
                     }
-                    for s in self.measure.facet_shares(mesh, mesh.facet_group(on)?) {
-                        add(s.node, -pressure, &s.normal);
+                    for s in self.measure.facet_shares(mesh, facets) {
+                        loading.push(s.node, -pressure, &s.normal);
                     }
                 }
                 Condition::Traction { on, traction } => {
                     for s in self.measure.facet_shares(mesh, mesh.facet_group(on)?) {
-                        add(s.node, s.area, traction);
+                        loading.push(s.node, s.area, traction);
                     }
                 }
                 Condition::BodyForce { on, density } => {
                     for (node, share) in self.measure.volume_shares(mesh, mesh.cell_group(on)?) {
-                        add(node, share, density);
+                        loading.push(node, share, density);
                     }
                 }
                 Condition::Tool { .. } | Condition::Turn { .. } | Condition::Push { .. } => {}
@@ -64,7 +61,7 @@ impl<const D: usize> Driver<D> {
             }
         }
         loading.displacement = moved;
-        loading.check(self.mesh.nodes().len(), self.state.displacement.len())?;
+        loading.check(mesh, self.state.displacement.len())?;
         Ok(loading)
     }
 

@@ -237,9 +237,9 @@ impl<const D: usize> Driver<D> {
         watch: &mut dyn FnMut(&Iteration<'_>),
     ) -> Result<IncrementReport, IncrementError> {
         // One that was read may be of another model.
-        let (nodes, dofs) = (self.mesh.nodes().len(), self.state.displacement.len());
-        ramp.start.check(nodes, dofs)?;
-        ramp.end.check(nodes, dofs)?;
+        let dofs = self.state.displacement.len();
+        ramp.start.check(&self.mesh, dofs)?;
+        ramp.end.check(&self.mesh, dofs)?;
         let pieces = ramp.increments.pieces();
         let base = 1.0 / pieces as f64;
         loop {

@@ -100,8 +100,8 @@ fn a_saved_ramp_of_another_model_is_refused() {
     let ramp = driver.begin(&step, 2).expect("valid");
     let mut numbers = Vec::new();
     ramp.write(&mut numbers);
-    // Prescribed displacements by how many numbers, then no forces and no turns, then the same of the end.
-    let loading = 3 + numbers[0] as usize;
+    // Prescribed displacements by how many numbers, then no forces, no pressures and no turns, then the same of the end.
+    let loading = 4 + numbers[0] as usize;
     assert_eq!(numbers[0], numbers[loading]);
     for first in [1, loading + 1] {
         let mut other = numbers.clone();

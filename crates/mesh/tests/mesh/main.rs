@@ -13,6 +13,7 @@ mod integrals;
 mod losses;
 mod pairing;
 mod pairing_space;
+mod pressures;
 mod quadrature;
 mod validity;
 mod write;
