@@ -277,6 +277,15 @@ pub enum IncrementError {
         /// How deep it was in the tool \[mm\].
         depth: f64,
     },
+    /// Loads that grow have left a stable equilibrium for another one, across unstable ones.
+    #[error(
+        "the body snaps: it moves by {moved:.3e} mm at once, through equilibria that are unstable: the load has \
+         passed its limit"
+    )]
+    Snap {
+        /// Largest displacement of the increment \[mm\].
+        moved: f64,
+    },
     /// The tangent is not positive definite: a mechanism.
     #[error(
         "the stiffness is not positive definite at node {node}, u_{axis} ({position:?}): \
@@ -378,7 +387,9 @@ fn collapse_hint(
 ) -> String {
     if matches!(
         cause,
-        IncrementError::Passage { .. } | IncrementError::NotFinite { .. }
+        IncrementError::Passage { .. }
+            | IncrementError::NotFinite { .. }
+            | IncrementError::Snap { .. }
     ) {
         return String::new();
     }

@@ -112,6 +112,9 @@ pub struct IncrementReport {
     /// Negative eigenvalues of the last tangent under large strains, with what may touch held where it is: the
     /// equilibrium is unstable, and since it was not a limit point or a bifurcation has been passed.
     pub negative_eigenvalues: usize,
+    /// The load factor at a limit that has been passed in this increment, along the path of equilibria: loads that
+    /// rose fall.
+    pub limit: Option<f64>,
     /// Rigid motions that nothing resists in the state that was found, in words, if the statuses left
     /// some free on the way: forces are what they are, and positions are those nearest to the ones before.
     pub free_motions: Vec<String>,

@@ -5,7 +5,7 @@
 //! des Ponts et Chaussées* 9 (1885) 574-775.
 
 use crate::close;
-use moreau::driver::{Analysis, Axis, Driver, Model, Settings, Step};
+use moreau::driver::{Analysis, Axis, Driver, IncrementError, Model, Settings, Step};
 use moreau::laws::{Isotropic, VonMises};
 use moreau::mesh::{Axisymmetric, CellKind, Integration, Mesh, PlaneStrain, block2, uniform};
 use nalgebra::Vector2;
@@ -111,6 +111,47 @@ fn a_sphere_is_blown_up() -> Fallible {
 #[test]
 fn a_cylinder_is_blown_up() -> Fallible {
     grows_by_hill(PlaneStrain::default(), 2, [(8, 6), (16, 12)])
+}
+
+/// Beyond the most that the sphere bears the pressure falls as it grows, until it is twice its size.
+#[test]
+fn a_sphere_is_blown_up_beyond_its_largest_pressure() -> Fallible {
+    let mut driver = wall(
+        Axisymmetric,
+        (CellKind::Quad8, Integration::Reduced),
+        (8, 6),
+    )?;
+    let first = radius(&driver, "body.left")?.0;
+    let most = (100..200)
+        .map(|k| pressure(3, 0.01 * f64::from(k)))
+        .fold(0.0, f64::max);
+    let all = 1.3 * most;
+    let mut limit = None;
+    let mut path = Vec::new();
+    let outcome = driver.run(
+        &held("blow up").pressure("body.left", all),
+        20,
+        |driver, report| {
+            limit = limit.or(report.limit);
+            path.push((radius(driver, "body.left"), all * report.fraction));
+        },
+    );
+    let Err(IncrementError::Collapse { collapse, .. }) = outcome else {
+        panic!("{outcome:?}");
+    };
+    close("limit", all * limit.ok_or("none")?, most, 3e-3);
+    close("largest", all * collapse.load_factor, most, 3e-3);
+    let mut falls = false;
+    for (bore, borne) in path {
+        let a = bore?.0 / first;
+        // Its strains are beyond what so few cells bear to a part in a hundred then.
+        if a < 2.0 {
+            close(&format!("pressure at {a}"), borne, pressure(3, a), 1e-2);
+            falls |= a > 1.7 && borne < 0.99 * most;
+        }
+    }
+    assert!(falls);
+    Ok(())
 }
 
 /// The load on a bar of one cell stretched to a logarithmic strain, in one increment: backward Euler is exact where

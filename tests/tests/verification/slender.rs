@@ -8,6 +8,7 @@ use crate::close;
 use moreau::driver::{Axis, Driver, Model, Settings, Step};
 use moreau::laws::Elastic;
 use moreau::mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
+use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
 use verification::problems::Fallible;
 
@@ -113,5 +114,117 @@ fn a_straight_column_is_unstable_from_eulers_load_on() -> Fallible {
         }
     })?;
     close("critical load", critical.ok_or("stable")?, euler, 2e-2);
+    Ok(())
+}
+
+/// Half of a clamped arch of unit thickness in the shape of a cosine: half of its span, rise, height of the section.
+const ARCH: [f64; 3] = [50.0, 2.5, 1.0];
+
+/// Half of the load on the arch of which the crown has come down by so much, by E. Reissner's beam with what
+/// stretches and shears it: integrated from the clamp, whose moment and forces are those with which the crown
+/// arrives without a slope.
+fn arch_load(down: f64, guess: &mut [f64; 3]) -> f64 {
+    const PIECES: usize = 2000;
+    let [span, rise, height] = ARCH;
+    let bending = YOUNG * height.powi(3) / 12.0;
+    let (stretching, shearing) = (YOUNG * height, 5.0 / 6.0 * 0.5 * YOUNG * height);
+    let slope = |x: f64| 0.5 * rise * PI / span * (PI * x / span).sin();
+    let turn = |x: f64| 0.5 * rise * (PI / span).powi(2) * (PI * x / span).cos();
+    // Of x, y, angle and moment along the span.
+    let rates = |x: f64, s: [f64; 4], h: f64, v: f64| {
+        let arc = slope(x).hypot(1.0);
+        let (sin, cos) = s[2].sin_cos();
+        let (along, across) = (h * cos + v * sin, v * cos - h * sin);
+        let (stretch, shear) = (1.0 + along / stretching, across / shearing);
+        let (dx, dy) = (stretch * cos - shear * sin, stretch * sin + shear * cos);
+        let curvature = turn(x) / arc.powi(3) + s[3] / bending;
+        [dx, dy, curvature, dy * h - dx * v].map(|rate| rate * arc)
+    };
+    let arrives = |[moment, h, v]: [f64; 3]| {
+        let step = span / PIECES as f64;
+        let along = |s: [f64; 4], k: [f64; 4], by: f64| std::array::from_fn(|i| s[i] + by * k[i]);
+        let mut s = [0.0, 0.0, 0.0, moment];
+        for k in 0..PIECES {
+            let x = k as f64 * step;
+            let k1 = rates(x, s, h, v);
+            let k2 = rates(x + 0.5 * step, along(s, k1, 0.5 * step), h, v);
+            let k3 = rates(x + 0.5 * step, along(s, k2, 0.5 * step), h, v);
+            let k4 = rates(x + step, along(s, k3, step), h, v);
+            let mean = |i: usize| (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0;
+            s = std::array::from_fn(|i| s[i] + step * mean(i));
+        }
+        Vector3::new(s[0] - span, s[1] - (rise - down), s[2])
+    };
+    for _ in 0..30 {
+        let off = arrives(*guess);
+        let column = |i: usize| {
+            let mut other = *guess;
+            other[i] += 1e-6;
+            (arrives(other) - off) / 1e-6
+        };
+        let by = Matrix3::from_columns(&[column(0), column(1), column(2)])
+            .lu()
+            .solve(&off);
+        let by = by.expect("regular");
+        (0..3).for_each(|i| guess[i] -= by[i]);
+        if by.norm() < 1e-10 {
+            break;
+        }
+    }
+    -guess[2]
+}
+
+#[test]
+fn a_shallow_arch_snaps_through() -> Fallible {
+    let [span, rise, height] = ARCH;
+    let (x, y) = (
+        uniform(0.0, span, 50),
+        uniform(-0.5 * height, 0.5 * height, 1),
+    );
+    let mut mesh = block2("arch", CellKind::Quad8, &x, &y)?.map(|[x, y]| {
+        let slope = 0.5 * rise * PI / span * (PI * x / span).sin();
+        let centre = 0.5 * rise * (1.0 - (PI * x / span).cos());
+        let long = slope.hypot(1.0);
+        [x - y * slope / long, centre + y / long]
+    })?;
+    mesh.node_group_where("crown", "arch.right", |x| (x[1] - rise).abs() < 1e-9)?;
+    let model = Model::with_large_strains(mesh, PlaneStrain::default()).material(
+        "arch",
+        Elastic::new(YOUNG, 0.0)?,
+        Integration::Reduced,
+    )?;
+    let mut driver = Driver::new(model, Settings::default())?;
+    let node = driver.mesh().node_group("crown")?[0];
+    let step = Step::new("press")
+        .fix("arch.left", &[Axis::X, Axis::Y])
+        .fix("arch.right", &[Axis::X])
+        .force("crown", [0.0, -0.1]);
+    let mut path = Vec::new();
+    let mut limit = None;
+    driver.run(&step, 20, |driver, report| {
+        path.push([-driver.displacement(node)[1], 0.1 * report.fraction]);
+        limit = limit.or(report.limit);
+    })?;
+    let mut guess = [0.0; 3];
+    let peak = (1..=80)
+        .map(|k| arch_load(0.02 * f64::from(k), &mut guess))
+        .fold(0.0, f64::max);
+    close("limit", 0.1 * limit.ok_or("none")?, peak, 5e-3);
+    guess = [0.0; 3];
+    let mut from = 0.0;
+    for &[down, load] in &path {
+        // In small steps, so that the shooting stays on its branch.
+        let exact = (1..=10)
+            .map(|k| arch_load(from + 0.1 * f64::from(k) * (down - from), &mut guess))
+            .fold(0.0, |_, load| load);
+        from = down;
+        assert!(
+            (load - exact).abs() < 5e-3 * peak.max(exact),
+            "{down}: {load} {exact}"
+        );
+    }
+    // On its way the load pulls, and in the end it is all there.
+    assert!(path.iter().any(|[_, load]| *load < -0.004));
+    assert_eq!(path[path.len() - 1][1], 0.1);
     Ok(())
 }

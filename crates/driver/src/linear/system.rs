@@ -62,6 +62,8 @@ pub(crate) struct System {
     current: bool,
     /// Negative eigenvalues of the matrix that the factor was made of, where its engine tells.
     negative: usize,
+    /// Whether that of some factor of the increment had any.
+    unstable: bool,
     /// Factorisations done since the system was set up.
     pub(crate) factorisations: usize,
     /// Iterations of conjugate gradients since then.
@@ -286,6 +288,7 @@ impl System {
             elastic_factor: false,
             current: false,
             negative: 0,
+            unstable: false,
             factorisations: 0,
             conjugate: 0,
             floats: false,
@@ -484,6 +487,7 @@ impl System {
             }
         })?;
         self.negative = inertia.negative;
+        self.unstable |= self.is_indefinite();
         self.elastic_factor = elastic;
         self.current = true;
         Ok(())
@@ -492,6 +496,11 @@ impl System {
     /// Whether the matrix that the factor was made of has negative eigenvalues, its kept unknowns aside.
     pub(crate) fn is_indefinite(&self) -> bool {
         self.negative > 0
+    }
+
+    /// Whether some matrix of the increment had.
+    pub(crate) fn was_indefinite(&self) -> bool {
+        self.unstable
     }
 
     /// How many it has.
@@ -545,9 +554,10 @@ impl System {
         self.tied.as_deref() == Some(self.matrix.values())
     }
 
-    /// The next increment does the same whatever factor the last one has left.
-    pub(crate) fn untie(&mut self) {
+    /// Begins an increment, which does the same whatever factor the last one has left.
+    pub(crate) fn begin(&mut self) {
         self.tied.iter_mut().for_each(Vec::clear);
+        self.unstable = false;
     }
 
     /// Position of a degree of freedom among the unknowns; `None` if it is prescribed.

@@ -193,6 +193,7 @@ impl<const D: usize> Driver<D> {
             certificate,
             criticality: counts.criticality,
             negative_eigenvalues: counts.negative,
+            limit: None,
             free_motions: match counts.undetermined {
                 true => self.free_motions(),
                 false => Vec::new(),

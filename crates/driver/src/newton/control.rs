@@ -18,10 +18,12 @@ use crate::vector::largest;
 /// minimisation of a potential as before, and its tangent K + q qᵀ/c symmetric. K alone is singular
 /// at collapse: a node of the mechanism, the pivot, joins the interface, which holds it there.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Control<'a> {
+pub(crate) struct Control<'a, const D: usize> {
     /// λ, at the end of the increment once that has converged.
     pub(crate) factor: f64,
-    /// q \[N\].
+    /// What λ = 1 adds to the loading.
+    pub(crate) grows: &'a Loading<D>,
+    /// q \[N\], on the surface at the start of the increment where pressures follow it.
     pub(crate) load: &'a SparseVector,
     /// λ at the start of the increment.
     pub(crate) start: f64,
@@ -33,7 +35,7 @@ pub(crate) struct Control<'a> {
     pub(crate) length: f64,
 }
 
-impl Control<'_> {
+impl<const D: usize> Control<'_, D> {
     /// Work of the loads at λ = 1 on a displacement, q·u \[N·mm\].
     pub(crate) fn work(&self, u: &[f64]) -> f64 {
         self.load.dot(u)
@@ -50,13 +52,13 @@ impl Control<'_> {
     }
 
     /// The loading at λ, from that at the start.
-    pub(crate) fn loading<const D: usize>(&self, start: &Loading<D>) -> Loading<D> {
+    pub(crate) fn loading(&self, start: &Loading<D>) -> Loading<D> {
         let grown = |f, q| f + (self.factor - self.start) * q;
         Loading {
-            pressure: start.pressure.clone(),
+            pressure: start.pressure.with(&self.grows.pressure, grown),
             turn: start.turn.clone(),
             displacement: start.displacement.clone(),
-            force: start.force.with(self.load, grown),
+            force: start.force.with(&self.grows.force, grown),
         }
     }
 }
@@ -72,7 +74,7 @@ impl<const D: usize> Driver<D> {
     /// See [`IncrementError`].
     pub(crate) fn advance_along(
         &mut self,
-        control: &mut Control<'_>,
+        control: &mut Control<'_, D>,
         watch: &mut dyn FnMut(&Iteration<'_>),
     ) -> Result<Option<IncrementReport>, IncrementError> {
         let start = self.state.loading.clone();
@@ -96,6 +98,12 @@ impl<const D: usize> Driver<D> {
         (control.factor <= 1.0)
             .then(|| self.commit(&start, &control.loading(&start), candidate))
             .transpose()
+    }
+
+    /// Forces \[N\] of all that a loading applies, on the surface as it is after displacement increments.
+    pub(crate) fn nodal_forces(&self, loading: &Loading<D>, d_u: &[f64]) -> SparseVector {
+        let pressed = self.pressure_force(loading, d_u);
+        loading.force.with(&pressed, |f, p| f + p)
     }
 
     /// The node that moved most in the last increment; the pivot at hand, if it moved too.
@@ -126,6 +134,7 @@ mod tests {
         let last = [0.3, 5.0, 0.1];
         let mut control = Control {
             factor: 0.4,
+            grows: &Loading::<2>::default(),
             load: &load,
             start: 0.4,
             last: 0.05,

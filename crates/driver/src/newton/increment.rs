@@ -15,6 +15,7 @@ use crate::newton::criteria::slack;
 use crate::newton::iterate::Iterate;
 use crate::newton::line_search::NewtonStep;
 use crate::newton::linearised::Linearised;
+use crate::newton::tangent::STIFFENED;
 use crate::report::{IncrementReport, Iteration};
 use crate::vector::{SparseVector, largest};
 use moreau_contact::{ContactError, ContactSolution};
@@ -27,6 +28,13 @@ const WELL: f64 = 0.1;
 /// Imbalance over the forces in play, from which on a tangent that is not positive definite leads nowhere.
 const FAR: f64 = 0.1;
 
+/// Motion, over that of the increment before as often as the load grows, from which on a body has snapped where
+/// its tangent was indefinite on the way.
+const SNAP: f64 = 4.0;
+
+/// Halvings of the part of the increment in which the body moves most, before it counts as one that snaps.
+const HALVINGS: usize = 4;
+
 /// Parts of an increment that is followed along its loading: the first, and the shortest.
 const PART: f64 = 0.25;
 const SHORTEST: f64 = 1.0 / 128.0;
@@ -36,7 +44,7 @@ pub(crate) struct Increment<'a, 'c, const D: usize> {
     start: &'a Loading<D>,
     /// Under control a guess, as the displacements are.
     end: Cow<'a, Loading<D>>,
-    control: Option<&'a mut Control<'c>>,
+    control: Option<&'a mut Control<'c, D>>,
     pub(crate) iterate: Iterate,
     /// Prescribed displacements that the iterate does not have, and the next step makes up for \[mm\].
     pub(crate) missing: SparseVector,
@@ -105,7 +113,54 @@ impl<const D: usize> Driver<D> {
             other => other?,
         };
         self.check_passage(&candidate.d_u, end)?;
+        self.check_snap(system, (start, end), &candidate, watch)?;
         self.commit(start, end, candidate)
+    }
+
+    /// Whether loads that grow, under large strains, have left the body near where it was: an equilibrium
+    /// beyond a limit of the load is that of another branch, which the path leads to.
+    ///
+    /// # Errors
+    /// [`IncrementError::Snap`].
+    fn check_snap(
+        &mut self,
+        system: &mut System,
+        (start, end): (&Loading<D>, &Loading<D>),
+        candidate: &Candidate<D>,
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>),
+    ) -> Result<(), IncrementError> {
+        let moves = start.displacement != end.displacement || start.turn != end.turn;
+        let stable = candidate.counts.negative == 0;
+        if moves || !stable || !system.was_indefinite() || !self.has_large_strains() {
+            return Ok(());
+        }
+        let dofs = self.mesh_dofs();
+        let between =
+            |a: &[f64], b: &[f64]| largest(a.iter().zip(b).take(dofs).map(|(a, b)| a - b));
+        let rest = vec![0.0; candidate.d_u.len()];
+        let moved = between(&candidate.d_u, &rest);
+        if moved <= SNAP * between(&self.predictor(start, end), &rest) {
+            return Ok(());
+        }
+        // A body that yields moves less in less of the increment, one that snaps as much.
+        let (mut near, mut far) = ((0.0, rest), (1.0, candidate.d_u.clone()));
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (near.0 + far.0);
+            let here = start.towards(end, middle);
+            let increment = self.begin_increment(system, (start, &here), near.1.clone(), None);
+            let d_u = self.balance(system, increment, watch)?.d_u;
+            match between(&d_u, &near.1) > between(&far.1, &d_u) {
+                true => far = (middle, d_u),
+                false => near = (middle, d_u),
+            }
+        }
+        if between(&far.1, &near.1) > 0.5 * moved {
+            return Err(IncrementError::Snap { moved });
+        }
+        // What is committed is the last that was evaluated.
+        let none = SparseVector::default();
+        self.assemble(system, end, (&candidate.d_u, &none), Stiffness::None);
+        Ok(())
     }
 
     /// Finds the equilibrium at the end of an increment by following it along the loading, in parts that
@@ -163,14 +218,14 @@ impl<const D: usize> Driver<D> {
         system: &mut System,
         (start, end): (&'a Loading<D>, &'a Loading<D>),
         mut d_u: Vec<f64>,
-        control: Option<&'a mut Control<'c>>,
+        control: Option<&'a mut Control<'c, D>>,
     ) -> Increment<'a, 'c, D> {
         // Tools resist nothing: they are where they shall be from the first.
         for (&dof, u) in end.displacement.range(self.mesh_dofs()..) {
             d_u[dof] = u - start.displacement.get(&dof).unwrap_or(u);
         }
         let missing = self.missing(start, end, &d_u);
-        system.untie();
+        system.begin();
         let tangent = Stiffness::Plastic(1.0);
         Increment {
             start,
@@ -345,6 +400,9 @@ impl<const D: usize> Driver<D> {
         let mut unsymmetric = self.unsymmetric(system, &increment.iterate, imbalance, accuracy);
         let missing = std::mem::take(&mut increment.missing);
         let load = increment.iterate.assembly.load(&[&increment.end.force]);
+        // Along a path the tangent of large strains may be that of nothing that stands.
+        let follows = increment.control.is_some() && self.has_large_strains();
+        let mut blends = STIFFENED.iter().filter(|_| follows);
         let (step, factor, contact) = loop {
             let mut linearised = Linearised {
                 kinematics: &balance.kinematics,
@@ -362,7 +420,17 @@ impl<const D: usize> Driver<D> {
                 None => load.clone(),
                 Some(u) => u.load(&load),
             };
-            let answer = self.answer(system, &mut linearised, load, &mut increment.counts)?;
+            let answer = match self.answer(system, &mut linearised, load, &mut increment.counts) {
+                Ok(answer) => answer,
+                Err(error) => {
+                    let (now, given) = (&mut increment.iterate, (&*increment.end, &missing));
+                    let mut stiffens = |part| self.blend(system, now, given, part).is_ok();
+                    if blends.any(|&part| stiffens(part)) {
+                        continue;
+                    }
+                    return Err(error);
+                }
+            };
             let contact = self.contact_forces(&balance.kinematics, &answer.solution.force);
             increment.solution = Some(answer.solution);
             let (iterate, prescribed) = (&increment.iterate, system.prescribed());
@@ -434,6 +502,13 @@ impl<const D: usize> Driver<D> {
         increment.counts.shortened += usize::from(part < 1.0);
         if let Some(control) = &mut increment.control {
             control.factor += part * step.factor;
+            let grown = Loading {
+                pressure: control.grows.pressure.scaled(part * step.factor),
+                ..Loading::default()
+            };
+            let iterate = &mut increment.iterate;
+            self.pressure_force(&grown, &iterate.d_u)
+                .add_to(&mut iterate.assembly.internal, -1.0);
             increment.end = Cow::Owned(control.loading(increment.start));
         }
     }

@@ -15,7 +15,7 @@ const BLENDS: [f64; 4] = [1.0 - 1e-4, 0.99, 0.8, 0.0];
 
 /// The same where stresses of large strains make it indefinite far from the solution: a twentieth of the elastic
 /// stiffness is more than they take.
-const STIFFENED: [f64; 3] = [0.95, 0.8, 0.0];
+pub(crate) const STIFFENED: [f64; 3] = [0.95, 0.8, 0.0];
 
 impl<const D: usize> Driver<D> {
     /// Makes the system that of the tangent at an iterate, under a loading with displacements that are missing
@@ -72,6 +72,22 @@ impl<const D: usize> Driver<D> {
         }
     }
 
+    /// Factorises a stiffness at an iterate with this part of what flow adds to it.
+    ///
+    /// # Errors
+    /// [`System::factorise`].
+    pub(crate) fn blend(
+        &mut self,
+        system: &mut System,
+        now: &mut Iterate,
+        (end, missing): (&Loading<D>, &SparseVector),
+        part: f64,
+    ) -> Result<(), usize> {
+        let blended = Stiffness::Plastic(part);
+        now.assembly = self.assemble(system, end, (&now.d_u, missing), blended);
+        system.factorise(false)
+    }
+
     /// Factorises the tangent at an iterate. Where that is a mechanism, as a plastic tangent may be
     /// far from the solution, more and more of the elastic stiffness is blended in: the step is
     /// then shorter and still downhill.
@@ -97,9 +113,7 @@ impl<const D: usize> Driver<D> {
             if outcome.is_ok() && !leads_nowhere(system) {
                 break;
             }
-            let blended = Stiffness::Plastic(part);
-            now.assembly = self.assemble(system, end, (&now.d_u, missing), blended);
-            outcome = system.factorise(false);
+            outcome = self.blend(system, now, (end, missing), part);
         }
         if let Err(dof) = outcome
             && let Some(tool) = (dof / D).checked_sub(self.mesh.nodes().len())

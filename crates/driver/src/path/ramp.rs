@@ -46,6 +46,8 @@ struct Yielded {
     factor: f64,
     /// Δλ over the work of the whole loads on the displacements of the increment \[1/(N·mm)\].
     stiffness: f64,
+    /// That work \[N·mm\].
+    work: f64,
 }
 
 impl Yielded {
@@ -55,6 +57,18 @@ impl Yielded {
         (work > 0.0).then(|| Self {
             factor: 0.5 * (before + after),
             stiffness: (after - before) / work,
+            work,
+        })
+    }
+
+    /// λ at a limit that two increments in a row have passed, after the first of which it was `between`: the peak of a
+    /// parabola over the work. `None` unless λ rose and falls.
+    fn peak(first: Self, last: Self, between: f64) -> Option<f64> {
+        let passed = first.stiffness > 0.0 && last.stiffness < 0.0;
+        passed.then(|| {
+            let bend = (last.stiffness - first.stiffness) / (0.5 * (first.work + last.work));
+            let slope = first.stiffness + 0.5 * bend * first.work;
+            between - 0.5 * slope * slope / bend
         })
     }
 
@@ -94,6 +108,10 @@ const SOFTER: f64 = 0.02;
 /// structure softens.
 const SPRING: f64 = 1e-2;
 
+/// Motion in an increment along a path of large strains, in sizes of the mesh, up to which it is doubled: the path
+/// is to be seen.
+const SEEN: f64 = 5e-3;
+
 /// Times that an increment is halved at most where a tool moves through a body.
 const MOST_CUTS: usize = 30;
 
@@ -123,6 +141,7 @@ impl<const D: usize> Saved for Ramp<D> {
         for yielded in &mut self.yielded {
             numbers.option(yielded, Yielded::default, |y, numbers| {
                 numbers.value(&mut y.factor)?;
+                numbers.value(&mut y.work)?;
                 numbers.value(&mut y.stiffness)
             })?;
         }
@@ -138,13 +157,6 @@ impl<const D: usize> Saved for Ramp<D> {
 }
 
 impl<const D: usize> Ramp<D> {
-    /// The loads of the whole step \[N\].
-    fn load(&self) -> SparseVector {
-        self.end
-            .force
-            .with(&self.start.force, |end, start| end - start)
-    }
-
     /// Whether something that the step prescribes is moved.
     fn moves(&self) -> bool {
         self.start.displacement != self.end.displacement || self.start.turn != self.end.turn
@@ -266,7 +278,7 @@ impl<const D: usize> Driver<D> {
                     ramp.length = ramp
                         .increments
                         .next(ramp.length, &mut ramp.easy, iterations);
-                    ramp.converged(&report, before, self.last_work(&ramp.load()));
+                    ramp.converged(&report, before, self.last_work(&self.load(ramp)));
                     return Ok(report);
                 }
                 Err(error @ IncrementError::Model(_)) => return Err(error),
@@ -296,11 +308,18 @@ impl<const D: usize> Driver<D> {
         }
     }
 
+    /// The loads of a whole step, where the body is now \[N\].
+    fn load(&self, ramp: &Ramp<D>) -> SparseVector {
+        let rest = vec![0.0; self.state.displacement.len()];
+        self.nodal_forces(&ramp.end.increment_from(&ramp.start), &rest)
+    }
+
     /// The path of a step that moves nothing, from after its first increment on.
     fn path(&self, ramp: &Ramp<D>) -> Option<Path> {
         let moves = ramp.moves();
         let (last, before) = self.state.last.as_ref()?;
-        let load = ramp.load();
+        let rest = vec![0.0; last.len()];
+        let load = self.load(ramp);
         let square = load.inner(&load);
         if moves
             || self.settings.nesting != Nesting::Inside
@@ -308,7 +327,7 @@ impl<const D: usize> Driver<D> {
         {
             return None;
         }
-        let factor = before.force.inner(&load) / square;
+        let factor = self.nodal_forces(before, &rest).inner(&load) / square;
         let compliance = SPRING * ramp.work / ramp.done;
         let length = load.dot(last) + compliance * factor;
         (length > 0.0).then_some(Path {
@@ -328,7 +347,8 @@ impl<const D: usize> Driver<D> {
         mut path: Path,
         watch: &mut dyn FnMut(&Iteration<'_>),
     ) -> Result<IncrementReport, IncrementError> {
-        let load = ramp.load();
+        let load = self.load(ramp);
+        let grows = ramp.end.increment_from(&ramp.start);
         if path.ended {
             return Err(IncrementError::Collapse {
                 step: ramp.step.clone(),
@@ -343,6 +363,7 @@ impl<const D: usize> Driver<D> {
         loop {
             let mut control = Control {
                 factor: ramp.done,
+                grows: &grows,
                 load: &load,
                 start: ramp.done,
                 last: path.last,
@@ -370,13 +391,22 @@ impl<const D: usize> Driver<D> {
                     let work = self.last_work(&load);
                     let before = std::mem::replace(&mut ramp.done, report.fraction);
                     ramp.converged(&report, before, work);
+                    if self.has_large_strains()
+                        && let [Some(last), Some(first)] = ramp.yielded
+                    {
+                        report.limit = Yielded::peak(first, last, before);
+                    }
                     path.last = report.fraction - before;
                     path.peak = path.peak.max(report.fraction);
                     path.growth = path.last * (ramp.work / work).abs() / path.peak;
+                    let size = self.mesh.size();
                     let moved = &self.state.displacement[..self.mesh_dofs()];
                     let motion = largest(moved.iter().copied());
-                    path.ended = path.growth <= Collapse::FLAT || motion > self.mesh.size();
-                    if report.newton_iterations <= 2 * Increments::EASY && halved == 0 {
+                    // Where strains are large, loads may fall and rise again.
+                    let flat = path.growth <= Collapse::FLAT && !self.has_large_strains();
+                    path.ended = flat || motion > size;
+                    let easy = report.newton_iterations <= 2 * Increments::EASY && halved == 0;
+                    if easy && !(self.has_large_strains() && self.last_motion() > SEEN * size) {
                         path.length *= 2.0;
                     }
                     ramp.path = Some(path);
@@ -396,6 +426,14 @@ impl<const D: usize> Driver<D> {
                 }
             }
         }
+    }
+
+    /// Largest displacement of the last increment \[mm\].
+    fn last_motion(&self) -> f64 {
+        let last = self.state.last.as_ref();
+        last.map_or(0.0, |(d_u, _)| {
+            largest(d_u[..self.mesh_dofs()].iter().copied())
+        })
     }
 
     /// Work of loads on the displacements of the last increment \[N·mm\].
@@ -432,6 +470,19 @@ impl<const D: usize> Driver<D> {
 mod tests {
     use super::*;
 
+    /// λ = 0.9 − (w − 1)²: of a parabola the peak is exact.
+    #[test]
+    fn a_load_that_rises_and_falls_has_a_peak() {
+        let load = |w: f64| 0.9 - (w - 1.0) * (w - 1.0);
+        let of = |before: f64, after: f64| {
+            Yielded::between(load(before), load(after), after - before).expect("work is done")
+        };
+        for [a, b, c] in [[0.5, 0.9, 1.2], [0.7, 1.1, 1.5]] {
+            let peak = Yielded::peak(of(a, b), of(b, c), load(b)).expect("passed");
+            assert!((peak - 0.9).abs() < 1e-14, "{peak}");
+        }
+    }
+
     /// λ = 1 − A/(w + w₀) in three steps of λ, whose ends and not whose means would be a hundredth off.
     #[test]
     fn two_increments_of_a_hyperbola_tend_to_its_limit() {
@@ -442,6 +493,7 @@ mod tests {
         };
         let limit = Yielded::limit(of(0.70, 0.72), of(0.72, 0.74)).expect("it yields");
         assert!((limit - 1.0).abs() < 1e-3, "{limit}");
+        assert_eq!(Yielded::peak(of(0.70, 0.72), of(0.72, 0.74), 0.72), None);
         assert_eq!(Yielded::between(0.2, 0.4, 0.0), None);
         let elastic = Yielded::between(0.0, 0.2, 3.0).expect("work is done");
         assert_eq!(Yielded::limit(elastic, elastic), None);

@@ -27,9 +27,11 @@ enum Kind {
     Free,
     /// An equilibrium that is unstable.
     Unstable,
+    /// A limit of the load, beyond which it falls.
+    Limit,
 }
 
-const KINDS: [Kind; 9] = [
+const KINDS: [Kind; 10] = [
     Kind::Strain,
     Kind::Rotation,
     Kind::Inverted,
@@ -39,6 +41,7 @@ const KINDS: [Kind; 9] = [
     Kind::Corner,
     Kind::Free,
     Kind::Unstable,
+    Kind::Limit,
 ];
 
 /// Where a doubt is worst.
@@ -171,6 +174,11 @@ impl Warnings {
         if report.negative_eigenvalues > 0 && self.worst[Kind::Unstable as usize].is_none() {
             let numbers = vec![report.negative_eigenvalues as f64];
             self.note(Kind::Unstable, numbers, (0, Vec::new()), when);
+        }
+        if let Some(limit) = report.limit
+            && self.worst[Kind::Limit as usize].is_none()
+        {
+            self.note(Kind::Limit, vec![limit], (0, Vec::new()), when);
         }
         if !report.free_motions.is_empty() {
             let numbers = vec![report.free_motions.len() as f64];
@@ -310,6 +318,12 @@ impl Worst {
                     1 => "an eigenvalue that is".to_owned(),
                     n => format!("{n} eigenvalues that are"),
                 }
+            ),
+            Kind::Limit => format!(
+                "the load passes its limit in increment {when}, at {} of the step: what follows is the path of \
+                 equilibria under loads that fall and rise again, which a body under its full load leaves at once, \
+                 snapping to where that load is balanced again",
+                shown(self.number(0), 6)
             ),
             Kind::Buckling => self.buckling(deck),
         }
