@@ -219,6 +219,11 @@ impl<const D: usize> Driver<D> {
         SVector::from_column_slice(&self.state.displacement[D * node..D * node + D])
     }
 
+    /// Displacements of all nodes since the virgin state, D components each \[mm\].
+    pub fn displacements(&self) -> &[f64] {
+        &self.state.displacement[..self.mesh_dofs()]
+    }
+
     /// Increments converged so far.
     pub fn increments(&self) -> usize {
         self.state.increment

@@ -190,6 +190,16 @@ impl Findings {
         self.list.iter()
     }
 
+    /// All of them, with line and column of their places in the text of the deck, from 1.
+    pub fn places(&self, text: &str) -> impl Iterator<Item = (&Finding, usize, usize)> {
+        self.list.iter().map(move |finding| {
+            let before = &text[..finding.shown(text).start];
+            let line = before.lines().count().max(1) + usize::from(before.ends_with('\n'));
+            let column = before.rsplit('\n').next().unwrap_or_default().chars().count();
+            (finding, line, column + 1)
+        })
+    }
+
     /// Number of errors.
     pub fn errors(&self) -> usize {
         self.count(Severity::Error)

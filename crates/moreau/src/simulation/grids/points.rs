@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 const VERTEX: u8 = 1;
 
 /// All quadrature points, cell by cell.
-pub(in crate::run) fn points<const D: usize>(driver: &Driver<D>) -> Grid {
+pub(in crate::simulation) fn points<const D: usize>(driver: &Driver<D>) -> Grid {
     let mesh = driver.mesh();
     let all = driver.points();
     // Blocks are sets of cells in any order; the points of a cell stay in theirs.
@@ -86,7 +86,7 @@ mod tests {
     use crate::mesh::{
         Axisymmetric, CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3,
     };
-    use crate::run::vtu::body::body;
+    use crate::simulation::grids::body;
     use nalgebra::Matrix3;
 
     /// Rounding of sums and of Newton's end.

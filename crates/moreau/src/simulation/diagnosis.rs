@@ -1,7 +1,7 @@
 //! Why an increment did not converge, and what to change; not the error itself.
 
-use super::log::Trace;
 use super::status_name;
+use super::trace::Trace;
 use crate::deck::{Action, Deck, Method, Units};
 use crate::driver::{Driver, Imbalance, IncrementError};
 use crate::laws::Status;

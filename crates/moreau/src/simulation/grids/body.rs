@@ -13,7 +13,7 @@ fn components(stress: &Sym2) -> [f64; 6] {
 }
 
 /// Stress, von Mises stress and equivalent plastic strain.
-pub(in crate::run) fn fields(values: &[(Sym2, f64, f64)]) -> Vec<Array> {
+pub(in crate::simulation) fn fields(values: &[(Sym2, f64, f64)]) -> Vec<Array> {
     let scalar = |name: &str, of: &dyn Fn(&(Sym2, f64, f64)) -> f64| Array {
         name: name.to_owned(),
         components: 1,
@@ -78,7 +78,7 @@ pub(super) fn place<const D: usize>(driver: &Driver<D>, node: usize) -> [f64; D]
 
 /// The grid of a body, and the node of each of its points: nodes where materials meet have a point
 /// for each material.
-pub(in crate::run) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usize>) {
+pub(in crate::simulation) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usize>) {
     let mesh = driver.mesh();
     let points = driver.points();
     let of_laws = driver.fields();

@@ -4,48 +4,41 @@
 use super::progress::Progress;
 use super::signals::{Signals, interrupted};
 use super::{INPUT_ERROR, Manner, NOT_CONVERGED, UNEXPECTED, folder, read, report, say, tell};
-use moreau::deck::{Deck, Problem, open_in};
-use moreau::memory;
-use moreau::numbers::shown;
-use moreau::run::{Directory, Outcome, RunError, RunStatus, Watch};
+use crate::deck::Meshes;
+use crate::memory;
+use crate::numbers::shown;
+use crate::run::{Directory, RunError, Watch};
+use crate::simulation::{Outcome, RunStatus, Simulation};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// Runs a deck; the exit status.
-pub(crate) fn run(path: &Path, out: Option<PathBuf>, force: bool, manner: &Manner) -> u8 {
-    let Some((deck, problem)) = problem(path) else {
+pub(super) fn run(path: &Path, out: Option<PathBuf>, force: bool, manner: &Manner) -> u8 {
+    let Some(simulation) = simulation(path) else {
         return INPUT_ERROR;
     };
-    let given = deck.directory.as_ref().map(PathBuf::from);
+    let given = simulation.deck().directory.as_ref().map(PathBuf::from);
     let directory = out.or(given).unwrap_or_else(|| default_directory(path, ""));
     let Some(to) = taken(Directory::take_for(&directory, path, force)) else {
         return INPUT_ERROR;
     };
-    let (deck, to) = (&deck, &to);
-    go(deck, &directory, manner, move |watch| match problem {
-        Problem::Plane(setup) => moreau::run::run(*setup, deck, to, watch),
-        Problem::Solid(setup) => moreau::run::run(*setup, deck, to, watch),
-    })
+    go(simulation, &to, manner, crate::run::run)
 }
 
 /// Continues a run; the exit status.
-pub(crate) fn resume(directory: &Path, manner: &Manner) -> u8 {
-    let Some((deck, problem)) = results(directory) else {
+pub(super) fn resume(directory: &Path, manner: &Manner) -> u8 {
+    let Some(simulation) = results(directory) else {
         return INPUT_ERROR;
     };
     let Some(at) = taken(Directory::take(directory)) else {
         return INPUT_ERROR;
     };
-    let (deck, at) = (&deck, &at);
-    go(deck, directory, manner, move |watch| match problem {
-        Problem::Plane(setup) => moreau::run::resume(*setup, deck, at, watch),
-        Problem::Solid(setup) => moreau::run::resume(*setup, deck, at, watch),
-    })
+    go(simulation, &at, manner, crate::run::resume)
 }
 
 /// A directory to write to; why not is printed.
-pub(crate) fn taken(directory: Result<Directory, RunError>) -> Option<Directory> {
+pub(super) fn taken(directory: Result<Directory, RunError>) -> Option<Directory> {
     match directory {
         Ok(directory) => {
             if !directory.is_exclusive() {
@@ -61,8 +54,8 @@ pub(crate) fn taken(directory: Result<Directory, RunError>) -> Option<Directory>
     }
 }
 
-/// The problem of a directory of results; what is wrong with it is printed.
-pub(crate) fn results(directory: &Path) -> Option<(Deck, Problem)> {
+/// The simulation of a directory of results, at its beginning; what is wrong with it is printed.
+pub(super) fn results(directory: &Path) -> Option<Simulation> {
     let path = directory.join("deck.resolved.toml");
     if !path.exists() {
         let at = directory.display();
@@ -71,31 +64,31 @@ pub(crate) fn results(directory: &Path) -> Option<(Deck, Problem)> {
         );
         return None;
     }
-    problem(&path)
+    simulation(&path)
 }
 
-/// The problem of a deck; findings are printed.
-pub(crate) fn problem(path: &Path) -> Option<(Deck, Problem)> {
+/// The simulation of a deck; findings are printed.
+pub(super) fn simulation(path: &Path) -> Option<Simulation> {
     let text = read(path)?;
-    let (deck, problem, findings) = open_in(&text, folder(path));
+    let (simulation, findings) = Simulation::open(&text, folder(path), &Meshes::new());
     report(&findings, path, &text);
-    Some((deck, problem?))
+    simulation
 }
 
 fn go(
-    deck: &Deck,
-    directory: &Path,
+    simulation: Simulation,
+    directory: &Directory,
     manner: &Manner,
-    solve: impl FnOnce(&mut dyn Watch) -> Result<Outcome, RunError> + Send,
+    solve: fn(Simulation, &Directory, &mut dyn Watch) -> Result<Outcome, RunError>,
 ) -> u8 {
-    let Some(pool) = pool(manner.threads.unwrap_or(deck.solver.threads)) else {
+    let Some(pool) = pool(manner.threads.unwrap_or(simulation.deck().solver.threads)) else {
         return INPUT_ERROR;
     };
     let mut progress = Progress::new(manner.quiet, manner.json_log, Signals::listen());
-    let outcome = pool.install(|| solve(&mut progress));
+    let outcome = pool.install(|| solve(simulation, directory, &mut progress));
     progress.end();
     match outcome {
-        Ok(outcome) => conclude(&outcome, manner, directory),
+        Ok(outcome) => conclude(&outcome, manner, directory.path()),
         Err(error) => {
             tell!("{error}");
             match error {
@@ -108,7 +101,7 @@ fn go(
 }
 
 /// Threads to work with, this one among them; why there are none is printed.
-pub(crate) fn pool(wanted: usize) -> Option<ThreadPool> {
+pub(super) fn pool(wanted: usize) -> Option<ThreadPool> {
     let told = |error: &dyn Display| tell!("cannot start threads: {error}");
     let threads = memory::threads(wanted).map_err(|e| told(&e)).ok()?;
     let builder = ThreadPoolBuilder::new().num_threads(threads);
@@ -157,7 +150,7 @@ fn conclude(outcome: &Outcome, manner: &Manner, directory: &Path) -> u8 {
 }
 
 /// The deck's name without its ending, where the command is given.
-pub(crate) fn default_directory(deck: &Path, suffix: &str) -> PathBuf {
+pub(super) fn default_directory(deck: &Path, suffix: &str) -> PathBuf {
     let name = deck.extension().and_then(|_| deck.file_stem());
     let name = name.map_or("out".into(), |n| n.to_string_lossy().into_owned());
     PathBuf::from(name + suffix)

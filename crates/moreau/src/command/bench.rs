@@ -1,16 +1,18 @@
 //! `moreau bench`: a deck under every contact algorithm, as a table.
 
 use super::{INPUT_ERROR, NOT_CONVERGED, run, say, tell};
-use moreau::deck::{At, Deck, Method, Problem, Vtu, open};
-use moreau::run::{Directory, Outcome, RunStatus};
+use crate::deck::{At, Deck, Meshes, Method, Vtu};
+use crate::run::Directory;
+use crate::simulation::{Outcome, RunStatus, Simulation};
 use std::path::{Path, PathBuf};
 
 /// Runs a deck under every algorithm; the exit status is that of the first that fails.
-pub(crate) fn bench(path: &Path, out: Option<PathBuf>, force: bool) -> u8 {
-    let Some((deck, problem)) = run::problem(path) else {
+pub(super) fn bench(path: &Path, out: Option<PathBuf>, force: bool) -> u8 {
+    let Some(simulation) = run::simulation(path) else {
         return INPUT_ERROR;
     };
-    drop(problem);
+    let deck = simulation.deck().clone();
+    drop(simulation);
     let Some(pool) = run::pool(deck.solver.threads) else {
         return INPUT_ERROR;
     };
@@ -33,19 +35,13 @@ pub(crate) fn bench(path: &Path, out: Option<PathBuf>, force: bool) -> u8 {
             return INPUT_ERROR;
         };
         // The deck as text, so that it is checked as any other.
-        let (deck, problem, findings) = open(&deck.resolved());
-        let outcome = match problem {
-            Some(Problem::Plane(s)) => {
-                pool.install(|| moreau::run::run(*s, &deck, &directory, &mut ()))
-            }
-            Some(Problem::Solid(s)) => {
-                pool.install(|| moreau::run::run(*s, &deck, &directory, &mut ()))
-            }
-            None => {
-                tell!("{}", findings.render(&name, &deck.resolved(), false));
-                return INPUT_ERROR;
-            }
+        let text = deck.resolved();
+        let (simulation, findings) = Simulation::open(&text, Path::new(""), &Meshes::new());
+        let Some(simulation) = simulation else {
+            tell!("{}", findings.render(&name, &text, false));
+            return INPUT_ERROR;
         };
+        let outcome = pool.install(|| crate::run::run(simulation, &directory, &mut ()));
         match outcome {
             Ok(outcome) => {
                 say!(

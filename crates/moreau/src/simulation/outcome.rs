@@ -1,6 +1,7 @@
 //! How a run ended: status, certificate, expectations, and a summary to paste into a report; not
 //! its course.
 
+use super::StepError;
 use super::diagnosis::Diagnosis;
 use super::history::History;
 use super::warnings::Warnings;
@@ -43,12 +44,12 @@ impl RunStatus {
         }
     }
 
-    pub(super) fn of(failure: Option<&IncrementError>) -> Self {
+    pub(super) fn of(failure: &StepError) -> Self {
+        let text = failure.to_string();
         match failure {
-            None => Self::Done,
-            Some(IncrementError::Model(error)) => Self::Refused(error.to_string()),
-            Some(error @ IncrementError::Collapse { .. }) => Self::Collapsed(error.to_string()),
-            Some(error) => Self::NotConverged(error.to_string()),
+            StepError::Increment(IncrementError::Model(_)) => Self::Refused(text),
+            StepError::Increment(IncrementError::Collapse { .. }) => Self::Collapsed(text),
+            _ => Self::NotConverged(text),
         }
     }
 }
@@ -199,7 +200,7 @@ pub struct Outcome {
     pub units: Units,
     /// How it ended.
     pub status: RunStatus,
-    /// Wall time, results written included.
+    /// Time that the increments took, or in a directory all, results written included.
     pub seconds: f64,
     /// Converged increments.
     pub increments: usize,
@@ -284,8 +285,8 @@ pub(super) fn conclude<const D: usize>(
     warnings.extend(tally.warnings.sentences(driver, deck));
     warnings.extend(tally.closed.iter().enumerate().filter_map(never));
     warnings.extend(tally.criticality.and_then(critical));
-    let values = history
-        .names()
+    let names = history.table().columns().iter().map(|c| c.name.as_str());
+    let values = names
         .filter(|n| n.starts_with("force.") || n.starts_with("u."))
         .filter_map(|n| Some((n.to_owned(), last(n)?)))
         .collect();
@@ -336,7 +337,7 @@ impl Outcome {
     }
 
     /// The content of `run.json`.
-    pub(super) fn json(&self) -> String {
+    pub fn json(&self) -> String {
         let verdict = |v: &Verdict| {
             serde_json::json!({
                 "column": v.column, "expected": v.expected, "tolerance": v.tolerance,

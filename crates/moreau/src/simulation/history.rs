@@ -1,11 +1,9 @@
-//! `history.csv`: a row for each converged increment; contact points have a file of their own.
+//! The history: a row for each converged increment; contact points have a table of their own.
 
-use super::table::field;
-use crate::deck::{Setup, Units};
-use crate::deck::{Unit, columns};
-use crate::driver::{Driver, IncrementReport, PointField};
+use crate::deck::{Setup, Unit, Units, columns};
+use crate::driver::{Driver, IncrementReport, ModelError, Numbers, PointField, Saved};
 use crate::mandel::{Sym2, von_mises};
-use crate::numbers::number;
+use crate::table::{Column, Table, Values};
 
 /// Where an increment is.
 pub(super) struct Place<'a> {
@@ -15,47 +13,68 @@ pub(super) struct Place<'a> {
     pub(super) directions: &'a [Vec<usize>],
 }
 
-/// How a row is made, and the last one.
+/// How a row is made, and those that were.
+#[derive(Debug, Clone)]
 pub(super) struct History {
-    units: Units,
-    columns: Vec<(String, Unit)>,
     held: Vec<[String; 2]>,
     tools: Vec<String>,
     surfaces: Vec<String>,
     /// Whether there are moments of tools.
     moments: bool,
-    /// The last row; empty before the first.
-    pub(super) last: Vec<f64>,
+    table: Table,
 }
 
 impl History {
     pub(super) fn new<const D: usize>(units: Units, setup: &Setup<D>) -> Self {
+        let column = |(name, unit): (String, Unit)| Column {
+            name,
+            unit: unit.symbol(units).to_owned(),
+            values: match unit {
+                Unit::Count => Values::Counts(Vec::new()),
+                _ => Values::Numbers(Vec::new()),
+            },
+        };
         Self {
-            units,
-            columns: columns(setup),
+            table: Table::new(columns(setup).into_iter().map(column).collect()),
             held: setup.held.clone(),
             tools: setup.tools.clone(),
             surfaces: setup.surfaces.clone(),
             moments: setup.moments,
-            last: Vec::new(),
         }
     }
 
-    /// The header: a name, and its unit in brackets if it has one.
-    pub(super) fn header(&self) -> String {
-        let label = |(name, unit): &(String, Unit)| unit.label(name, self.units);
-        let fields = self.columns.iter().map(label);
-        let fields: Vec<String> = fields.map(|f| field(&f).into_owned()).collect();
-        fields.join(",")
+    pub(super) fn table(&self) -> &Table {
+        &self.table
     }
 
-    /// Makes the row of an increment, and returns it as a line.
+    /// Takes over the rows of another, by the names of the columns; what it did not tell is not a number.
+    pub(super) fn take_over(&mut self, other: &Self) {
+        let rows = other.table.rows();
+        let theirs = |column: &Column| match other.table.column(&column.name) {
+            Some(theirs) => theirs.values.clone(),
+            None => Values::Numbers(vec![f64::NAN; rows]),
+        };
+        let column = |column: &Column| Column {
+            values: theirs(column),
+            ..column.clone()
+        };
+        self.table = Table::new(self.table.columns().iter().map(column).collect());
+    }
+
+    /// Forgets all rows but the last.
+    pub(super) fn forget(&mut self) {
+        let last = self.table.last();
+        self.table.clear();
+        last.iter().for_each(|row| self.table.push(row));
+    }
+
+    /// Makes the row of an increment.
     pub(super) fn record<const D: usize>(
         &mut self,
         driver: &Driver<D>,
         report: &IncrementReport,
         place: &Place<'_>,
-    ) -> String {
+    ) {
         let energies = &report.energies;
         let mut row = vec![
             place.stage as f64,
@@ -112,25 +131,38 @@ impl History {
             row.extend(mean_displacement(driver, surface));
         }
         row.extend(driver.fields().iter().map(largest));
-        let line: Vec<String> = row.iter().map(|&v| number(v)).collect();
-        self.last = row;
-        line.join(",")
-    }
-
-    /// Steps done so far, with the part of the current one.
-    pub(super) fn time(&self) -> f64 {
-        self.last.get(2).copied().unwrap_or(0.0)
-    }
-
-    /// Names of the columns.
-    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
-        self.columns.iter().map(|(name, _)| name.as_str())
+        self.table.push(&row);
     }
 
     /// The last value of a column, by name.
     pub(super) fn value(&self, name: &str) -> Option<f64> {
-        let index = self.names().position(|n| n == name)?;
-        self.last.get(index).copied()
+        let column = self.table.column(name)?;
+        column.values.numbers().pop()
+    }
+}
+
+impl Saved for History {
+    fn visit(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
+        let mut rows = self.table.rows();
+        numbers.count(&mut rows)?;
+        let mut columns = self.table.columns().to_vec();
+        for column in &mut columns {
+            let mut values = column.values.numbers();
+            numbers.list(&mut values)?;
+            if values.len() != rows {
+                return Err(ModelError::Saved {
+                    what: "rows of the history",
+                    found: values.len(),
+                    expected: rows,
+                });
+            }
+            column.values = match column.values {
+                Values::Counts(_) => Values::Counts(values.iter().map(|&v| v as i64).collect()),
+                _ => Values::Numbers(values),
+            };
+        }
+        self.table = Table::new(columns);
+        Ok(())
     }
 }
 

@@ -1,11 +1,9 @@
 //! `moreau check`: what a deck was understood to say; nothing is solved.
 
 use super::{INPUT_ERROR, folder, read, report, say};
-use moreau::deck::{
-    Action, Deck, MaterialEntry, Method, Problem, Setup, Shape, SoilEntry, open_in,
-};
-use moreau::driver::{Axis, RigidMotion, Stopper};
-use moreau::numbers::{place, shown};
+use crate::deck::{Action, Deck, MaterialEntry, Method, Problem, Setup, Shape, SoilEntry, open_in};
+use crate::driver::{Axis, RigidMotion, Stopper};
+use crate::numbers::{place, shown};
 use std::path::Path;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -13,7 +11,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 const DIGITS: usize = 7;
 
 /// Checks a deck; the exit status.
-pub(crate) fn check(path: &Path) -> u8 {
+pub(super) fn check(path: &Path) -> u8 {
     let Some(text) = read(path) else {
         return INPUT_ERROR;
     };
@@ -40,11 +38,11 @@ fn head(deck: &Deck) {
     }
     say!("units      {}", deck.units.name());
     let thickness = match deck.analysis {
-        moreau::deck::Analysis::PlaneStrain => {
+        crate::deck::Analysis::PlaneStrain => {
             format!(", {} {} thick", deck.thickness.value, deck.units.length())
         }
-        moreau::deck::Analysis::Axisymmetric => " (forces are of the whole ring)".into(),
-        moreau::deck::Analysis::Solid => String::new(),
+        crate::deck::Analysis::Axisymmetric => " (forces are of the whole ring)".into(),
+        crate::deck::Analysis::Solid => String::new(),
     };
     say!("analysis   {}{thickness}", deck.analysis.name());
 }

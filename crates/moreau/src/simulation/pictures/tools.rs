@@ -1,7 +1,7 @@
 //! The outlines of rigid tools in the plane where they are in an increment; not what they press.
 
 use crate::deck::{Deck, Shape};
-use crate::run::table::Table;
+use crate::table::Table;
 use std::f64::consts::TAU;
 
 /// Points of a circle.

@@ -1,19 +1,18 @@
-//! The pictures of a run, from the files that it has left: forces or displacements over time, tractions along the
+//! The pictures of a simulation, from its tables and grids: forces or displacements over time, tractions along the
 //! contact, the deformed body with a field.
+
+mod tools;
 
 use crate::deck::{Deck, Units};
 use crate::mesh::Mesh;
 use crate::plot::{Chart, MeshPicture, Style};
-use crate::run::RunError;
-use crate::run::report::tools::outlines;
-use crate::run::table::Table;
+use crate::table::Table;
 use crate::vtu::Array;
-use std::collections::HashSet;
-use std::path::Path;
+use tools::outlines;
 
 /// What happens over time: the forces; where there are none, as under loads alone that nothing but
 /// symmetry holds, the mean displacements. Nothing if there is nothing to draw.
-pub(in crate::run) fn over_time(history: &Table, deck: &Deck) -> Option<String> {
+pub(crate) fn over_time(history: &Table, deck: &Deck) -> Option<String> {
     let force = format!("force [{}]", deck.units.force());
     let displacement = format!("mean displacement [{}]", deck.units.length());
     // Sums of forces are known no better than each is balanced.
@@ -35,7 +34,10 @@ fn columns(
 ) -> Option<String> {
     let time = history.numbers("time");
     let mut chart = Chart::new(&deck.title, "steps [–]", label);
-    let names = history.names().iter().filter(|n| n.starts_with(kind));
+    let names = history.columns().iter();
+    let names = names
+        .map(|c| c.name.as_str())
+        .filter(|n| n.starts_with(kind));
     let columns: Vec<_> = names.map(|n| (n, history.numbers(n))).collect();
     let scale = columns.iter().map(|(_, c)| largest(c)).fold(0.0, f64::max);
     // Markers tell increments apart as long as they are not too many.
@@ -54,33 +56,21 @@ fn columns(
     chart.to_svg().ok()
 }
 
-/// Rows of `contact.csv` of some increments.
-pub(in crate::run) fn contact_table(
-    directory: &Path,
-    increments: &[usize],
-) -> Result<Table, RunError> {
-    let wanted: HashSet<String> = increments.iter().map(usize::to_string).collect();
-    Table::read(&directory.join("contact.csv"), |names, fields| {
-        let column = names.iter().position(|n| n == "increment");
-        column.is_some_and(|k| wanted.contains(&*fields[k]))
-    })
-}
-
 /// A contact surface and the coordinate along which it is drawn.
-pub(super) struct ContactLine {
+pub(crate) struct ContactLine {
     /// The surface.
-    pub(super) name: String,
+    pub(crate) name: String,
     /// Coordinate of its points, increasing.
-    pub(super) at: Vec<f64>,
+    pub(crate) at: Vec<f64>,
     /// Pressure and shear there.
-    pub(super) tractions: [Vec<f64>; 2],
+    pub(crate) tractions: [Vec<f64>; 2],
 }
 
 /// Names of the tractions of a [`ContactLine`].
-pub(super) const TRACTIONS: [&str; 2] = ["pressure", "shear"];
+pub(crate) const TRACTIONS: [&str; 2] = ["pressure", "shear"];
 
 /// The coordinate along which contact surfaces extend, 0 or 1.
-pub(in crate::run) fn contact_axis(contacts: &Table) -> usize {
+pub(crate) fn contact_axis(contacts: &Table) -> usize {
     let extent = |name: &str| {
         let values = contacts.numbers(name);
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -90,9 +80,9 @@ pub(in crate::run) fn contact_axis(contacts: &Table) -> usize {
 }
 
 /// Tractions along the surfaces in one increment of a table, by a coordinate.
-pub(super) fn contact_lines(contacts: &Table, increment: usize, axis: usize) -> Vec<ContactLine> {
-    let wanted = increment.to_string();
-    let (rows, surfaces) = (contacts.texts("increment"), contacts.texts("contact"));
+pub(crate) fn contact_lines(contacts: &Table, increment: usize, axis: usize) -> Vec<ContactLine> {
+    let wanted = increment as f64;
+    let (rows, surfaces) = (contacts.numbers("increment"), contacts.texts("contact"));
     let place = contacts.numbers(["x", "y"][axis]);
     let values = ["p_n", "p_1"].map(|name| contacts.numbers(name));
     let own: Vec<usize> = (0..rows.len()).filter(|&k| rows[k] == wanted).collect();
@@ -113,7 +103,7 @@ pub(super) fn contact_lines(contacts: &Table, increment: usize, axis: usize) -> 
 }
 
 /// Labels of the coordinate and of the tractions.
-pub(in crate::run) fn contact_labels(axis: usize, units: Units) -> [String; 2] {
+pub(crate) fn contact_labels(axis: usize, units: Units) -> [String; 2] {
     [
         format!("{} [{}]", ["x", "y"][axis], units.length()),
         format!("traction [{}]", units.stress()),
@@ -121,7 +111,7 @@ pub(in crate::run) fn contact_labels(axis: usize, units: Units) -> [String; 2] {
 }
 
 /// Pressure and shear along the contact surfaces in one increment.
-pub(in crate::run) fn tractions(contacts: &Table, increment: usize, deck: &Deck) -> Option<String> {
+pub(crate) fn tractions(contacts: &Table, increment: usize, deck: &Deck) -> Option<String> {
     let axis = contact_axis(contacts);
     let [label, traction] = contact_labels(axis, deck.units);
     let mut chart = Chart::new(&deck.title, label, traction);
@@ -136,23 +126,30 @@ pub(in crate::run) fn tractions(contacts: &Table, increment: usize, deck: &Deck)
 }
 
 /// Name of the field that is drawn if none is asked for.
-pub(in crate::run) fn usual_field(deck: &Deck) -> &'static str {
+pub(crate) fn usual_field(deck: &Deck) -> &'static str {
     match deck.materials.iter().any(|m| m.yields().is_some()) {
         true => "equivalent_plastic_strain",
         false => "von_mises",
     }
 }
 
+/// The unit of a field, if it is known.
+pub(crate) fn unit(name: &str, units: Units) -> Option<&'static str> {
+    let of_stress = |n: &str| n.contains("stress") || n == "von_mises" || n == "shear";
+    match name {
+        n if n.contains("strain") => Some("–"),
+        n if of_stress(n) || n.starts_with("pressure") => Some(units.stress()),
+        n if n.starts_with("displacement") => Some(units.length()),
+        "gap" | "slip" => Some(units.length()),
+        n if n.contains("force") || n == "out_of_balance" => Some(units.force()),
+        _ => None,
+    }
+}
+
 /// A field in words, with its unit.
-pub(in crate::run) fn label(name: &str, units: Units) -> String {
-    let unit = match name {
-        n if n.contains("strain") => "–",
-        n if n.contains("stress") || n == "von_mises" || n.starts_with("pressure") => {
-            units.stress()
-        }
-        n if n.starts_with("displacement") => units.length(),
-        n if n.contains("force") || n == "out_of_balance" => units.force(),
-        _ => return name.replace('_', " "),
+pub(crate) fn label(name: &str, units: Units) -> String {
+    let Some(unit) = unit(name, units) else {
+        return name.replace('_', " ");
     };
     let name = match name {
         "von_mises" => "von Mises stress".into(),
@@ -174,7 +171,7 @@ fn suffixes(array: &Array) -> &'static [&'static str] {
 }
 
 /// Names of all that [`field`] finds in some arrays.
-pub(in crate::run) fn fields(arrays: &[Array]) -> Vec<String> {
+pub(crate) fn fields(arrays: &[Array]) -> Vec<String> {
     let mut names = Vec::new();
     for array in arrays {
         if array.components <= 3 {
@@ -191,7 +188,7 @@ pub(in crate::run) fn fields(arrays: &[Array]) -> Vec<String> {
 
 /// A field at every point, by name: a scalar; the length of a vector; or a component, as in
 /// `displacement.x` or `stress.xy`. The first points are the nodes of the mesh.
-pub(in crate::run) fn field(arrays: &[Array], name: &str) -> Option<Vec<f64>> {
+pub(crate) fn field(arrays: &[Array], name: &str) -> Option<Vec<f64>> {
     let of = |name: &str| arrays.iter().find(|a| a.name == name);
     if let Some(array) = of(name).filter(|a| a.components <= 3) {
         let length = |v: &[f64]| match v {
@@ -215,7 +212,7 @@ fn displacement(arrays: &[Array]) -> Option<Vec<[f64; 2]>> {
 }
 
 /// How many times displacements are drawn so that they are seen but not out of shape; large ones as they are.
-pub(in crate::run) fn usual_magnification(deck: &Deck, size: f64, largest: f64) -> f64 {
+pub(crate) fn usual_magnification(deck: &Deck, size: f64, largest: f64) -> f64 {
     match largest > 0.0 && largest.is_finite() && deck.finite.is_none() {
         true => round(0.05 * size / largest),
         false => 1.0,
@@ -224,7 +221,7 @@ pub(in crate::run) fn usual_magnification(deck: &Deck, size: f64, largest: f64) 
 
 /// The deformed body with a field on it, and the tools where a row of the history has them; nothing if the arrays
 /// do not have what it takes.
-pub(in crate::run) fn deformed(
+pub(crate) fn deformed(
     mesh: &Mesh<2>,
     deck: &Deck,
     arrays: &[Array],

@@ -1,13 +1,13 @@
 //! `moreau convert`: a mesh file in another format; the mesh stays what it is.
 
 use super::{INPUT_ERROR, say, tell};
-use moreau::files::{FileError, read_mesh, write_mesh};
-use moreau::mesh::{Loss, Mesh, ReadError};
+use crate::files::{FileError, read_mesh, write_mesh};
+use crate::mesh::{Loss, Mesh, ReadError};
 use std::path::{Path, PathBuf};
 
 /// Files to read and to write.
 #[derive(Debug, clap::Args)]
-pub(crate) struct Convert {
+pub(super) struct Convert {
     /// The mesh: .msh (Gmsh 2.2 or 4.1) or .inp (Abaqus, CalculiX).
     input: PathBuf,
     /// The file to write: .vtu (for ParaView) or .msh (Gmsh 2.2).
@@ -19,7 +19,7 @@ pub(crate) struct Convert {
 
 impl Convert {
     /// Converts; the exit status.
-    pub(crate) fn run(&self) -> u8 {
+    pub(super) fn run(&self) -> u8 {
         if self.output.exists() && !self.force {
             let file = self.output.display();
             tell!("{file} is there already: give another name, or --force to overwrite it");

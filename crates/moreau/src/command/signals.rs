@@ -2,7 +2,7 @@
 //! it is written in its place.
 
 use super::{NOT_CONVERGED, tell};
-use moreau::run::Resumable;
+use crate::run::Resumable;
 use signal_hook::{consts, flag};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -15,7 +15,7 @@ const LOOK: Duration = Duration::from_millis(20);
 
 /// Whether a run is to end, and what it leaves if it does not end in time.
 #[derive(Clone)]
-pub(crate) struct Signals {
+pub(super) struct Signals {
     raised: Arc<AtomicBool>,
     last: Arc<Mutex<Option<Resumable>>>,
 }
@@ -23,7 +23,7 @@ pub(crate) struct Signals {
 impl Signals {
     /// Listens for Ctrl-C, and for what ends a process politely: the first ends the run, the second the
     /// process.
-    pub(crate) fn listen() -> Self {
+    pub(super) fn listen() -> Self {
         let signals = Self {
             raised: Arc::default(),
             last: Arc::default(),
@@ -41,12 +41,12 @@ impl Signals {
     }
 
     /// Whether the run is to end.
-    pub(crate) fn raised(&self) -> bool {
+    pub(super) fn raised(&self) -> bool {
         self.raised.load(Ordering::SeqCst)
     }
 
     /// Keeps what is written if the next increment is cut off.
-    pub(crate) fn keep(&self, state: Resumable) {
+    pub(super) fn keep(&self, state: Resumable) {
         *self.last.lock().unwrap_or_else(PoisonError::into_inner) = Some(state);
     }
 
@@ -70,13 +70,13 @@ impl Signals {
 }
 
 /// What is said of a run that was ended.
-pub(crate) fn interrupted(increment: usize, directory: &std::path::Path) -> String {
+pub(super) fn interrupted(increment: usize, directory: &std::path::Path) -> String {
     let place = directory.display();
     format!("interrupted after increment {increment}; to go on: moreau resume \"{place}\"")
 }
 
 /// A file that has grown to the limit of the system is an error of writing, not the end of the process.
-pub(crate) fn survive_limits() {
+pub(super) fn survive_limits() {
     #[cfg(unix)]
     let _ = flag::register(consts::SIGXFSZ, Arc::default());
 }

@@ -3,12 +3,13 @@
 
 use super::signals::Signals;
 use super::tell;
+use crate::run::{Resumable, Watch};
+use crate::simulation::Converged;
 use indicatif::{ProgressBar, ProgressStyle};
-use moreau::run::{Event, Resumable, Watch};
 use std::io::{IsTerminal, Write};
 
 /// Shows a run as it goes on.
-pub(crate) struct Progress {
+pub(super) struct Progress {
     bar: Option<ProgressBar>,
     quiet: bool,
     json: bool,
@@ -16,7 +17,7 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    pub(crate) fn new(quiet: bool, json: bool, signals: Signals) -> Self {
+    pub(super) fn new(quiet: bool, json: bool, signals: Signals) -> Self {
         let quiet = quiet || json;
         let terminal = std::io::stderr().is_terminal();
         let bar = (terminal && !quiet).then(|| {
@@ -33,7 +34,7 @@ impl Progress {
         }
     }
 
-    pub(crate) fn end(&self) {
+    pub(super) fn end(&self) {
         if let Some(bar) = &self.bar {
             bar.finish();
         }
@@ -51,11 +52,11 @@ fn span(seconds: f64) -> String {
 }
 
 impl Watch for Progress {
-    fn converged(&mut self, event: &Event<'_>) {
+    fn converged(&mut self, increment: &Converged, seconds_left: f64) {
         if self.quiet {
             return;
         }
-        let r = event.report;
+        let r = &increment.report;
         let cuts = match r.cuts {
             0 => String::new(),
             n => format!(", {n} cuts"),
@@ -63,9 +64,9 @@ impl Watch for Progress {
         let line = format!(
             "step {}/{} {}, increment {} ({:.4} % of the step{cuts}): {} Newton, {} contact; \
              {} open, {} stick, {} slip; {:.1} % plastic; gap {:.1e}; {} left",
-            event.stage,
-            event.stages,
-            event.step,
+            increment.stage,
+            increment.stages,
+            increment.step,
             r.increment,
             100.0 * r.fraction,
             r.newton_iterations,
@@ -75,12 +76,12 @@ impl Watch for Progress {
             r.slip,
             100.0 * r.plastic_fraction,
             r.certificate.bipotential_gap,
-            span(event.seconds_left)
+            span(seconds_left)
         );
         match &self.bar {
             None => tell!("{line}"),
             Some(bar) => {
-                bar.set_position((1000.0 * event.done) as u64);
+                bar.set_position((1000.0 * increment.done) as u64);
                 bar.set_message(line);
             }
         }

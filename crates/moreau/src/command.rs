@@ -1,6 +1,7 @@
 //! The `moreau` command: checks, runs, resumes, compares and draws; all that it does is in the
 //! library.
-#![allow(clippy::print_stdout, clippy::print_stderr)] // It talks to a person.
+// It talks to a person.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod bench;
 mod check;
@@ -11,8 +12,8 @@ mod run;
 mod signals;
 
 use clap::{Parser, Subcommand};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 /// Prints a line; a reader that has gone away, as `head` does, is no error.
 macro_rules! say {
@@ -130,20 +131,21 @@ struct Manner {
     json_log: bool,
 }
 
-fn main() -> ExitCode {
+/// Does what the arguments of a command line say, the name of the program first; the exit status.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     signals::survive_limits();
-    let arguments = match Arguments::try_parse() {
+    let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version are no errors.
             let failed = error.use_stderr();
             return match error.print() {
-                Ok(()) if !failed => ExitCode::SUCCESS,
-                _ => ExitCode::from(INPUT_ERROR),
+                Ok(()) if !failed => 0,
+                _ => INPUT_ERROR,
             };
         }
     };
-    let status = match arguments.command {
+    match arguments.command {
         Command::Check { deck } => check::check(&deck),
         Command::Run {
             deck,
@@ -160,7 +162,7 @@ fn main() -> ExitCode {
             scale,
             png,
         } => {
-            let drawing = moreau::run::Drawing {
+            let drawing = crate::run::Drawing {
                 field,
                 increment,
                 magnification: scale,
@@ -169,11 +171,10 @@ fn main() -> ExitCode {
         }
         Command::Convert(convert) => convert.run(),
         Command::Schema => {
-            say!("{}", moreau::deck::SCHEMA.trim_end());
+            say!("{}", crate::deck::SCHEMA.trim_end());
             0
         }
-    };
-    ExitCode::from(status)
+    }
 }
 
 /// The text of a deck, or a message.
@@ -193,7 +194,7 @@ fn folder(deck: &Path) -> &Path {
 }
 
 /// Prints findings to stderr, and how many there are.
-fn report(findings: &moreau::deck::Findings, path: &Path, text: &str) {
+fn report(findings: &crate::deck::Findings, path: &Path, text: &str) {
     use std::io::IsTerminal;
     let colour = std::io::stderr().is_terminal();
     let (errors, warnings) = (findings.errors(), findings.warnings());

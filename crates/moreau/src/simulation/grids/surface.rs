@@ -4,12 +4,12 @@ use super::body::place;
 use crate::driver::{ContactRecord, Driver};
 use crate::laws::{Local, Status};
 use crate::mesh::Facet;
-use crate::run::touch::{Touch, touches};
+use crate::simulation::touch::{Touch, touches};
 use crate::vtu::{Array, Grid, facet_type, three};
 use std::collections::BTreeMap;
 
 /// All contact surfaces; none without contacts.
-pub(in crate::run) fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
+pub(in crate::simulation) fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
     let records = driver.contacts();
     let last = records.iter().map(|c| c.contact).max()?;
     let index: BTreeMap<usize, i64> = (0..).zip(records).map(|(k, c)| (c.node, k)).collect();

@@ -1,9 +1,8 @@
 //! `moreau plot`: the pictures of a run, drawn again from its files.
 
 use super::{INPUT_ERROR, run, say, tell};
-use moreau::deck::Problem;
-use moreau::plot::PlotError;
-use moreau::run::{Drawing, draw};
+use crate::plot::PlotError;
+use crate::run::{Drawing, draw};
 use std::fmt::Display;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,7 +11,7 @@ use std::path::{Path, PathBuf};
 type Raster = fn(&str, f32) -> Result<Vec<u8>, PlotError>;
 
 #[cfg(feature = "png")]
-const RASTER: Option<Raster> = Some(moreau::plot::png);
+const RASTER: Option<Raster> = Some(crate::plot::png);
 #[cfg(not(feature = "png"))]
 const RASTER: Option<Raster> = None;
 
@@ -24,19 +23,16 @@ Without --png, pictures are drawn as SVG, which browsers show and print.";
 const ZOOM: f32 = 2.0;
 
 /// Draws a run, as PNG too if asked for; the exit status.
-pub(crate) fn plot(directory: &Path, drawing: &Drawing, png: bool) -> u8 {
+pub(super) fn plot(directory: &Path, drawing: &Drawing, png: bool) -> u8 {
     let raster = RASTER.filter(|_| png);
     if png && raster.is_none() {
         tell!("{NO_RASTER}");
         return INPUT_ERROR;
     }
-    let Some((deck, problem)) = run::results(directory) else {
+    let Some(simulation) = run::results(directory) else {
         return INPUT_ERROR;
     };
-    let drawn = match &problem {
-        Problem::Plane(setup) => draw(setup, &deck, directory, drawing),
-        Problem::Solid(setup) => draw(setup, &deck, directory, drawing),
-    };
+    let drawn = draw(&simulation, directory, drawing);
     let written = drawn.map_err(|e| e.to_string()).and_then(|mut files| {
         if let Some(raster) = raster {
             files.extend(pixels(&files, raster)?);
