@@ -194,9 +194,11 @@ impl Findings {
     pub fn places(&self, text: &str) -> impl Iterator<Item = (&Finding, usize, usize)> {
         self.list.iter().map(move |finding| {
             let before = &text[..finding.shown(text).start];
-            let line = before.lines().count().max(1) + usize::from(before.ends_with('\n'));
-            let column = before.rsplit('\n').next().unwrap_or_default().chars().count();
-            (finding, line, column + 1)
+            let (line, column) = match before.rsplit_once('\n') {
+                Some((above, own)) => (2 + above.matches('\n').count(), own),
+                None => (1, before),
+            };
+            (finding, line, 1 + column.chars().count())
         })
     }
 

@@ -5,16 +5,18 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping
 from os import PathLike
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _toml, errors, tables
-from ._core import Field
 from .deck import Deck, _dashed
 from .errors import DeckError
 from .tables import numbers
+
+if TYPE_CHECKING:
+    from ._core import Field
 
 Source = str | PathLike[str] | Mapping[str, Any] | Deck
 
