@@ -18,7 +18,7 @@ pub use resumable::Resumable;
 use crate::simulation::{Converged, Outcome, Simulation};
 use files::{read_text, replace_file, write_file};
 use std::path::{Path, PathBuf};
-use under_way::Run;
+use under_way::{Run, reopen};
 
 /// A run that cannot be written, read back or continued.
 #[derive(Debug, thiserror::Error)]
@@ -163,22 +163,22 @@ pub fn resume(
     let checkpoints = directory.join(CHECKPOINTS);
     let mut why = String::new();
     for path in checkpoint::list(&checkpoints) {
-        let error = match checkpoint::read(&path, &resolved) {
-            Err(error) => error,
-            Ok(numbers) => match Run::reopen(simulation, directory, &resolved, &numbers) {
-                Ok(run) => {
-                    replace_file(&directory.join(RUN), RUNNING)?;
-                    let outcome = run.finish(watch);
-                    return outcome.inspect_err(|error| break_off(directory, error));
-                }
-                Err((unopened, error)) => {
-                    simulation = unopened;
-                    error
-                }
-            },
-        };
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        why.push_str(&format!("; {name}: {error}"));
+        let numbers = checkpoint::read(&path, &resolved);
+        let reopened = numbers.and_then(|numbers| {
+            reopen(&mut simulation, directory, &numbers).map_err(|error| error.to_string())
+        });
+        match reopened {
+            Ok(from) => {
+                replace_file(&directory.join(RUN), RUNNING)?;
+                let run = Run::going_on(simulation, directory, resolved, from);
+                let outcome = run.finish(watch);
+                return outcome.inspect_err(|error| break_off(directory, error));
+            }
+            Err(error) => {
+                let name = path.file_name().unwrap_or_default().to_string_lossy();
+                why.push_str(&format!("; {name}: {error}"));
+            }
+        }
     }
     Err(RunError::NoCheckpoint {
         directory: checkpoints,

@@ -109,6 +109,8 @@ def test_a_mesh_of_arrays(tmp_path):
     for wrong in [dict(quad7=[range(8)]), dict(quad8=[range(7)]), dict(quad8=[range(1, 9)])]:
         with pytest.raises(ValueError):
             mc.Mesh(square().points, wrong)
+    with pytest.raises(ValueError, match="quotes"):
+        mc.Mesh(square().points, square().cells, {'a "b"': square().cells})
 
 
 def test_a_mesh_of_meshio_and_of_pyvista():

@@ -43,6 +43,20 @@ def test_the_command_of_the_wheel_has_the_same_numbers(block, tmp_path):
     assert wrong.returncode == 1 and "nowhere.toml" in wrong.stderr
 
 
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_the_command_of_the_wheel_has_its_own_answer_to_an_interrupt(block, tmp_path):
+    deck, out = tmp_path / "deck.toml", tmp_path / "results"
+    large = mc.Deck(block).with_({"mesh.block.0.cells": [60, 24], "step.0.increments": 400})
+    large.to_toml(deck)
+    moreau = Path(sys.executable).with_name("moreau")
+    running = subprocess.Popen([moreau, "run", deck, "--out", out], stderr=subprocess.PIPE, text=True)
+    while "increment 2 " not in running.stderr.readline():
+        assert running.poll() is None
+    running.send_signal(signal.SIGINT)
+    _, told = running.communicate(timeout=60)
+    assert running.returncode == 2 and "moreau resume" in told
+
+
 def test_twenty_runs_in_threads_have_the_bits_of_one_alone(block):
     alone = bits(mc.run(block).simulation)
     with ThreadPoolExecutor(4) as pool:

@@ -67,11 +67,16 @@ impl Out {
     }
 }
 
-/// The numbers of a checkpoint: seconds, marks and state.
-fn parts(
-    numbers: &mut Numbers<'_>,
+/// Where a run goes on from: seconds spent, and the files cut back to it.
+pub(super) struct Reopened(f64, Out);
+
+/// Takes over the numbers of a checkpoint. The simulation is of no use after an error, but for another try.
+pub(super) fn reopen(
     simulation: &mut Simulation,
-) -> Result<(f64, [Mark; 4]), Box<dyn std::error::Error>> {
+    directory: &Path,
+    numbers: &[f64],
+) -> Result<Reopened, Box<dyn std::error::Error>> {
+    let numbers = &mut Numbers::Read(numbers);
     let mut before = 0.0;
     numbers.value(&mut before)?;
     let mut marks = [Mark::default(); 4];
@@ -82,7 +87,7 @@ fn parts(
         (mark.length, mark.crc) = (length as u64, u32::try_from(crc)?);
     }
     simulation.read(numbers)?;
-    Ok((before, marks))
+    Ok(Reopened(before, Out::reopen(directory, marks)?))
 }
 
 impl<'a> Run<'a> {
@@ -102,39 +107,24 @@ impl<'a> Run<'a> {
         out.history.line(&simulation.history().header())?;
         out.contact.line(&simulation.contacts().header())?;
         out.flush()?;
-        Ok(Self {
+        let from = Reopened(0.0, out);
+        Ok(Self::going_on(simulation, directory, resolved, from))
+    }
+
+    /// From a checkpoint.
+    pub(super) fn going_on(
+        simulation: Simulation,
+        directory: &'a Path,
+        resolved: String,
+        Reopened(before, out): Reopened,
+    ) -> Self {
+        Self {
             simulation,
             directory,
             resolved,
             started: Instant::now(),
-            before: 0.0,
+            before,
             out,
-        })
-    }
-
-    /// From a checkpoint, with the files cut back to it; the simulation, which is of no use then, if that cannot be.
-    pub(super) fn reopen(
-        mut simulation: Simulation,
-        directory: &'a Path,
-        resolved: &str,
-        numbers: &[f64],
-    ) -> Result<Self, (Simulation, String)> {
-        let opened = parts(&mut Numbers::Read(numbers), &mut simulation)
-            .map_err(|error| error.to_string())
-            .and_then(|(before, marks)| {
-                let out = Out::reopen(directory, marks).map_err(|error| error.to_string())?;
-                Ok((before, out))
-            });
-        match opened {
-            Ok((before, out)) => Ok(Self {
-                simulation,
-                directory,
-                resolved: resolved.to_owned(),
-                started: Instant::now(),
-                before,
-                out,
-            }),
-            Err(error) => Err((simulation, error)),
         }
     }
 
@@ -147,7 +137,7 @@ impl<'a> Run<'a> {
         self.state().write()
     }
 
-    /// All that [`Run::reopen`] needs. Files are flushed.
+    /// All that [`reopen`] needs. Files are flushed.
     fn state(&self) -> Resumable {
         let mut numbers = vec![self.seconds()];
         let mut streams: Vec<_> = STREAMS.map(|name| self.directory.join(name)).into();

@@ -39,7 +39,7 @@ class DeckWarning(UserWarning):
 
 
 class DeckError(ValueError):
-    """A deck that cannot be run. Its text shows each error with the line and a caret."""
+    """A deck that cannot be run. Its text shows each error with its line and a mark at the place."""
 
     findings: list[Finding]
     """All that was found, warnings too."""
@@ -49,7 +49,7 @@ class DeckError(ValueError):
         self.findings = found
 
     def __str__(self) -> str:
-        # On a line of its own, so that carets stand below what they point at.
+        # On a line of its own, so that marks stand below what they point at.
         return "\n" + str(self.args[0])
 
 

@@ -63,12 +63,13 @@ class Mesh:
         of meshio and pyvista. Their dimension is that of the analysis.
     groups
         By name, the nodes of the members by kind: cells, sides of cells (``{"line3": (k, 3)}``) or single nodes
-        (``{"vertex": (k, 1)}``). Cells in no group belong to the group ``"mesh"`` if none is in any.
+        (``{"vertex": (k, 1)}``). Cells in no group are left out, unless none is in any: they are the group ``"mesh"``.
 
     Raises
     ------
     ValueError
-        For a kind that is not known, for arrays of another shape, and for nodes that do not exist.
+        For a kind that is not known, for arrays of another shape, for nodes that do not exist, and for names of groups
+        with quotes or line breaks.
     """
 
     def __init__(
@@ -79,6 +80,9 @@ class Mesh:
             raise ValueError(f"points have the shape {self.points.shape}, expected (n, 2) or (n, 3)")
         self.cells = self._checked(cells)
         self.groups = {name: self._checked(members) for name, members in (groups or {}).items()}
+        unfit = [name for name in self.groups if not name.isprintable() or '"' in name]
+        if unfit:
+            raise ValueError(f"groups are called {unfit}, expected names without quotes and line breaks")
 
     def _checked(self, cells: Cells) -> dict[str, NDArray[np.int64]]:
         checked = {}
