@@ -53,7 +53,7 @@ use crate::laws::Status;
 use crate::mesh::Mesh;
 use crate::table::Table;
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf, absolute};
 
 /// A converged increment.
 #[derive(Debug, Clone, PartialEq)]
@@ -126,8 +126,10 @@ impl Simulation {
     /// deck has errors.
     pub fn open(text: &str, folder: &Path, meshes: &Meshes) -> (Option<Self>, Findings) {
         let (deck, problem, findings) = open_with(text, folder, meshes);
-        let meshes = || meshes.clone();
-        let simulation = problem.map(|problem| Self::of(deck, problem, meshes()));
+        // For a step that follows the deck is opened again, from wherever the process is then.
+        let at = |path: &PathBuf| absolute(folder.join(path)).unwrap_or_else(|_| path.clone());
+        let kept = || meshes.iter().map(|(path, mesh)| (at(path), mesh.clone()));
+        let simulation = problem.map(|problem| Self::of(deck, problem, kept().collect()));
         (simulation, findings)
     }
 
@@ -197,9 +199,7 @@ impl Simulation {
         let mut deck = self.deck.clone();
         deck.steps.truncate(begun);
         let text = format!("{}\n[[step]]\n{step}\n", deck.resolved());
-        let meshes = std::mem::take(&mut self.meshes);
-        let (deck, problem, findings) = open_with(&text, Path::new(""), &meshes);
-        self.meshes = meshes;
+        let (deck, problem, findings) = open_with(&text, Path::new(""), &self.meshes);
         let Some(problem) = problem else {
             return Err(Refusal { text, findings });
         };

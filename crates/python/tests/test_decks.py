@@ -97,15 +97,23 @@ def test_arrays_of_numpy_and_any_text_are_keys():
     assert "body-force" not in deck.text
 
 
-def test_a_mesh_of_arrays(tmp_path):
+def test_a_mesh_of_arrays(tmp_path, monkeypatch):
     deck = pulled(square())
+    # Wherever the process has gone meanwhile.
+    monkeypatch.chdir(tmp_path)
     assert force(deck) == pytest.approx(PULL)
     # With the mesh beside it, it is a deck on disk.
     deck.to_toml(tmp_path / "bar.toml")
     assert force(tmp_path / "bar.toml") == force(deck)
     assert force(deck.with_({"material.0.young": 2000.0})) == pytest.approx(2 * PULL)
-    saved = mc.Simulation(deck).save()
-    assert next(mc.Simulation.restore(saved)).increment == 1
+    simulation = mc.Simulation.restore(mc.Simulation(deck).save())
+    assert next(simulation).increment == 1
+    # The mesh is there for another step too, and in what is saved then.
+    back = {**deck.keys["step"][0], "name": "back"}
+    simulation.step = back | {"move": [dict(on="right", u=dict(x=0.0))]}
+    simulation = mc.Simulation.restore(simulation.save())
+    assert next(simulation).step == 2
+    assert abs(np.asarray(simulation.history["force.right.x"])[-1]) < 1e-9
     for wrong in [dict(quad7=[range(8)]), dict(quad8=[range(7)]), dict(quad8=[range(1, 9)])]:
         with pytest.raises(ValueError):
             mc.Mesh(square().points, wrong)

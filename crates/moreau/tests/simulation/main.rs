@@ -122,6 +122,13 @@ fn a_mesh_file_need_not_be_on_disk() {
     let shown = findings.render("deck", &given, false);
     assert!(shown.contains("nowhere.msh"), "{shown}");
     let meshes = Meshes::from([(PathBuf::from("nowhere.msh"), content)]);
-    let given = opened(&given, &meshes);
-    assert_eq!(bits(&finish(given)), bits(&finish(simulation(text))));
+    let (mut given, mut on_disk) = (opened(&given, &meshes), simulation(text));
+    let back = "name = \"back\"\nincrements = 1\nfix = [{ on = \"symmetry\", u = [\"x\"] }]";
+    for simulation in [&mut given, &mut on_disk] {
+        assert!(advance(simulation));
+        simulation
+            .replace_step(back)
+            .unwrap_or_else(|refused| panic!("{refused}"));
+    }
+    assert_eq!(bits(&finish(given)), bits(&finish(on_disk)));
 }

@@ -26,7 +26,7 @@ class Deck:
 
     ``Deck("block.toml")`` is that of a file, ``Deck(text)`` that of a text with at least one line break,
     ``Deck(mapping)`` and ``Deck(units="mm-N-MPa", ...)`` that of keys, in which ``_`` stands for ``-``. Nothing is
-    checked until :meth:`check` or a run does.
+    checked until :meth:`check`, :meth:`open` or a run does.
 
     In keys, ``mesh`` may also be a :class:`Mesh`, a mesh of meshio or of pyvista, or a list of what
     :func:`moreau_fem.block` returns; ``hardening`` of a material may be a function of the equivalent plastic strain:
@@ -115,7 +115,8 @@ class Deck:
         try:
             return tomllib.loads(self.text)
         except tomllib.TOMLDecodeError:
-            self.check_errors()
+            # With the place, as any other error.
+            self.open()
             raise
 
     def __getitem__(self, path: str) -> Any:
@@ -160,16 +161,12 @@ class Deck:
         _, found, _ = self._open()
         return frame({name: [getattr(f, name) for f in found] for name in Finding._fields})
 
-    def check_errors(self) -> None:
-        """Raises :class:`DeckError` if anything is wrong."""
-        self.open()
-
     def _open(self) -> tuple[Core | None, list[Finding], str]:
         core, found, shown = Core.open(self.text, self.folder, self.file, self.meshes)
         return core, errors.findings(found), shown
 
     def open(self) -> Core:
-        """The deck under way. Doubts are warnings.
+        """The deck under way, as a simulation has it within. Doubts are warnings.
 
         Raises
         ------
