@@ -16,6 +16,7 @@ use moreau_laws::{Local, Status};
 use moreau_mesh::Mesh;
 use nalgebra::{SVector, Vector3};
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 
 /// The state of a model between increments: one value, replaced when an increment is committed.
 #[derive(Debug, Clone)]
@@ -218,6 +219,11 @@ impl<const D: usize> Driver<D> {
         SVector::from_column_slice(&self.state.displacement[D * node..D * node + D])
     }
 
+    /// Displacements of all nodes since the virgin state, D components each \[mm\].
+    pub fn displacements(&self) -> &[f64] {
+        &self.state.displacement[..self.mesh_dofs()]
+    }
+
     /// Increments converged so far.
     pub fn increments(&self) -> usize {
         self.state.increment
@@ -410,14 +416,14 @@ impl<const D: usize> Driver<D> {
     /// # Errors
     /// See [`IncrementError`].
     pub fn advance(&mut self, end: &Loading<D>) -> Result<IncrementReport, IncrementError> {
-        self.advance_watched(end, &mut |_| {})
+        self.advance_watched(end, &mut |_| ControlFlow::Continue(()))
     }
 
     /// [`Driver::advance`], told of every iterate.
     pub(crate) fn advance_watched(
         &mut self,
         end: &Loading<D>,
-        watch: &mut dyn FnMut(&Iteration<'_>),
+        watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<IncrementReport, IncrementError> {
         end.check(&self.mesh, self.state.displacement.len())?;
         self.pair(end)?;

@@ -323,6 +323,9 @@ pub enum IncrementError {
         /// Its value.
         value: f64,
     },
+    /// Whoever watched the iterates broke off.
+    #[error("the increment was interrupted")]
+    Interrupted,
     /// The structure does not carry the loads of the step: an answer, not a failure. The state is
     /// that of the mechanism, in equilibrium with what the structure carries.
     #[error("step {step:?}: {collapse}, in parts of its loads: the structure does not carry more")]

@@ -269,6 +269,11 @@ struct Held {
     pivot: Option<usize>,
 }
 
+/// A linear system that may be needed again: what decides the bits, and the nodes that each contact point
+/// between bodies coupled.
+#[derive(Debug)]
+pub(crate) struct AtHand(Held, Vec<Vec<usize>>);
+
 impl Held {
     fn of(system: &System) -> Self {
         Self {
@@ -331,6 +336,25 @@ impl<const D: usize> Driver<D> {
         let mut held = None;
         numbers.option(&mut held, Held::default, Held::visit)?;
         self.system = held.map(|held| self.system_again(held)).transpose()?;
+        Ok(())
+    }
+
+    /// What [`Driver::put_back`] needs.
+    pub(crate) fn at_hand(&self) -> Option<AtHand> {
+        let system = self.system.as_ref()?;
+        Some(AtHand(Held::of(system), system.paired.clone()))
+    }
+
+    /// Makes the linear system that was at hand when nothing had happened since the last commit, for an
+    /// increment that was interrupted to begin again.
+    pub(crate) fn put_back(&mut self, at_hand: Option<AtHand>) -> Result<(), ModelError> {
+        self.system = None;
+        if let Some(AtHand(held, paired)) = at_hand {
+            let mut system = self.system_again(held)?;
+            // What the points stand on now may be more than what they stood on then.
+            system.paired = paired;
+            self.system = Some(system);
+        }
         Ok(())
     }
 

@@ -52,7 +52,11 @@ pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;
 
 pub(crate) use columns::{Unit, columns};
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf, absolute};
+
+/// Mesh files that are not on disk: their contents, by the paths that decks give.
+pub type Meshes = BTreeMap<PathBuf, Vec<u8>>;
 
 /// JSON schema of decks, for editors: `docs/deck.schema.json`.
 pub const SCHEMA: &str = include_str!("../../../docs/deck.schema.json");
@@ -65,8 +69,19 @@ pub fn open(text: &str) -> (Deck, Option<Problem>, Findings) {
 
 /// As [`open`], with the paths in the deck relative to a folder: that of the deck's file.
 pub fn open_in(text: &str, folder: &Path) -> (Deck, Option<Problem>, Findings) {
+    open_with(text, folder, &Meshes::new())
+}
+
+/// As [`open_in`], with mesh files that are not on disk.
+pub fn open_with(text: &str, folder: &Path, meshes: &Meshes) -> (Deck, Option<Problem>, Findings) {
     let (mut deck, mut findings) = grammar::read(text, folder);
-    let mut problem = build::build(&mut deck, &mut findings);
+    let given = deck.mesh_file.as_ref().and_then(|file| {
+        let wanted = absolute(&file.value).ok()?;
+        let is_wanted = |path: &Path| absolute(folder.join(path)).is_ok_and(|at| at == wanted);
+        let given = meshes.iter().find(|(path, _)| is_wanted(path));
+        given.map(|(_, bytes)| bytes.as_slice())
+    });
+    let mut problem = build::build(&mut deck, given, &mut findings);
     if let Some(problem) = &problem {
         let columns = match problem {
             Problem::Plane(setup) => columns(setup),

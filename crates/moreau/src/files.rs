@@ -98,15 +98,33 @@ fn ending(path: &Path) -> String {
 /// # Errors
 /// [`FileError`], with the file of the folder whose name is nearest if there is no such file.
 pub fn read_mesh<const D: usize>(path: &Path) -> Result<(Mesh<D>, Vec<Loss>), FileError> {
+    known(path)?;
+    mesh_of(path, &bytes(path)?)
+}
+
+/// An error for a file that is not read by its name, whatever is in it.
+fn known(path: &Path) -> Result<(), FileError> {
+    match ending(path).as_str() {
+        "msh" | "inp" => Ok(()),
+        _ => Err(FileError::Format {
+            path: path.into(),
+            expected: ".msh (Gmsh) or .inp (Abaqus, CalculiX)",
+        }),
+    }
+}
+
+/// As [`read_mesh`], of a file whose content is at hand.
+///
+/// # Errors
+/// [`FileError::Format`], [`FileError::Mesh`].
+pub fn mesh_of<const D: usize>(
+    path: &Path,
+    bytes: &[u8],
+) -> Result<(Mesh<D>, Vec<Loss>), FileError> {
+    known(path)?;
     let mesh = match ending(path).as_str() {
-        "msh" => read_gmsh_noting(&bytes(path)?),
-        "inp" => read_abaqus_noting(&String::from_utf8_lossy(&bytes(path)?)),
-        _ => {
-            return Err(FileError::Format {
-                path: path.into(),
-                expected: ".msh (Gmsh) or .inp (Abaqus, CalculiX)",
-            });
-        }
+        "inp" => read_abaqus_noting(&String::from_utf8_lossy(bytes)),
+        _ => read_gmsh_noting(bytes),
     };
     mesh.map_err(|source| FileError::Mesh {
         path: path.into(),

@@ -12,7 +12,9 @@
 //! | charts and pictures | | [`plot`] |
 //! | problems in text files | | [`deck`] |
 //! | mesh files | | [`files`] |
-//! | their results | | [`run`] |
+//! | a deck under way, in memory | | [`simulation`], [`table`] |
+//! | the same with files around it | | [`run`] |
+//! | the command | | `command` |
 //! | memory that there is | | [`memory`] |
 //!
 //! Problems in text files, mesh files and results are behind the feature `decks`, the command behind
@@ -33,6 +35,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+#[cfg(feature = "command")]
+pub mod command;
 #[cfg(feature = "decks")]
 pub mod deck;
 #[cfg(feature = "decks")]
@@ -44,6 +48,10 @@ pub mod numbers;
 pub mod plot;
 #[cfg(feature = "decks")]
 pub mod run;
+#[cfg(feature = "decks")]
+pub mod simulation;
+#[cfg(feature = "decks")]
+pub mod table;
 #[cfg(feature = "decks")]
 mod vtu;
 

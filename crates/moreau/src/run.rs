@@ -1,37 +1,24 @@
-//! Running a problem: its steps, increment by increment, with the results written to a directory
-//! as they come; nothing is printed, and no deck is read. What is in memory does not grow with the
-//! number of increments.
+//! A simulation with files around it: run to its end, with the results written to a directory as they come;
+//! nothing is printed, and no deck is read. What is in memory does not grow with the number of increments.
 
 mod checkpoint;
-mod contact;
-mod diagnosis;
 mod directory;
 mod drawing;
 mod files;
-mod history;
 mod log;
-mod outcome;
 mod report;
 mod resumable;
-mod table;
-mod touch;
 mod under_way;
 mod vtu;
-mod warnings;
 
-pub use diagnosis::{Diagnosis, Flip};
 pub use directory::Directory;
 pub use drawing::{Drawing, draw};
-pub use outcome::{Outcome, RunStatus, Verdict};
 pub use resumable::Resumable;
-pub use vtu::View;
 
-use crate::deck::{Deck, Setup};
-use crate::driver::{Driver, IncrementReport};
-use crate::laws::Status;
+use crate::simulation::{Converged, Outcome, Simulation};
 use files::{read_text, replace_file, write_file};
 use std::path::{Path, PathBuf};
-use under_way::Run;
+use under_way::{Run, reopen};
 
 /// A run that cannot be written, read back or continued.
 #[derive(Debug, thiserror::Error)]
@@ -103,29 +90,11 @@ fn belongs(deck: &Option<PathBuf>) -> String {
     }
 }
 
-/// A converged increment, as it is told while running.
-#[derive(Debug)]
-pub struct Event<'a> {
-    /// Name of the step.
-    pub step: &'a str,
-    /// Number of the step, from 1.
-    pub stage: usize,
-    /// Number of steps.
-    pub stages: usize,
-    /// Increments the step was asked for.
-    pub increments: usize,
-    /// Part of all steps that has been done, in (0, 1].
-    pub done: f64,
-    /// Seconds left, if the rest goes as what was done since the run was started or resumed.
-    pub seconds_left: f64,
-    /// The report.
-    pub report: &'a IncrementReport,
-}
-
 /// Who looks on while a problem runs, and may stop it.
 pub trait Watch {
-    /// After every converged increment.
-    fn converged(&mut self, _event: &Event<'_>) {}
+    /// After every converged increment, with the seconds left if the rest goes as what was done since the run was
+    /// started or resumed.
+    fn converged(&mut self, _increment: &Converged, _seconds_left: f64) {}
 
     /// With every line of `log.jsonl`.
     fn iterated(&mut self, _line: &str) {}
@@ -143,31 +112,28 @@ pub trait Watch {
 /// Nobody looks on.
 impl Watch for () {}
 
-/// Runs a problem and writes its results into a directory.
+/// Runs a simulation from its beginning and writes its results into a directory.
 ///
 /// A run that does not converge is an outcome, not an error: what converged is written.
 ///
 /// # Errors
 /// [`RunError::Write`] for the first file that could not be written: the last checkpoint before it
 /// stays.
-pub fn run<const D: usize>(
-    setup: Setup<D>,
-    deck: &Deck,
+pub fn run(
+    simulation: Simulation,
     directory: &Directory,
     watch: &mut dyn Watch,
-) -> Result<Outcome, RunError>
-where
-    Driver<D>: View,
-{
+) -> Result<Outcome, RunError> {
     let at = directory.path();
     let begin = || {
         // Those of another run would be taken for its own.
         checkpoint::clear(&at.join(CHECKPOINTS))?;
         replace_file(&at.join(RUN), RUNNING)?;
-        let resolved = deck.resolved();
+        let resolved = simulation.deck().resolved();
         write_file(&at.join(RESOLVED), resolved.as_bytes())?;
-        let mut run = Run::new(setup, deck, at, resolved)?;
-        if deck.checkpoint > 0 {
+        let checkpoints = simulation.deck().checkpoint > 0;
+        let run = Run::new(simulation, at, resolved)?;
+        if checkpoints {
             run.save()?;
         }
         Ok(run)
@@ -182,30 +148,29 @@ fn break_off(directory: &Path, error: &RunError) {
     let _ = replace_file(&directory.join(RUN), format!("{json:#}\n").as_bytes());
 }
 
-/// Continues a run from its last checkpoint, as if it had never stopped. `setup` and `deck` come
-/// from the `deck.resolved.toml` of the directory.
+/// Continues a run from its last checkpoint, as if it had never stopped. The simulation is that of the
+/// `deck.resolved.toml` of the directory, at its beginning.
 ///
 /// # Errors
 /// [`RunError::NoCheckpoint`] if none is whole, or the results that it continues are not; [`RunError::Write`].
-pub fn resume<const D: usize>(
-    setup: Setup<D>,
-    deck: &Deck,
+pub fn resume(
+    mut simulation: Simulation,
     directory: &Directory,
     watch: &mut dyn Watch,
-) -> Result<Outcome, RunError>
-where
-    Driver<D>: View,
-{
+) -> Result<Outcome, RunError> {
     let directory = directory.path();
     let resolved = read_text(&directory.join(RESOLVED))?;
     let checkpoints = directory.join(CHECKPOINTS);
     let mut why = String::new();
-    let mut run = Run::unopened(setup, deck, directory, resolved);
     for path in checkpoint::list(&checkpoints) {
-        let numbers = checkpoint::read(&path, &run.resolved);
-        match numbers.and_then(|n| run.reopen(&n).map_err(|e| e.to_string())) {
-            Ok(()) => {
+        let numbers = checkpoint::read(&path, &resolved);
+        let reopened = numbers.and_then(|numbers| {
+            reopen(&mut simulation, directory, &numbers).map_err(|error| error.to_string())
+        });
+        match reopened {
+            Ok(from) => {
                 replace_file(&directory.join(RUN), RUNNING)?;
+                let run = Run::going_on(simulation, directory, resolved, from);
                 let outcome = run.finish(watch);
                 return outcome.inspect_err(|error| break_off(directory, error));
             }
@@ -226,11 +191,3 @@ const RUN: &str = "run.json";
 const RUNNING: &[u8] = b"{\n  \"status\": \"running\"\n}\n";
 const RESOLVED: &str = "deck.resolved.toml";
 const CHECKPOINTS: &str = "checkpoint";
-
-fn status_name(status: Status) -> &'static str {
-    match status {
-        Status::Open => "open",
-        Status::Stick => "stick",
-        Status::Slip => "slip",
-    }
-}

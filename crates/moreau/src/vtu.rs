@@ -9,21 +9,28 @@ use std::io::{Read as _, Write as _};
 /// Bytes that are compressed together.
 const BLOCK: usize = 32768;
 
-/// An unstructured grid.
-pub(crate) struct Grid {
-    pub(crate) points: Vec<[f64; 3]>,
-    /// Nodes and VTK type of every cell.
-    pub(crate) cells: Vec<(Vec<i64>, u8)>,
-    pub(crate) point_data: Vec<Array>,
-    pub(crate) cell_data: Vec<Array>,
+/// An unstructured grid, as VTK has it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    /// Coordinates; z is zero in the plane.
+    pub points: Vec<[f64; 3]>,
+    /// Points, in the order of VTK, and VTK type of every cell.
+    pub cells: Vec<(Vec<i64>, u8)>,
+    /// Values at points.
+    pub point_data: Vec<Array>,
+    /// Values of cells.
+    pub cell_data: Vec<Array>,
 }
 
 /// Values of points or cells.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Array {
-    pub(crate) name: String,
-    pub(crate) components: usize,
-    pub(crate) values: Vec<f64>,
+pub struct Array {
+    /// Name.
+    pub name: String,
+    /// Components: of a tensor xx, yy, zz, xy, yz, xz.
+    pub components: usize,
+    /// The components of the first point or cell, of the second, and so on.
+    pub values: Vec<f64>,
 }
 
 /// Fills up with zeros to three components.

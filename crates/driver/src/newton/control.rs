@@ -6,6 +6,7 @@ use crate::model::load::Loading;
 use crate::report::{IncrementReport, Iteration};
 use crate::vector::SparseVector;
 use crate::vector::largest;
+use std::ops::ControlFlow;
 
 /// An increment along the path of equilibria under F₀ + λ q, with λ unknown and
 ///
@@ -75,7 +76,7 @@ impl<const D: usize> Driver<D> {
     pub(crate) fn advance_along(
         &mut self,
         control: &mut Control<'_, D>,
-        watch: &mut dyn FnMut(&Iteration<'_>),
+        watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<Option<IncrementReport>, IncrementError> {
         let start = self.state.loading.clone();
         let last = self.state.last.as_ref();

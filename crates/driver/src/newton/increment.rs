@@ -20,6 +20,7 @@ use crate::report::{IncrementReport, Iteration};
 use crate::vector::{SparseVector, largest};
 use moreau_contact::{ContactError, ContactSolution};
 use std::borrow::Cow;
+use std::ops::ControlFlow;
 
 /// Part of the tolerance at which an increment with tied contacts is accepted as long as steps make the
 /// residual smaller.
@@ -99,16 +100,23 @@ impl<const D: usize> Driver<D> {
         system: &mut System,
         start: &Loading<D>,
         end: &Loading<D>,
-        watch: &mut dyn FnMut(&Self, &Iteration<'_>),
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<IncrementReport, IncrementError> {
         let guess = self.predictor(start, end);
         let increment = self.begin_increment(system, (start, end), guess, None);
         let candidate = match self.balance(system, increment, watch) {
             Err(error)
-                if self.has_large_strains() && !matches!(error, IncrementError::Model(_)) =>
+                if self.has_large_strains()
+                    && !matches!(
+                        error,
+                        IncrementError::Model(_) | IncrementError::Interrupted
+                    ) =>
             {
                 self.continued(system, (start, end), watch)
-                    .map_err(|_| error)?
+                    .map_err(|other| match other {
+                        IncrementError::Interrupted => other,
+                        _ => error,
+                    })?
             }
             other => other?,
         };
@@ -127,7 +135,7 @@ impl<const D: usize> Driver<D> {
         system: &mut System,
         (start, end): (&Loading<D>, &Loading<D>),
         candidate: &Candidate<D>,
-        watch: &mut dyn FnMut(&Self, &Iteration<'_>),
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<(), IncrementError> {
         let moves = start.displacement != end.displacement || start.turn != end.turn;
         let stable = candidate.counts.negative == 0;
@@ -172,7 +180,7 @@ impl<const D: usize> Driver<D> {
         &mut self,
         system: &mut System,
         (start, end): (&Loading<D>, &Loading<D>),
-        watch: &mut dyn FnMut(&Self, &Iteration<'_>),
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<Candidate<D>, IncrementError> {
         let (mut done, mut length) = (0.0, PART);
         let mut last: Option<Candidate<D>> = None;
@@ -205,7 +213,9 @@ impl<const D: usize> Driver<D> {
                     length = (2.0 * length).min(PART);
                     last = Some(candidate);
                 }
-                Err(error) if length < SHORTEST => return Err(error),
+                Err(error) if length < SHORTEST || error == IncrementError::Interrupted => {
+                    return Err(error);
+                }
                 Err(_) => length *= 0.5,
             }
         }
@@ -254,11 +264,11 @@ impl<const D: usize> Driver<D> {
         &mut self,
         system: &mut System,
         mut increment: Increment<'_, '_, D>,
-        watch: &mut dyn FnMut(&Self, &Iteration<'_>),
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<Candidate<D>, IncrementError> {
         loop {
             let balance = self.balance_of(system, &mut increment);
-            self.tell(&increment, &balance, watch);
+            self.tell(&increment, &balance, watch)?;
             if let Some(solution) = self.accepted(system, &mut increment, &balance) {
                 increment.count(system);
                 return Ok(Candidate {
@@ -314,8 +324,8 @@ impl<const D: usize> Driver<D> {
         &self,
         increment: &Increment<'_, '_, D>,
         balance: &Balance<D>,
-        watch: &mut dyn FnMut(&Self, &Iteration<'_>),
-    ) {
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
+    ) -> Result<(), IncrementError> {
         let iteration = Iteration {
             increment: self.state.increment + 1,
             cuts: 0,
@@ -327,7 +337,10 @@ impl<const D: usize> Driver<D> {
             residual: &balance.residual[..self.mesh_dofs()],
             status: increment.solution.as_ref().map_or(&[], |s| &s.status),
         };
-        watch(self, &iteration);
+        match watch(self, &iteration) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(IncrementError::Interrupted),
+        }
     }
 
     /// The contact solution of an iterate that is in balance and obeys the contact law; `None` of any

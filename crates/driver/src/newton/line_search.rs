@@ -231,6 +231,7 @@ mod tests {
     use moreau_algebra::Interface;
     use moreau_laws::VonMises;
     use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
+    use std::ops::ControlFlow;
 
     /// A strip held over half of its width and pulled at the other end.
     fn strip() -> Driver<2> {
@@ -277,6 +278,7 @@ mod tests {
                 if now.newton > 0 {
                     potentials.push(potential(driver, &end, now.d_u));
                 }
+                ControlFlow::Continue(())
             })
             .expect("converges");
         assert!(report.plastic_fraction > 0.05);

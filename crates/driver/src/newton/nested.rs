@@ -15,6 +15,7 @@ use crate::report::{IncrementReport, Iteration};
 use crate::vector::{SparseVector, largest};
 use moreau_contact::{ContactError, ContactSolution, uzawa_steps};
 use moreau_laws::{Local, Status};
+use std::ops::ControlFlow;
 
 /// Contact forces on their way to the fixed point t = proj(t − α ũ(t)).
 struct Uzawa<const D: usize> {
@@ -84,7 +85,7 @@ impl<const D: usize> Driver<D> {
         start: &Loading<D>,
         end: &Loading<D>,
         (tolerance, iterations): (f64, usize),
-        watch: &mut dyn FnMut(&Iteration<'_>),
+        watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<IncrementReport, IncrementError> {
         let guess = self.predictor(start, end);
         let mut increment = self.begin_increment(system, (start, end), guess, None);
@@ -99,7 +100,7 @@ impl<const D: usize> Driver<D> {
             let residual = iterate.residual(end, system.prescribed());
             left = response.residual;
             increment.counts.contact += 1;
-            watch(&Iteration {
+            let told = watch(&Iteration {
                 increment: self.state.increment + 1,
                 cuts: 0,
                 newton: increment.counts.newton,
@@ -110,6 +111,9 @@ impl<const D: usize> Driver<D> {
                 residual: &residual[..self.mesh_dofs()],
                 status: &response.status,
             });
+            if told.is_break() {
+                return Err(IncrementError::Interrupted);
+            }
             if left <= tolerance * scale {
                 self.check_passage(&iterate.d_u, end)?;
                 increment.count(system);

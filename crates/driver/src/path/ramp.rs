@@ -12,6 +12,7 @@ use crate::saved::{Numbers, Saved};
 use crate::settings::Nesting;
 use crate::vector::SparseVector;
 use crate::vector::largest;
+use std::ops::ControlFlow;
 
 /// A step under way: the loadings at both of its ends, and how far it has come.
 #[derive(Debug, Clone, PartialEq)]
@@ -233,7 +234,8 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Applies the next increment of a step, halving it as often as it takes, and doubling again
-    /// after one that converges, as [`Increments`] say; `watch` sees every iterate of every attempt.
+    /// after one that converges, as [`Increments`] say; `watch` sees every iterate of every attempt, and may break
+    /// it off there: the next call goes on as if it had not.
     ///
     /// Where only loads grow and an increment of theirs fails, their factor becomes an unknown: the
     /// step goes along the path of equilibria, on to its end or to collapse.
@@ -242,16 +244,32 @@ impl<const D: usize> Driver<D> {
     /// # Errors
     /// [`IncrementError::Collapse`] where displacements grow at a constant load;
     /// [`IncrementError::Stopped`] when the increment has been halved as often as the settings allow;
-    /// what converged before is kept. [`IncrementError::Model`] for a step that makes no sense.
+    /// what converged before is kept. [`IncrementError::Model`] for a step that makes no sense;
+    /// [`IncrementError::Interrupted`] where `watch` breaks off.
     pub fn proceed(
         &mut self,
         ramp: &mut Ramp<D>,
-        watch: &mut dyn FnMut(&Iteration<'_>),
+        watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<IncrementReport, IncrementError> {
         // One that was read may be of another model.
         let dofs = self.state.displacement.len();
         ramp.start.check(&self.mesh, dofs)?;
         ramp.end.check(&self.mesh, dofs)?;
+        let (before, at_hand) = (ramp.clone(), self.at_hand());
+        let outcome = self.attempts(ramp, watch);
+        if let Err(IncrementError::Interrupted) = outcome {
+            *ramp = before;
+            self.put_back(at_hand)?;
+        }
+        outcome
+    }
+
+    /// The next increment: attempts until one converges or none may follow.
+    fn attempts(
+        &mut self,
+        ramp: &mut Ramp<D>,
+        watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
+    ) -> Result<IncrementReport, IncrementError> {
         let pieces = ramp.increments.pieces();
         let base = 1.0 / pieces as f64;
         loop {
@@ -281,7 +299,9 @@ impl<const D: usize> Driver<D> {
                     ramp.converged(&report, before, self.last_work(&self.load(ramp)));
                     return Ok(report);
                 }
-                Err(error @ IncrementError::Model(_)) => return Err(error),
+                Err(error @ (IncrementError::Model(_) | IncrementError::Interrupted)) => {
+                    return Err(error);
+                }
                 Err(cause) => {
                     // Halved exactly, and until it is not what has just failed.
                     ramp.length *= 0.5;
@@ -345,7 +365,7 @@ impl<const D: usize> Driver<D> {
         &mut self,
         ramp: &mut Ramp<D>,
         mut path: Path,
-        watch: &mut dyn FnMut(&Iteration<'_>),
+        watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<IncrementReport, IncrementError> {
         let load = self.load(ramp);
         let grows = ramp.end.increment_from(&ramp.start);
@@ -412,7 +432,9 @@ impl<const D: usize> Driver<D> {
                     ramp.path = Some(path);
                     return Ok(report);
                 }
-                Err(error @ IncrementError::Model(_)) => return Err(error),
+                Err(error @ (IncrementError::Model(_) | IncrementError::Interrupted)) => {
+                    return Err(error);
+                }
                 Ok(None) => {}
                 Err(cause) => {
                     path.length *= 0.5;
@@ -458,7 +480,7 @@ impl<const D: usize> Driver<D> {
         let mut ramp = self.begin(step, increments)?;
         let mut reports = Vec::new();
         while !ramp.is_done() {
-            let report = self.proceed(&mut ramp, &mut |_| {})?;
+            let report = self.proceed(&mut ramp, &mut |_| ControlFlow::Continue(()))?;
             observe(self, &report);
             reports.push(report);
         }

@@ -8,6 +8,7 @@ use moreau_driver::{
 };
 use moreau_laws::{Coulomb, Elastic, VonMises};
 use moreau_mesh::{Axisymmetric, CellKind, Integration, PlaneStrain, block2, uniform};
+use std::ops::ControlFlow;
 
 /// Ends in collapse, after these reports.
 pub(crate) fn collapse<const D: usize>(
@@ -188,7 +189,7 @@ fn a_path_that_is_read_back_goes_on_to_the_bit() {
         driver.write(&mut numbers);
         ramp.write(&mut numbers);
         saved.push(numbers);
-        match driver.proceed(&mut ramp, &mut |_| {}) {
+        match driver.proceed(&mut ramp, &mut |_| ControlFlow::Continue(())) {
             Ok(report) => reports.push(report),
             Err(end) => break end,
         }
@@ -201,10 +202,15 @@ fn a_path_that_is_read_back_goes_on_to_the_bit() {
         let mut ramp = other.begin(&step, Increments::equal(5)).expect("valid");
         ramp.read(&mut from).expect("fits");
         for report in &reports[k..] {
-            let again = other.proceed(&mut ramp, &mut |_| {}).expect("converges");
+            let again = other
+                .proceed(&mut ramp, &mut |_| ControlFlow::Continue(()))
+                .expect("converges");
             assert_eq!(&again, report);
         }
-        assert_eq!(other.proceed(&mut ramp, &mut |_| {}), Err(end.clone()));
+        assert_eq!(
+            other.proceed(&mut ramp, &mut |_| ControlFlow::Continue(())),
+            Err(end.clone())
+        );
         let short = &numbers[..numbers.len() - 1];
         let mut from = Numbers::Read(short);
         other.read(&mut from).expect("fits");

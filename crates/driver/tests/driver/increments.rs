@@ -5,6 +5,7 @@ use moreau_contact::{ContactSolver, Penalty, Plane, SemismoothNewton};
 use moreau_driver::{Axis, Driver, IncrementError, Increments, Model, Settings, Step};
 use moreau_laws::{Coulomb, Elastic};
 use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
+use std::ops::ControlFlow;
 
 #[test]
 fn a_step_that_is_too_long_is_cut_and_ends_where_it_should() {
@@ -66,6 +67,7 @@ fn iterates_are_told() {
         let largest = i.residual.iter().fold(0.0, |m: f64, r| m.max(r.abs()));
         assert_eq!(largest, i.out_of_balance);
         seen.push((i.cuts, i.newton, i.out_of_balance));
+        ControlFlow::Continue(())
     });
     let report = report.expect("converges once it is short enough");
     assert!(report.cuts > 0 && seen[0].0 == 0);

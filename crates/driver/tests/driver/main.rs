@@ -9,6 +9,7 @@ mod corners;
 mod doubts;
 mod examples;
 mod increments;
+mod interrupted;
 mod klarbring;
 mod law;
 mod passages;

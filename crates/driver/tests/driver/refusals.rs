@@ -8,6 +8,7 @@ use moreau_driver::{
 };
 use moreau_laws::Elastic;
 use moreau_mesh::{CellKind, Integration, PlaneStrain, Quad4, Quad8, block2};
+use std::ops::ControlFlow;
 
 #[test]
 fn a_body_pulled_off_its_floor_is_an_error_that_changes_nothing() {
@@ -109,7 +110,7 @@ fn a_saved_ramp_of_another_model_is_refused() {
         other[last] = 1e6;
         let mut ramp = ramp.clone();
         ramp.read(&mut Numbers::Read(&other)).expect("whole");
-        let outcome = driver.proceed(&mut ramp, &mut |_| {});
+        let outcome = driver.proceed(&mut ramp, &mut |_| ControlFlow::Continue(()));
         let Err(IncrementError::Model(ModelError::OutOfRange { value, .. })) = outcome else {
             panic!("expected OutOfRange, got {outcome:?}");
         };
@@ -117,7 +118,11 @@ fn a_saved_ramp_of_another_model_is_refused() {
     }
     let mut ramp = ramp.clone();
     ramp.read(&mut Numbers::Read(&numbers)).expect("whole");
-    assert!(driver.proceed(&mut ramp, &mut |_| {}).is_ok());
+    assert!(
+        driver
+            .proceed(&mut ramp, &mut |_| ControlFlow::Continue(()))
+            .is_ok()
+    );
 }
 
 #[test]

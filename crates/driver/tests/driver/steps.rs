@@ -7,6 +7,7 @@ use moreau_driver::{
 };
 use moreau_laws::{Coulomb, Elastic, Status, VonMises};
 use moreau_mesh::{CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform};
+use std::ops::ControlFlow;
 
 const YOUNG: f64 = 210e3;
 
@@ -328,7 +329,11 @@ fn a_state_that_is_read_back_goes_on_to_the_bit() {
             driver.write(&mut numbers);
             ramp.write(&mut numbers);
             saved.push(numbers);
-            reports.push(driver.proceed(&mut ramp, &mut |_| {}).expect("converges"));
+            reports.push(
+                driver
+                    .proceed(&mut ramp, &mut |_| ControlFlow::Continue(()))
+                    .expect("converges"),
+            );
         }
         assert!(step == &lift || reports.iter().any(|r| r.plastic_fraction > 0.0));
         for (k, numbers) in saved.iter().enumerate() {
@@ -338,7 +343,9 @@ fn a_state_that_is_read_back_goes_on_to_the_bit() {
             let mut ramp = other.begin(step, Increments::equal(4)).expect("valid");
             ramp.read(&mut from).expect("fits");
             for report in &reports[k..] {
-                let again = other.proceed(&mut ramp, &mut |_| {}).expect("converges");
+                let again = other
+                    .proceed(&mut ramp, &mut |_| ControlFlow::Continue(()))
+                    .expect("converges");
                 assert_eq!(&again, report);
             }
             assert_eq!(bits(&other), bits(&driver));

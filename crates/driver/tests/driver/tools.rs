@@ -9,6 +9,7 @@ use moreau_laws::{Coulomb, Status, VonMises};
 use moreau_mesh::{
     Axisymmetric, CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform,
 };
+use std::ops::ControlFlow;
 
 fn steel() -> VonMises {
     VonMises::new(210e3, 0.3, 300.0).expect("valid")
@@ -351,7 +352,9 @@ fn a_driven_tool_is_read_back_to_the_bit() {
         .push("ball", Axis::Y, -3000.0);
     let mut driver = cylinder(0.2);
     let mut ramp = driver.begin(&step, 3).expect("valid");
-    driver.proceed(&mut ramp, &mut |_| {}).expect("converges");
+    driver
+        .proceed(&mut ramp, &mut |_| ControlFlow::Continue(()))
+        .expect("converges");
     let mut numbers = Vec::new();
     driver.write(&mut numbers);
     ramp.write(&mut numbers);
@@ -361,8 +364,12 @@ fn a_driven_tool_is_read_back_to_the_bit() {
     let mut again = other.begin(&step, Increments::equal(3)).expect("valid");
     again.read(&mut from).expect("fits");
     while !ramp.is_done() {
-        let first = driver.proceed(&mut ramp, &mut |_| {}).expect("converges");
-        let second = other.proceed(&mut again, &mut |_| {}).expect("converges");
+        let first = driver
+            .proceed(&mut ramp, &mut |_| ControlFlow::Continue(()))
+            .expect("converges");
+        let second = other
+            .proceed(&mut again, &mut |_| ControlFlow::Continue(()))
+            .expect("converges");
         assert_eq!(first, second);
     }
     assert_eq!(

@@ -95,8 +95,12 @@ pub enum Problem {
     Solid(Box<Setup<3>>),
 }
 
-/// Builds what the deck describes; `None` if that has errors.
-pub(super) fn build(deck: &mut Deck, findings: &mut Findings) -> Option<Problem> {
+/// Builds what the deck describes, on the mesh file that is given, or else that on disk; `None` if that has errors.
+pub(super) fn build(
+    deck: &mut Deck,
+    given: Option<&[u8]>,
+    findings: &mut Findings,
+) -> Option<Problem> {
     match deck.analysis {
         Analysis::PlaneStrain => {
             let thickness = match PlaneStrain::new(deck.thickness.value) {
@@ -107,7 +111,7 @@ pub(super) fn build(deck: &mut Deck, findings: &mut Findings) -> Option<Problem>
                     None
                 }
             };
-            let mesh = meshes::plane(deck, findings);
+            let mesh = meshes::plane(deck, given, findings);
             setup(
                 deck,
                 mesh,
@@ -118,12 +122,12 @@ pub(super) fn build(deck: &mut Deck, findings: &mut Findings) -> Option<Problem>
             .map(|s| Problem::Plane(Box::new(s)))
         }
         Analysis::Axisymmetric => {
-            let mesh = meshes::meridian(deck, findings);
+            let mesh = meshes::meridian(deck, given, findings);
             setup(deck, mesh, Axisymmetric, parts::profile, findings)
                 .map(|s| Problem::Plane(Box::new(s)))
         }
         Analysis::Solid => {
-            let mesh = meshes::solid(deck, findings);
+            let mesh = meshes::solid(deck, given, findings);
             setup(deck, mesh, Solid, parts::surface, findings).map(|s| Problem::Solid(Box::new(s)))
         }
     }

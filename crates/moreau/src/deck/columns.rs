@@ -7,15 +7,15 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Columns of every history, each with the unit that it has.
 const FIXED: [(&str, Unit); 20] = [
-    ("step", Unit::None),
-    ("increment", Unit::None),
+    ("step", Unit::Count),
+    ("increment", Unit::Count),
     ("time", Unit::None),
-    ("newton_iterations", Unit::None),
-    ("contact_iterations", Unit::None),
-    ("cuts", Unit::None),
-    ("open", Unit::None),
-    ("stick", Unit::None),
-    ("slip", Unit::None),
+    ("newton_iterations", Unit::Count),
+    ("contact_iterations", Unit::Count),
+    ("cuts", Unit::Count),
+    ("open", Unit::Count),
+    ("stick", Unit::Count),
+    ("slip", Unit::Count),
     ("plastic_fraction", Unit::None),
     ("external_work", Unit::Energy),
     ("elastic_energy", Unit::Energy),
@@ -26,12 +26,15 @@ const FIXED: [(&str, Unit); 20] = [
     ("penetration", Unit::Length),
     ("excess_force", Unit::Force),
     ("out_of_balance", Unit::Force),
-    ("factorisations", Unit::None),
+    ("factorisations", Unit::Count),
 ];
 
 /// What a column is measured in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Unit {
+    /// Nothing: a whole number.
+    Count,
+    /// Nothing: a ratio, or what a law has of its own.
     None,
     Length,
     Force,
@@ -41,15 +44,15 @@ pub(crate) enum Unit {
 }
 
 impl Unit {
-    /// A name with the unit in brackets, if there is one.
-    pub(crate) fn label(self, name: &str, units: Units) -> String {
+    /// How it is written; empty for a number without one.
+    pub(crate) fn symbol(self, units: Units) -> &'static str {
         match self {
-            Self::None => name.to_owned(),
-            Self::Length => format!("{name} [{}]", units.length()),
-            Self::Force => format!("{name} [{}]", units.force()),
-            Self::Stress => format!("{name} [{}]", units.stress()),
-            Self::Energy => format!("{name} [{}]", units.energy()),
-            Self::Degree => format!("{name} [°]"),
+            Self::Count | Self::None => "",
+            Self::Length => units.length(),
+            Self::Force => units.force(),
+            Self::Stress => units.stress(),
+            Self::Energy => units.energy(),
+            Self::Degree => "°",
         }
     }
 }

@@ -190,6 +190,18 @@ impl Findings {
         self.list.iter()
     }
 
+    /// All of them, with line and column of their places in the text of the deck, from 1.
+    pub fn places(&self, text: &str) -> impl Iterator<Item = (&Finding, usize, usize)> {
+        self.list.iter().map(move |finding| {
+            let before = &text[..finding.shown(text).start];
+            let (line, column) = match before.rsplit_once('\n') {
+                Some((above, own)) => (2 + above.matches('\n').count(), own),
+                None => (1, before),
+            };
+            (finding, line, 1 + column.chars().count())
+        })
+    }
+
     /// Number of errors.
     pub fn errors(&self) -> usize {
         self.count(Severity::Error)

@@ -1,27 +1,17 @@
-//! Checkpoints: lists of numbers in files that are whole or known not to be; not what the numbers
-//! mean.
+//! Checkpoints: states in files that are whole or known not to be, the last two of a directory; not what is in
+//! them.
 //!
-//! A file is the line `moreau checkpoint 5`, the CRC-32 of the resolved deck, that of the numbers
-//! and their count, each as 8 bytes, and the numbers as IEEE doubles; all little endian. It is
-//! written beside its place, forced to the disk and renamed, so that a crash leaves the one before.
+//! A file is written beside its place, forced to the disk and renamed, so that a crash leaves the one before.
 
 use super::RunError;
 use super::files::beside;
-use flate2::Crc;
+use crate::simulation::{sealed, unsealed};
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-const MAGIC: &[u8] = b"moreau checkpoint 5\n";
-
 /// Checkpoints that are kept.
 const KEPT: usize = 2;
-
-fn crc(bytes: &[u8]) -> u64 {
-    let mut crc = Crc::new();
-    crc.update(bytes);
-    u64::from(crc.sum())
-}
 
 /// Writes the checkpoint of an increment and removes the oldest.
 pub(super) fn write(
@@ -31,12 +21,7 @@ pub(super) fn write(
     numbers: &[f64],
 ) -> Result<(), RunError> {
     let path = directory.join(format!("increment-{increment:06}.ckpt"));
-    let body: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
-    let mut bytes = MAGIC.to_vec();
-    for word in [crc(deck.as_bytes()), crc(&body), numbers.len() as u64] {
-        bytes.extend(word.to_le_bytes());
-    }
-    bytes.extend(body);
+    let bytes = sealed(deck, numbers);
     let beside = beside(&path);
     let place = || {
         fs::create_dir_all(directory)?;
@@ -89,21 +74,5 @@ pub(super) fn clear(directory: &Path) -> Result<(), RunError> {
 /// The numbers of a checkpoint, or why it cannot be used.
 pub(super) fn read(path: &Path, deck: &str) -> Result<Vec<f64>, String> {
     let bytes = fs::read(path).map_err(|error| error.to_string())?;
-    let head = bytes
-        .strip_prefix(MAGIC)
-        .ok_or("not a checkpoint of this version")?;
-    let torn = || format!("torn: {} bytes", bytes.len());
-    let (words, body) = head.split_at_checked(24).ok_or_else(torn)?;
-    let word = |k: usize| {
-        let bytes = words[8 * k..8 * k + 8].iter().rev();
-        bytes.fold(0u64, |sum, &b| (sum << 8) | u64::from(b))
-    };
-    if word(0) != crc(deck.as_bytes()) {
-        return Err("of another deck than deck.resolved.toml".into());
-    }
-    if body.len() as u64 != word(2).saturating_mul(8) || crc(body) != word(1) {
-        return Err(torn());
-    }
-    let number = |b: &[u8]| f64::from_le_bytes(std::array::from_fn(|i| b[i]));
-    Ok(body.chunks(8).map(number).collect())
+    unsealed(&bytes, deck)
 }

@@ -1,13 +1,9 @@
 //! What is drawn of a run, from its files: at its end and again; not how.
 
-use super::files::write_file;
-use super::report::{self, pictures};
-use super::table::Table;
-use super::{RunError, View, vtu};
-use crate::deck::{Deck, Setup};
-use crate::driver::Driver;
+use super::files::{contact_table, history_table, write_file};
+use super::{RunError, report, vtu};
 use crate::mesh::nearest;
-use crate::vtu::Array;
+use crate::simulation::{Array, Simulation, either, pictures};
 use std::path::{Path, PathBuf};
 
 /// What to draw of a run.
@@ -27,40 +23,35 @@ pub struct Drawing {
 /// # Errors
 /// [`RunError::Read`] for a directory without results, [`RunError::Unknown`] for a field or an
 /// increment that is not in them, [`RunError::Write`].
-pub fn draw<const D: usize>(
-    setup: &Setup<D>,
-    deck: &Deck,
+pub fn draw(
+    simulation: &Simulation,
     directory: &Path,
     drawing: &Drawing,
-) -> Result<Vec<PathBuf>, RunError>
-where
-    Driver<D>: View,
-{
-    pictures_of(&setup.driver, deck, directory, None, drawing)
+) -> Result<Vec<PathBuf>, RunError> {
+    pictures_of(simulation, directory, None, drawing)
 }
 
 /// The pictures and the report. `last` is the end of the run where no file has it.
-pub(super) fn pictures_of<const D: usize>(
-    driver: &Driver<D>,
-    deck: &Deck,
+pub(super) fn pictures_of(
+    simulation: &Simulation,
     directory: &Path,
     last: Option<&[Array]>,
     drawing: &Drawing,
-) -> Result<Vec<PathBuf>, RunError>
-where
-    Driver<D>: View,
-{
-    let history = Table::read(&directory.join("history.csv"), |_, _| true)?;
-    let increments = history.texts("increment");
-    let number = match (drawing.increment, increments.last()) {
-        (Some(number), _) if !increments.contains(&number.to_string().as_str()) => {
+) -> Result<Vec<PathBuf>, RunError> {
+    let deck = simulation.deck();
+    let history = history_table(directory)?;
+    let increments = history.numbers("increment").into_iter();
+    let increments: Vec<usize> = increments.map(|n| n as usize).collect();
+    let end = increments.last().copied().unwrap_or(0);
+    let number = match drawing.increment {
+        Some(number) if !increments.contains(&number) => {
             return Err(RunError::Unknown {
                 what: format!("increment {number}"),
-                expected: format!("1 to {}", increments.last().unwrap_or(&"0")),
+                expected: format!("1 to {end}"),
             });
         }
-        (Some(number), _) => number,
-        (None, last) => last.and_then(|t| t.parse().ok()).unwrap_or(0),
+        Some(number) => number,
+        None => end,
     };
     // What was asked for is kept apart from what every run has.
     let asked = drawing.field.iter().map(|f| format!("-{f}"));
@@ -77,8 +68,8 @@ where
         Ok(())
     };
     write("history.svg".into(), pictures::over_time(&history, deck))?;
-    if let Some(mesh) = driver.plane() {
-        let contacts = pictures::contact_table(directory, &[number])?;
+    if let Some(mesh) = simulation.plane() {
+        let contacts = contact_table(directory, &[number])?;
         let at = drawing.increment.map_or(String::new(), |n| format!("-{n}"));
         write(
             format!("contact{at}.svg"),
@@ -108,13 +99,15 @@ where
                     expected: all.join(", "),
                 });
             }
-            let at = increments.iter().position(|t| *t == number.to_string());
+            let at = increments.iter().position(|&n| n == number);
             let at = (&history, at.unwrap_or(0));
             let svg = pictures::deformed(mesh, deck, &arrays, name, at, drawing.magnification);
             write(format!("deformed{asked}.svg"), svg)?;
         }
     }
-    let page = report::report(driver, deck, directory, last)?;
+    let page = either!(simulation.course(), course => {
+        report::report(course.driver(), deck, directory, last)
+    })?;
     write("report.html".into(), Some(page))?;
     Ok(written)
 }

@@ -1,8 +1,11 @@
 //! Files of a run: streams that grow line by line and can be cut back to where they were, and files
-//! that are written at once; not what is in them.
+//! that are written at once; tables read back; not what is in them.
 
 use super::RunError;
+use crate::table::Table;
 use flate2::Crc;
+use std::borrow::Cow;
+use std::collections::HashSet;
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -165,6 +168,31 @@ pub(super) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
 
 pub(super) fn read_text(path: &Path) -> Result<String, RunError> {
     fs::read_to_string(path).map_err(|source| RunError::Read {
+        path: path.to_owned(),
+        source,
+    })
+}
+
+/// All rows of `history.csv`.
+pub(super) fn history_table(directory: &Path) -> Result<Table, RunError> {
+    read_table(&directory.join("history.csv"), |_, _| true)
+}
+
+/// Rows of `contact.csv` of some increments.
+pub(super) fn contact_table(directory: &Path, increments: &[usize]) -> Result<Table, RunError> {
+    let wanted: HashSet<String> = increments.iter().map(usize::to_string).collect();
+    read_table(&directory.join("contact.csv"), |names, fields| {
+        let column = names.iter().position(|n| n == "increment");
+        column.is_some_and(|k| wanted.contains(&*fields[k]))
+    })
+}
+
+fn read_table(
+    path: &Path,
+    keep: impl FnMut(&[String], &[Cow<'_, str>]) -> bool,
+) -> Result<Table, RunError> {
+    let table = File::open(path).and_then(|file| Table::read(BufReader::new(file), keep));
+    table.map_err(|source| RunError::Read {
         path: path.to_owned(),
         source,
     })

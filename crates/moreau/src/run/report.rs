@@ -1,19 +1,17 @@
 //! `report.html`: a run on one page that needs nothing but a browser; its template is beside it.
 
-pub(super) mod pictures;
-mod tools;
 mod viewer;
 
 use super::RunError;
-use super::files::read_text;
-use super::table::Table;
+use super::files::{contact_table, history_table, read_text};
 use crate::deck::Deck;
 use crate::driver::Driver;
 use crate::numbers::shown;
+use crate::simulation::pictures::{over_time, tractions};
+use crate::table::Table;
 use crate::vtu::Array;
 use minijinja::value::Value;
 use minijinja::{Environment, context};
-use pictures::{over_time, tractions};
 use std::path::Path;
 use viewer::viewer;
 
@@ -24,10 +22,9 @@ pub(super) fn report<const D: usize>(
     directory: &Path,
     last: Option<&[Array]>,
 ) -> Result<String, RunError> {
-    let history = Table::read(&directory.join("history.csv"), |_, _| true)?;
-    let increment = history.texts("increment").last().copied().unwrap_or("0");
-    let increment = increment.parse().unwrap_or(0);
-    let contacts = pictures::contact_table(directory, &[increment])?;
+    let history = history_table(directory)?;
+    let increment = history.numbers("increment").pop().unwrap_or(0.0) as usize;
+    let contacts = contact_table(directory, &[increment])?;
     let resolved = read_text(&directory.join("deck.resolved.toml"))?;
     let run = read_text(&directory.join("run.json"))?;
     let run: serde_json::Value = serde_json::from_str(&run).unwrap_or_default();

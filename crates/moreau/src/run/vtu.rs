@@ -1,21 +1,11 @@
 //! The VTK files of a run: bodies, contact surfaces and quadrature points of its increments, and the
 //! list of all; not their format.
 
-pub(super) mod body;
-mod points;
-mod surface;
-mod view;
-
-pub use view::View;
-
 use super::RunError;
 use super::files::{Mark, Stream, read_text, write_file};
-use crate::driver::Driver;
-use crate::vtu::{Array, attribute, point_data, three};
-use body::body;
-use points::points;
+use crate::simulation::{Array, Simulation};
+use crate::vtu::{attribute, point_data};
 use std::path::{Path, PathBuf};
-use surface::surface;
 
 /// Name of the list.
 pub(super) const LIST: &str = "result.pvd";
@@ -64,29 +54,26 @@ impl Collection {
         self.list.as_ref().map_or(Mark::default(), Stream::mark)
     }
 
-    /// Writes of the state of a driver the body with its contact surfaces, the quadrature points, or
-    /// both, and lists them.
-    pub(super) fn add<const D: usize>(
+    /// Writes of the state of a simulation the body with its contact surfaces, the quadrature points, or both, and
+    /// lists them.
+    pub(super) fn add(
         &mut self,
-        driver: &Driver<D>,
-        time: f64,
+        simulation: &Simulation,
         (bodies, at_points): (bool, bool),
-    ) -> Result<(), RunError>
-    where
-        Driver<D>: View,
-    {
+    ) -> Result<(), RunError> {
         let mut files = Vec::new();
         if bodies {
-            files.push((0, "body", body(driver).0));
-            files.extend(surface(driver).map(|grid| (1, "contact", grid)));
+            files.push((0, "body", simulation.body()));
+            files.extend(simulation.surface().map(|grid| (1, "contact", grid)));
         }
         if at_points {
-            files.push((2, "points", points(driver)));
+            files.push((2, "points", simulation.points()));
         }
         if files.is_empty() {
             return Ok(());
         }
-        let number = driver.increments();
+        let number = simulation.increments();
+        let time = simulation.history().numbers("time").pop().unwrap_or(0.0);
         let mut list = match self.list.take() {
             Some(list) => list,
             None => {
@@ -105,30 +92,6 @@ impl Collection {
         list.tail(LIST_TAIL)?;
         self.list = Some(list);
         Ok(())
-    }
-
-    /// Writes a candidate that did not converge: its displacement and what nothing balances.
-    pub(super) fn failed<const D: usize>(
-        &self,
-        driver: &Driver<D>,
-        displacement: &[f64],
-        residual: &[f64],
-    ) -> Result<(), RunError>
-    where
-        Driver<D>: View,
-    {
-        let (mut grid, nodes) = body(driver);
-        let vector = |name: &str, values: &[f64]| Array {
-            name: name.to_owned(),
-            components: 3,
-            values: nodes
-                .iter()
-                .flat_map(|n| three(&values[D * n..][..D]))
-                .collect(),
-        };
-        grid.point_data[0] = vector("displacement", displacement);
-        grid.point_data.push(vector("out_of_balance", residual));
-        write_file(&self.directory.join("failed.vtu"), &grid.bytes())
     }
 }
 

@@ -6,9 +6,9 @@ mod moved;
 mod units;
 
 use super::{folder, temporary};
-use moreau::deck::{Problem, open_in};
-use moreau::driver::IncrementReport;
-use moreau::run::{Directory, Event, Watch, resume, run};
+use moreau::deck::Meshes;
+use moreau::run::{Directory, Watch, resume, run};
+use moreau::simulation::{Converged, Simulation};
 use std::fs;
 use std::path::Path;
 use toml::{Table, Value};
@@ -104,9 +104,8 @@ struct History {
 struct Pause(usize);
 
 impl Watch for Pause {
-    fn converged(&mut self, event: &Event<'_>) {
-        let report: &IncrementReport = event.report;
-        self.0 = self.0.saturating_sub(report.increment);
+    fn converged(&mut self, increment: &Converged, _: f64) {
+        self.0 = self.0.saturating_sub(increment.report.increment);
     }
 
     fn stops(&self) -> bool {
@@ -121,13 +120,12 @@ fn history(deck: &Table, beside: &Path, name: &str, pause: bool) -> History {
     let text = deck.to_string();
     let mut watch = Pause(if pause { 1 } else { usize::MAX });
     for go_on in [false, true] {
-        let (deck, problem, findings) = open_in(&text, beside);
+        let (simulation, findings) = Simulation::open(&text, beside, &Meshes::new());
         let shown = || findings.render(name, &text, false);
-        match (problem.unwrap_or_else(|| panic!("{}", shown())), go_on) {
-            (Problem::Plane(setup), false) => run(*setup, &deck, &to, &mut watch),
-            (Problem::Plane(setup), true) => resume(*setup, &deck, &to, &mut ()),
-            (Problem::Solid(setup), false) => run(*setup, &deck, &to, &mut watch),
-            (Problem::Solid(setup), true) => resume(*setup, &deck, &to, &mut ()),
+        let simulation = simulation.unwrap_or_else(|| panic!("{}", shown()));
+        match go_on {
+            false => run(simulation, &to, &mut watch),
+            true => resume(simulation, &to, &mut ()),
         }
         .expect("a run");
         if !pause {

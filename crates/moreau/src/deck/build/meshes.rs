@@ -2,26 +2,30 @@
 
 use crate::deck::entries::{BlockEntry, Deck};
 use crate::deck::finding::{Class, Findings};
-use crate::files::read_mesh;
+use crate::files::{mesh_of, read_mesh};
 use crate::mesh::{Mesh, MeshError, block2, block3};
 use std::ops::Range;
 
 /// The mesh of a plane analysis.
-pub(super) fn plane(deck: &Deck, findings: &mut Findings) -> Option<Mesh<2>> {
-    joined(deck, findings, |block| {
+pub(super) fn plane(deck: &Deck, given: Option<&[u8]>, findings: &mut Findings) -> Option<Mesh<2>> {
+    joined(deck, given, findings, |block| {
         let [x, y] = [0, 1].map(|i| block.grid[i].value.lines());
         block2(&block.name.value, block.element.value, &x, &y)
     })
 }
 
 /// The mesh of a half-plane beside the axis.
-pub(super) fn meridian(deck: &Deck, findings: &mut Findings) -> Option<Mesh<2>> {
+pub(super) fn meridian(
+    deck: &Deck,
+    given: Option<&[u8]>,
+    findings: &mut Findings,
+) -> Option<Mesh<2>> {
     let blocks = deck.blocks.iter().map(|b| &b.grid[0]);
     let crossing: Vec<_> = blocks.filter(|x| x.value.first() < 0.0).collect();
     for x in &crossing {
         beyond(findings, &x.span, "block", x.value.first());
     }
-    let mesh = plane(deck, findings)?;
+    let mesh = plane(deck, given, findings)?;
     let least = mesh.bounds().0[0];
     if let (Some(file), true) = (&deck.mesh_file, least < 0.0 && crossing.is_empty()) {
         beyond(findings, &file.span, "mesh", least);
@@ -40,8 +44,8 @@ fn beyond(findings: &mut Findings, span: &Range<usize>, what: &str, least: f64) 
 }
 
 /// The mesh of a solid.
-pub(super) fn solid(deck: &Deck, findings: &mut Findings) -> Option<Mesh<3>> {
-    joined(deck, findings, |block| {
+pub(super) fn solid(deck: &Deck, given: Option<&[u8]>, findings: &mut Findings) -> Option<Mesh<3>> {
+    joined(deck, given, findings, |block| {
         let [x, y, z] = [0, 1, 2].map(|i| block.grid[i].value.lines());
         block3(&block.name.value, block.element.value, &x, &y, &z)
     })
@@ -49,6 +53,7 @@ pub(super) fn solid(deck: &Deck, findings: &mut Findings) -> Option<Mesh<3>> {
 
 fn joined<const D: usize>(
     deck: &Deck,
+    given: Option<&[u8]>,
     findings: &mut Findings,
     make: impl Fn(&BlockEntry) -> Result<Mesh<D>, MeshError>,
 ) -> Option<Mesh<D>> {
@@ -57,7 +62,11 @@ fn joined<const D: usize>(
     }
     let mut mesh: Option<Mesh<D>> = None;
     if let Some(file) = &deck.mesh_file {
-        match read_mesh(&file.value) {
+        let read = match given {
+            Some(bytes) => mesh_of(&file.value, bytes),
+            None => read_mesh(&file.value),
+        };
+        match read {
             Ok((read, losses)) => {
                 for loss in losses {
                     let label = "not all of this file";

@@ -1,16 +1,18 @@
 //! What the report draws by itself in a browser: the body and its contacts in every frame, as numbers;
 //! the drawing is in `report.html`.
 
-use super::pictures::{
-    self, ContactLine, TRACTIONS, contact_axis, contact_labels, contact_lines, field, fields,
-    label, usual_field, usual_magnification,
-};
 use crate::deck::Deck;
 use crate::driver::{Driver, points_by_material};
 use crate::laws::Status;
 use crate::mesh::{Facet, Mesh};
+use crate::run::RunError;
+use crate::run::files::contact_table;
 use crate::run::vtu::{bodies, read_point_data};
-use crate::run::{RunError, status_name};
+use crate::simulation::pictures::{
+    ContactLine, TRACTIONS, contact_axis, contact_labels, contact_lines, field, fields, label,
+    usual_field, usual_magnification,
+};
+use crate::simulation::status_name;
 use crate::vtu::Array;
 use serde_json::{Map, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -104,7 +106,7 @@ fn contact_line(
     directory: &Path,
     increments: &[usize],
 ) -> Result<serde_json::Value, RunError> {
-    let table = pictures::contact_table(directory, increments)?;
+    let table = contact_table(directory, increments)?;
     let axis = contact_axis(&table);
     let frame = |&increment: &usize| contact_lines(&table, increment, axis);
     let frames: Vec<Vec<ContactLine>> = increments.iter().map(frame).collect();
@@ -132,7 +134,7 @@ fn contact_surface<const D: usize>(
     (points, cells): (&[usize], &[Vec<usize>]),
     increments: &[usize],
 ) -> Result<serde_json::Value, RunError> {
-    let table = pictures::contact_table(directory, increments)?;
+    let table = contact_table(directory, increments)?;
     let surfaces: BTreeSet<&str> = table.texts("contact").into_iter().collect();
     let facets = surfaces
         .iter()
@@ -141,11 +143,8 @@ fn contact_surface<const D: usize>(
     if faces.is_empty() {
         return Ok(json!(null));
     }
-    let node: Vec<usize> = table
-        .texts("node")
-        .iter()
-        .map(|t| t.parse().unwrap_or(usize::MAX))
-        .collect();
+    let node = table.numbers("node").into_iter();
+    let node: Vec<usize> = node.map(|n| n as usize).collect();
     let touching: BTreeSet<usize> = node.iter().copied().collect();
     let seen: BTreeSet<usize> = faces.iter().flatten().copied().collect();
     let seen: Vec<usize> = seen
@@ -165,10 +164,9 @@ fn contact_surface<const D: usize>(
                 .map_or(f64::NAN, |k| k as f64)
         })
         .collect();
-    let rows = table.texts("increment");
+    let rows = table.numbers("increment");
     let frame = |increment: &usize| {
-        let increment = increment.to_string();
-        let own = (0..rows.len()).filter(|&k| rows[k] == increment);
+        let own = (0..rows.len()).filter(|&k| rows[k] == *increment as f64);
         let row: BTreeMap<usize, usize> = own.map(|k| (node[k], k)).collect();
         let values = |column: &[f64]| {
             let at = |p: &usize| row.get(&points[*p]).map_or(f64::NAN, |&k| column[k]);

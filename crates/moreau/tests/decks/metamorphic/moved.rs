@@ -1,6 +1,7 @@
 //! Places, axes and numbers of nodes.
 
 use super::*;
+use moreau::deck::{Problem, open_in};
 use moreau::mesh::{Mesh, block2, uniform, write_gmsh};
 use std::path::PathBuf;
 

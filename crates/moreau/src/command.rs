@@ -1,0 +1,208 @@
+//! The `moreau` command: checks, runs, resumes, compares and draws; all that it does is in the
+//! library.
+// It talks to a person.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+mod bench;
+mod check;
+mod convert;
+mod plot;
+mod progress;
+mod run;
+mod signals;
+
+use clap::{Parser, Subcommand};
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+/// Prints a line; a reader that has gone away, as `head` does, is no error.
+macro_rules! say {
+    ($($what:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stdout(), $($what)*);
+    }};
+}
+use say;
+
+/// The same to the error output.
+macro_rules! tell {
+    ($($what:tt)*) => {{
+        use std::io::Write as _;
+        let _ = writeln!(std::io::stderr(), $($what)*);
+    }};
+}
+use tell;
+
+/// Exit status for input that makes no sense.
+const INPUT_ERROR: u8 = 1;
+/// Exit status for a run that did not converge, was interrupted or could not be written to its end: what
+/// converged is kept.
+const NOT_CONVERGED: u8 = 2;
+/// Exit status for an expectation that failed.
+const UNEXPECTED: u8 = 3;
+
+/// Elastoplastic solids in unilateral contact with Coulomb friction.
+///
+/// Exit status: 0 done, 1 input error, 2 not converged, interrupted, or results that cannot be
+/// written (what converged before is kept), 3 an expectation failed.
+#[derive(Debug, Parser)]
+#[command(name = "moreau", version)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Reads a deck and tells what was understood, without solving.
+    Check {
+        /// The deck.
+        deck: PathBuf,
+    },
+    /// Runs a deck and writes its results. Ctrl-C ends it within a second, and `resume` goes on from the last
+    /// increment.
+    Run {
+        /// The deck.
+        deck: PathBuf,
+        /// Directory of the results, instead of the deck's.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Overwrite results of another deck, and files that no run wrote.
+        #[arg(long)]
+        force: bool,
+        #[command(flatten)]
+        manner: Manner,
+    },
+    /// Continues a run from its last checkpoint, as if it had never stopped.
+    Resume {
+        /// Directory of the results.
+        directory: PathBuf,
+        #[command(flatten)]
+        manner: Manner,
+    },
+    /// Runs a deck under every contact algorithm and compares.
+    Bench {
+        /// The deck.
+        deck: PathBuf,
+        /// Directory of the results, instead of the deck's name with `-bench`.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Overwrite results of another deck, and files that no run wrote.
+        #[arg(long)]
+        force: bool,
+    },
+    /// Converts a mesh file: .msh or .inp to .vtu or .msh.
+    Convert(convert::Convert),
+    /// Prints the JSON schema of decks, for editors.
+    Schema,
+    /// Draws a run again: history, contact line, deformed body, report.
+    Plot {
+        /// Directory of the results.
+        directory: PathBuf,
+        /// Field on the body, as in `von_mises` or `displacement.x`.
+        #[arg(long)]
+        field: Option<String>,
+        /// Increment, instead of the last.
+        #[arg(long)]
+        increment: Option<usize>,
+        /// How many times displacements are drawn.
+        #[arg(long, value_name = "FACTOR")]
+        scale: Option<f64>,
+        /// Also as PNG, twice as large; needs a command built with the feature `png`.
+        #[arg(long)]
+        png: bool,
+    },
+}
+
+/// How a run goes on.
+#[derive(Debug, clap::Args)]
+struct Manner {
+    /// Threads, instead of the deck's; 0: all. The results do not depend on it.
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Fail with status 3 if an expectation of the deck is not met.
+    #[arg(long)]
+    verify: bool,
+    /// No progress and no summary.
+    #[arg(long)]
+    quiet: bool,
+    /// Every iteration as a line of JSON on stdout, instead of progress and summary.
+    #[arg(long)]
+    json_log: bool,
+}
+
+/// Does what the arguments of a command line say, the name of the program first; the exit status.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    signals::survive_limits();
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are no errors.
+            let failed = error.use_stderr();
+            return match error.print() {
+                Ok(()) if !failed => 0,
+                _ => INPUT_ERROR,
+            };
+        }
+    };
+    match arguments.command {
+        Command::Check { deck } => check::check(&deck),
+        Command::Run {
+            deck,
+            out,
+            force,
+            manner,
+        } => run::run(&deck, out, force, &manner),
+        Command::Resume { directory, manner } => run::resume(&directory, &manner),
+        Command::Bench { deck, out, force } => bench::bench(&deck, out, force),
+        Command::Plot {
+            directory,
+            field,
+            increment,
+            scale,
+            png,
+        } => {
+            let drawing = crate::run::Drawing {
+                field,
+                increment,
+                magnification: scale,
+            };
+            plot::plot(&directory, &drawing, png)
+        }
+        Command::Convert(convert) => convert.run(),
+        Command::Schema => {
+            say!("{}", crate::deck::SCHEMA.trim_end());
+            0
+        }
+    }
+}
+
+/// The text of a deck, or a message.
+fn read(path: &Path) -> Option<String> {
+    match std::fs::read_to_string(path) {
+        Ok(text) => Some(text),
+        Err(error) => {
+            tell!("cannot read the deck {}: {error}", path.display());
+            None
+        }
+    }
+}
+
+/// The folder of a deck, to which the paths in it are relative.
+fn folder(deck: &Path) -> &Path {
+    deck.parent().unwrap_or(Path::new(""))
+}
+
+/// Prints findings to stderr, and how many there are.
+fn report(findings: &crate::deck::Findings, path: &Path, text: &str) {
+    use std::io::IsTerminal;
+    let colour = std::io::stderr().is_terminal();
+    let (errors, warnings) = (findings.errors(), findings.warnings());
+    if errors + warnings > 0 {
+        let shown = findings.render(&path.display().to_string(), text, colour);
+        tell!("{}\n", shown.trim_end_matches('\n'));
+        let counted = |n: usize, what: &str| format!("{n} {what}{}", if n == 1 { "" } else { "s" });
+        let (errors, warnings) = (counted(errors, "error"), counted(warnings, "warning"));
+        tell!("{}: {errors}, {warnings}", path.display());
+    }
+}

@@ -1,0 +1,128 @@
+//! `moreau bench`: a deck under every contact algorithm, as a table.
+
+use super::{INPUT_ERROR, NOT_CONVERGED, run, say, tell};
+use crate::deck::{At, Deck, Meshes, Method, Vtu};
+use crate::run::Directory;
+use crate::simulation::{Outcome, RunStatus, Simulation};
+use std::path::{Path, PathBuf};
+
+/// Runs a deck under every algorithm; the exit status is that of the first that fails.
+pub(super) fn bench(path: &Path, out: Option<PathBuf>, force: bool) -> u8 {
+    let Some(simulation) = run::simulation(path) else {
+        return INPUT_ERROR;
+    };
+    let deck = simulation.deck().clone();
+    drop(simulation);
+    let Some(pool) = run::pool(deck.solver.threads) else {
+        return INPUT_ERROR;
+    };
+    let out = out.unwrap_or_else(|| run::default_directory(path, "-bench"));
+    say!(
+        "{:<34} {:>9} {:>7} {:>8} {:>7} {:>10} {:>11}  status",
+        "algorithm",
+        "seconds",
+        "Newton",
+        "contact",
+        "factors",
+        "gap/work",
+        "penetration"
+    );
+    let mut status = 0;
+    let mut results = Vec::new();
+    for (name, deck) in algorithms(&deck) {
+        let directory = out.join(name.replace([' ', ','], "-"));
+        let Some(directory) = run::taken(Directory::take_for(&directory, path, force)) else {
+            return INPUT_ERROR;
+        };
+        // The deck as text, so that it is checked as any other.
+        let text = deck.resolved();
+        let (simulation, findings) = Simulation::open(&text, Path::new(""), &Meshes::new());
+        let Some(simulation) = simulation else {
+            tell!("{}", findings.render(&name, &text, false));
+            return INPUT_ERROR;
+        };
+        let outcome = pool.install(|| crate::run::run(simulation, &directory, &mut ()));
+        match outcome {
+            Ok(outcome) => {
+                say!(
+                    "{name:<34} {:>9.3} {:>7} {:>8} {:>7} {:>10.1e} {:>11.1e}  {}",
+                    outcome.seconds,
+                    outcome.newton_iterations,
+                    outcome.contact_iterations,
+                    outcome.factorisations,
+                    outcome.relative_gap,
+                    outcome.certificate.penetration,
+                    outcome.status.name()
+                );
+                if outcome.status != RunStatus::Done {
+                    status = NOT_CONVERGED;
+                }
+                results.push((name, outcome));
+            }
+            Err(error) => {
+                tell!("{error}");
+                return INPUT_ERROR;
+            }
+        }
+    }
+    forces(&results);
+    say!("results in {}", out.display());
+    status
+}
+
+/// Final forces, a line for each and a column for each algorithm.
+fn forces(results: &[(String, Outcome)]) {
+    let Some((_, first)) = results.first() else {
+        return;
+    };
+    say!("\nforces at the end [{}]", first.units.force());
+    let largest = first.values.iter().map(|v| v.1.abs()).fold(0.0, f64::max);
+    for (column, value) in first.values.iter().filter(|v| v.0.starts_with("force.")) {
+        if value.abs() <= 1e-9 * largest {
+            continue;
+        }
+        say!("{column}");
+        for (name, outcome) in results.iter().filter(|r| r.1.status == RunStatus::Done) {
+            let found = outcome.values.iter().find(|v| v.0 == *column);
+            let found = found.map_or(f64::NAN, |v| v.1);
+            let off = found / value - 1.0;
+            say!("  {name:<32} {found:>18.10e}  {off:>+9.1e}");
+        }
+    }
+}
+
+/// The deck under every algorithm, with nothing written but what is compared.
+fn algorithms(deck: &Deck) -> Vec<(String, Deck)> {
+    let stiffest = deck.materials.iter().map(|m| m.young.value);
+    let stiffest = stiffest.fold(0.0, f64::max);
+    // A spring on a node as stiff as a hundred of the thickness of the material.
+    let stiffness = 100.0 * stiffest * deck.thickness.value;
+    let penalty = match &deck.solver.method {
+        Method::Penalty(normal, tangent) => (normal.value, tangent.value),
+        _ => (stiffness, stiffness),
+    };
+    let spring = |value| At::new(value, 0..0);
+    let methods = [
+        ("exact".to_owned(), Method::Exact, false),
+        ("gauss-seidel".to_owned(), Method::GaussSeidel, false),
+        ("uzawa".to_owned(), Method::Uzawa, false),
+        (
+            format!("penalty {:e}, {:e}", penalty.0, penalty.1),
+            Method::Penalty(spring(penalty.0), spring(penalty.1)),
+            false,
+        ),
+        // The paper's own: last, for it takes longest.
+        ("uzawa outside".to_owned(), Method::Uzawa, true),
+    ];
+    let with = |(name, method, outside)| {
+        let mut deck = deck.clone();
+        deck.solver.method = method;
+        deck.solver.outside = outside;
+        deck.vtu = Vtu::None;
+        deck.points = Vtu::None;
+        deck.checkpoint = 0;
+        deck.directory = None;
+        (name, deck)
+    };
+    methods.into_iter().map(with).collect()
+}

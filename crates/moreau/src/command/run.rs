@@ -1,0 +1,157 @@
+//! `moreau run` and `moreau resume`: a deck run to its end or to where it stops, and the exit
+//! status that says so.
+
+use super::progress::Progress;
+use super::signals::{Signals, interrupted};
+use super::{INPUT_ERROR, Manner, NOT_CONVERGED, UNEXPECTED, folder, read, report, say, tell};
+use crate::deck::Meshes;
+use crate::memory;
+use crate::numbers::shown;
+use crate::run::{Directory, RunError, Watch};
+use crate::simulation::{Outcome, RunStatus, Simulation};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+/// Runs a deck; the exit status.
+pub(super) fn run(path: &Path, out: Option<PathBuf>, force: bool, manner: &Manner) -> u8 {
+    let Some(simulation) = simulation(path) else {
+        return INPUT_ERROR;
+    };
+    let given = simulation.deck().directory.as_ref().map(PathBuf::from);
+    let directory = out.or(given).unwrap_or_else(|| default_directory(path, ""));
+    let Some(to) = taken(Directory::take_for(&directory, path, force)) else {
+        return INPUT_ERROR;
+    };
+    go(simulation, &to, manner, crate::run::run)
+}
+
+/// Continues a run; the exit status.
+pub(super) fn resume(directory: &Path, manner: &Manner) -> u8 {
+    let Some(simulation) = results(directory) else {
+        return INPUT_ERROR;
+    };
+    let Some(at) = taken(Directory::take(directory)) else {
+        return INPUT_ERROR;
+    };
+    go(simulation, &at, manner, crate::run::resume)
+}
+
+/// A directory to write to; why not is printed.
+pub(super) fn taken(directory: Result<Directory, RunError>) -> Option<Directory> {
+    match directory {
+        Ok(directory) => {
+            if !directory.is_exclusive() {
+                let place = directory.path().display();
+                tell!("warning: {place} cannot be locked there: let no other run write to it");
+            }
+            Some(directory)
+        }
+        Err(error) => {
+            tell!("{error}");
+            None
+        }
+    }
+}
+
+/// The simulation of a directory of results, at its beginning; what is wrong with it is printed.
+pub(super) fn results(directory: &Path) -> Option<Simulation> {
+    let path = directory.join("deck.resolved.toml");
+    if !path.exists() {
+        let at = directory.display();
+        tell!(
+            "{at} is no directory of results: it has no deck.resolved.toml, which `moreau run` writes"
+        );
+        return None;
+    }
+    simulation(&path)
+}
+
+/// The simulation of a deck; findings are printed.
+pub(super) fn simulation(path: &Path) -> Option<Simulation> {
+    let text = read(path)?;
+    let (simulation, findings) = Simulation::open(&text, folder(path), &Meshes::new());
+    report(&findings, path, &text);
+    simulation
+}
+
+fn go(
+    simulation: Simulation,
+    directory: &Directory,
+    manner: &Manner,
+    solve: fn(Simulation, &Directory, &mut dyn Watch) -> Result<Outcome, RunError>,
+) -> u8 {
+    let Some(pool) = pool(manner.threads.unwrap_or(simulation.deck().solver.threads)) else {
+        return INPUT_ERROR;
+    };
+    let mut progress = Progress::new(manner.quiet, manner.json_log, Signals::listen());
+    let outcome = pool.install(|| solve(simulation, directory, &mut progress));
+    progress.end();
+    match outcome {
+        Ok(outcome) => conclude(&outcome, manner, directory.path()),
+        Err(error) => {
+            tell!("{error}");
+            match error {
+                // What converged before is there.
+                RunError::Write { .. } => NOT_CONVERGED,
+                _ => INPUT_ERROR,
+            }
+        }
+    }
+}
+
+/// Threads to work with, this one among them; why there are none is printed.
+pub(super) fn pool(wanted: usize) -> Option<ThreadPool> {
+    let told = |error: &dyn Display| tell!("cannot start threads: {error}");
+    let threads = memory::threads(wanted).map_err(|e| told(&e)).ok()?;
+    let builder = ThreadPoolBuilder::new().num_threads(threads);
+    let pool = builder.use_current_thread().build();
+    pool.map_err(|e| told(&e)).ok()
+}
+
+fn conclude(outcome: &Outcome, manner: &Manner, directory: &Path) -> u8 {
+    let place = directory.display();
+    if !manner.quiet && !manner.json_log {
+        say!("{outcome}  results       {place}");
+    }
+    if let Some(error) = outcome.error() {
+        tell!("{error}");
+    }
+    match outcome.status {
+        RunStatus::Refused(_) => INPUT_ERROR,
+        RunStatus::NotConverged(_) => {
+            if let Some(diagnosis) = &outcome.diagnosis {
+                tell!("try: {}", diagnosis.suggestion);
+            }
+            NOT_CONVERGED
+        }
+        RunStatus::Collapsed(_) => {
+            eprintln!("if that is what the step is for, give it until = \"collapse\"");
+            NOT_CONVERGED
+        }
+        RunStatus::Interrupted(increment) => {
+            tell!("{}", interrupted(increment, directory));
+            NOT_CONVERGED
+        }
+        RunStatus::Done if manner.verify && !outcome.as_expected() => {
+            for v in outcome.verdicts.iter().filter(|v| !v.passed()) {
+                tell!(
+                    "{} is {}, expected {} ± {}",
+                    v.column,
+                    shown(v.found, 10),
+                    shown(v.expected, 10),
+                    shown(v.tolerance, 3)
+                );
+            }
+            UNEXPECTED
+        }
+        RunStatus::Done => 0,
+    }
+}
+
+/// The deck's name without its ending, where the command is given.
+pub(super) fn default_directory(deck: &Path, suffix: &str) -> PathBuf {
+    let name = deck.extension().and_then(|_| deck.file_stem());
+    let name = name.map_or("out".into(), |n| n.to_string_lossy().into_owned());
+    PathBuf::from(name + suffix)
+}

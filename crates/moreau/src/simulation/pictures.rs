@@ -1,0 +1,257 @@
+//! The pictures of a simulation, from its tables and grids: forces or displacements over time, tractions along the
+//! contact, the deformed body with a field.
+
+mod tools;
+
+use crate::deck::{Deck, Units};
+use crate::mesh::Mesh;
+use crate::plot::{Chart, MeshPicture, Style};
+use crate::table::Table;
+use crate::vtu::Array;
+use tools::outlines;
+
+/// What happens over time: the forces; where there are none, as under loads alone that nothing but
+/// symmetry holds, the mean displacements. Nothing if there is nothing to draw.
+pub(crate) fn over_time(history: &Table, deck: &Deck) -> Option<String> {
+    let force = format!("force [{}]", deck.units.force());
+    let displacement = format!("mean displacement [{}]", deck.units.length());
+    // Sums of forces are known no better than each is balanced.
+    let noise = largest(&history.numbers("out_of_balance"));
+    columns(history, deck, ("force.", force, noise))
+        .or_else(|| columns(history, deck, ("u.", displacement, 0.0)))
+}
+
+fn largest(column: &[f64]) -> f64 {
+    column.iter().fold(0.0, |m, v| m.max(v.abs()))
+}
+
+/// All columns of a kind, by the beginning of their names, that are above a noise and not zero beside
+/// the others.
+fn columns(
+    history: &Table,
+    deck: &Deck,
+    (kind, label, noise): (&str, String, f64),
+) -> Option<String> {
+    let time = history.numbers("time");
+    let mut chart = Chart::new(&deck.title, "steps [–]", label);
+    let names = history.columns().iter();
+    let names = names
+        .map(|c| c.name.as_str())
+        .filter(|n| n.starts_with(kind));
+    let columns: Vec<_> = names.map(|n| (n, history.numbers(n))).collect();
+    let scale = columns.iter().map(|(_, c)| largest(c)).fold(0.0, f64::max);
+    // Markers tell increments apart as long as they are not too many.
+    let style = match time.len() <= 200 {
+        true => Style::LinePoints,
+        false => Style::Line,
+    };
+    for (name, column) in columns {
+        if largest(&column) > noise.max(1e-9 * scale) {
+            let start = std::iter::once([0.0, 0.0]);
+            let points = time.iter().zip(&column).map(|(&t, &v)| [t, v]);
+            let points: Vec<_> = start.chain(points).collect();
+            chart = chart.with(name.trim_start_matches(kind), style, points);
+        }
+    }
+    chart.to_svg().ok()
+}
+
+/// A contact surface and the coordinate along which it is drawn.
+pub(crate) struct ContactLine {
+    /// The surface.
+    pub(crate) name: String,
+    /// Coordinate of its points, increasing.
+    pub(crate) at: Vec<f64>,
+    /// Pressure and shear there.
+    pub(crate) tractions: [Vec<f64>; 2],
+}
+
+/// Names of the tractions of a [`ContactLine`].
+pub(crate) const TRACTIONS: [&str; 2] = ["pressure", "shear"];
+
+/// The coordinate along which contact surfaces extend, 0 or 1.
+pub(crate) fn contact_axis(contacts: &Table) -> usize {
+    let extent = |name: &str| {
+        let values = contacts.numbers(name);
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
+    };
+    usize::from(extent("y") > extent("x"))
+}
+
+/// Tractions along the surfaces in one increment of a table, by a coordinate.
+pub(crate) fn contact_lines(contacts: &Table, increment: usize, axis: usize) -> Vec<ContactLine> {
+    let wanted = increment as f64;
+    let (rows, surfaces) = (contacts.numbers("increment"), contacts.texts("contact"));
+    let place = contacts.numbers(["x", "y"][axis]);
+    let values = ["p_n", "p_1"].map(|name| contacts.numbers(name));
+    let own: Vec<usize> = (0..rows.len()).filter(|&k| rows[k] == wanted).collect();
+    let line = |own: &[usize]| {
+        let mut line = own.to_vec();
+        line.sort_by(|&a, &b| place[a].total_cmp(&place[b]));
+        ContactLine {
+            name: surfaces[own[0]].to_owned(),
+            at: line.iter().map(|&k| place[k]).collect(),
+            tractions: values
+                .each_ref()
+                .map(|v| line.iter().map(|&k| v[k]).collect()),
+        }
+    };
+    own.chunk_by(|&a, &b| surfaces[a] == surfaces[b])
+        .map(line)
+        .collect()
+}
+
+/// Labels of the coordinate and of the tractions.
+pub(crate) fn contact_labels(axis: usize, units: Units) -> [String; 2] {
+    [
+        format!("{} [{}]", ["x", "y"][axis], units.length()),
+        format!("traction [{}]", units.stress()),
+    ]
+}
+
+/// Pressure and shear along the contact surfaces in one increment.
+pub(crate) fn tractions(contacts: &Table, increment: usize, deck: &Deck) -> Option<String> {
+    let axis = contact_axis(contacts);
+    let [label, traction] = contact_labels(axis, deck.units);
+    let mut chart = Chart::new(&deck.title, label, traction);
+    for line in contact_lines(contacts, increment, axis) {
+        for (name, values) in TRACTIONS.iter().zip(&line.tractions) {
+            let points: Vec<[f64; 2]> = line.at.iter().zip(values).map(|(&x, &v)| [x, v]).collect();
+            let name = format!("{}, {name}", line.name);
+            chart = chart.with(name, Style::LinePoints, points);
+        }
+    }
+    chart.to_svg().ok()
+}
+
+/// Name of the field that is drawn if none is asked for.
+pub(crate) fn usual_field(deck: &Deck) -> &'static str {
+    match deck.materials.iter().any(|m| m.yields().is_some()) {
+        true => "equivalent_plastic_strain",
+        false => "von_mises",
+    }
+}
+
+/// The unit of a field, if it is known.
+pub(crate) fn unit(name: &str, units: Units) -> Option<&'static str> {
+    let of_stress = |n: &str| n.contains("stress") || n == "von_mises" || n == "shear";
+    match name {
+        n if n.contains("strain") => Some("–"),
+        n if of_stress(n) || n.starts_with("pressure") => Some(units.stress()),
+        n if n.starts_with("displacement") => Some(units.length()),
+        "gap" | "slip" => Some(units.length()),
+        n if n.contains("force") || n == "out_of_balance" => Some(units.force()),
+        _ => None,
+    }
+}
+
+/// A field in words, with its unit.
+pub(crate) fn label(name: &str, units: Units) -> String {
+    let Some(unit) = unit(name, units) else {
+        return name.replace('_', " ");
+    };
+    let name = match name {
+        "von_mises" => "von Mises stress".into(),
+        other => other.replace('_', " "),
+    };
+    format!("{name} [{unit}]")
+}
+
+/// Suffixes of the components of vectors, and of stresses in the order of VTK.
+const VECTOR: [&str; 3] = ["x", "y", "z"];
+const TENSOR: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
+
+fn suffixes(array: &Array) -> &'static [&'static str] {
+    match array.components {
+        3 => &VECTOR,
+        6 => &TENSOR,
+        _ => &[],
+    }
+}
+
+/// Names of all that [`field`] finds in some arrays.
+pub(crate) fn fields(arrays: &[Array]) -> Vec<String> {
+    let mut names = Vec::new();
+    for array in arrays {
+        if array.components <= 3 {
+            names.push(array.name.clone());
+        }
+        names.extend(
+            suffixes(array)
+                .iter()
+                .map(|s| format!("{}.{s}", array.name)),
+        );
+    }
+    names
+}
+
+/// A field at every point, by name: a scalar; the length of a vector; or a component, as in
+/// `displacement.x` or `stress.xy`. The first points are the nodes of the mesh.
+pub(crate) fn field(arrays: &[Array], name: &str) -> Option<Vec<f64>> {
+    let of = |name: &str| arrays.iter().find(|a| a.name == name);
+    if let Some(array) = of(name).filter(|a| a.components <= 3) {
+        let length = |v: &[f64]| match v {
+            [x] => *x,
+            v => v.iter().map(|x| x * x).sum::<f64>().sqrt(),
+        };
+        return Some(array.values.chunks(array.components).map(length).collect());
+    }
+    let (name, component) = name.rsplit_once('.')?;
+    let array = of(name)?;
+    let k = suffixes(array).iter().position(|c| *c == component)?;
+    let value = |v: &[f64]| v.get(k).copied().unwrap_or(0.0);
+    Some(array.values.chunks(array.components).map(value).collect())
+}
+
+/// Displacement of every node in the plane.
+fn displacement(arrays: &[Array]) -> Option<Vec<[f64; 2]>> {
+    let array = arrays.iter().find(|a| a.name == "displacement")?;
+    let plane = |v: &[f64]| Some([*v.first()?, *v.get(1)?]);
+    array.values.chunks(array.components).map(plane).collect()
+}
+
+/// How many times displacements are drawn so that they are seen but not out of shape; large ones as they are.
+pub(crate) fn usual_magnification(deck: &Deck, size: f64, largest: f64) -> f64 {
+    match largest > 0.0 && largest.is_finite() && deck.finite.is_none() {
+        true => round(0.05 * size / largest),
+        false => 1.0,
+    }
+}
+
+/// The deformed body with a field on it, and the tools where a row of the history has them; nothing if the arrays
+/// do not have what it takes.
+pub(crate) fn deformed(
+    mesh: &Mesh<2>,
+    deck: &Deck,
+    arrays: &[Array],
+    name: &str,
+    (history, row): (&Table, usize),
+    magnification: Option<f64>,
+) -> Option<String> {
+    let mut displacement = displacement(arrays)?;
+    let mut values = field(arrays, name)?;
+    displacement.truncate(mesh.nodes().len());
+    values.truncate(mesh.nodes().len());
+    let largest = displacement
+        .iter()
+        .map(|u| u[0].hypot(u[1]))
+        .fold(0.0, f64::max);
+    let magnification = magnification.unwrap_or(usual_magnification(deck, mesh.size(), largest));
+    let picture = MeshPicture::new(mesh, &deck.title)
+        .deformed(displacement, magnification)
+        .field(label(name, deck.units), values)
+        .unit(deck.units.length())
+        .outline();
+    let tools = outlines(deck, (history, row), mesh.size(), magnification);
+    let picture = tools.into_iter().fold(picture, MeshPicture::polyline);
+    picture.to_svg().ok()
+}
+
+/// 1, 2 or 5 times a power of ten, at most the value.
+fn round(value: f64) -> f64 {
+    let power = 10f64.powf(value.log10().floor());
+    let digit = value / power;
+    let digit = [5.0, 2.0].into_iter().find(|d| *d <= digit).unwrap_or(1.0);
+    digit * power
+}

@@ -1,0 +1,237 @@
+"""Decks: a problem as a file, as text, or as keys in Python."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from collections.abc import Callable, Mapping
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _toml, errors
+from ._core import Simulation as Core
+from .errors import DeckError, Finding
+from .mesh import Mesh
+from .tables import frame
+
+# Equivalent plastic strains at which a function of hardening is sampled.
+_SAMPLES = np.concatenate([[0.0], np.geomspace(1e-6, 3.0, 500)])
+
+
+class Deck:
+    """A problem: the keys of a deck, which the documentation of decks explains.
+
+    ``Deck("block.toml")`` is that of a file, ``Deck(text)`` that of a text with at least one line break,
+    ``Deck(mapping)`` and ``Deck(units="mm-N-MPa", ...)`` that of keys, in which ``_`` stands for ``-``. Nothing is
+    checked until :meth:`check`, :meth:`open` or a run does.
+
+    In keys, ``mesh`` may also be a :class:`Mesh`, a mesh of meshio or of pyvista, or a list of what
+    :func:`moreau_fem.block` returns; ``hardening`` of a material may be a function of the equivalent plastic strain:
+    the stress that it adds to ``yield_stress``, sampled at 501 strains from 0 to 3.
+
+    Raises
+    ------
+    DeckError
+        For a function of hardening that softens.
+    TypeError
+        For what no deck can hold.
+    OSError
+        For a file that cannot be read.
+    """
+
+    text: str
+    """The deck as TOML."""
+    file: str
+    """What it is called in messages."""
+    folder: Path
+    """The folder that paths in it are relative to."""
+    meshes: dict[str, bytes]
+    """Mesh files that are not on disk, by the paths that the deck gives."""
+
+    def __init__(
+        self,
+        source: str | PathLike[str] | Mapping[str, Any] | Deck | None = None,
+        *,
+        folder: str | PathLike[str] | None = None,
+        **keys: Any,
+    ) -> None:
+        self.meshes = {}
+        self.file, self.folder = "deck.toml", Path(folder or ".").absolute()
+        if isinstance(source, Deck):
+            self.file, self.folder, self.meshes = source.file, source.folder, dict(source.meshes)
+            source = source.text if not keys else source.keys
+        if isinstance(source, str) and "\n" in source:
+            self.text = source
+        elif isinstance(source, (str, PathLike)):
+            path = Path(source)
+            self.text = path.read_text(encoding="utf-8")
+            self.file, self.folder = str(source), Path(folder or path.parent).absolute()
+        else:
+            self.text = _toml.document(self._plain({**(source or {}), **keys}))
+            return
+        if keys:
+            raise TypeError("keys can be added to keys, not to a file or a text: use with_")
+
+    def _plain(self, keys: Mapping[str, Any]) -> dict[str, Any]:
+        """Keys as TOML has them."""
+        plain = {}
+        for name, value in keys.items():
+            name = name.replace("_", "-")
+            if name == "mesh":
+                plain[name] = self._mesh(value)
+            elif name == "material":
+                plain[name] = [_dashed(_sampled(material)) for material in value]
+            elif name == "expect":
+                # Its keys are the names of columns.
+                plain[name] = value
+            else:
+                plain[name] = _dashed(value)
+        return plain
+
+    def _mesh(self, given: Any) -> Any:
+        if isinstance(given, Mapping):
+            return _dashed(given)
+        if isinstance(given, (list, tuple)):
+            whole: dict[str, Any] = {}
+            for part in map(self._mesh, given):
+                for name, value in part.items():
+                    whole[name] = whole.get(name, []) + value if isinstance(value, list) else value
+            return whole
+        self.meshes["mesh.msh"] = Mesh.of(given).to_gmsh().encode()
+        return {"file": "mesh.msh"}
+
+    @property
+    def keys(self) -> dict[str, Any]:
+        """The keys of the deck, a copy.
+
+        Raises
+        ------
+        DeckError
+            If the text is no TOML.
+        """
+        try:
+            return tomllib.loads(self.text)
+        except tomllib.TOMLDecodeError:
+            # With the place, as any other error.
+            self.open()
+            raise
+
+    def __getitem__(self, path: str) -> Any:
+        """The value at a path, as in ``deck["contact.0.friction"]``."""
+        value: Any = self.keys
+        for part in _parts(path):
+            value = value[part]
+        return value
+
+    def with_(self, changes: Mapping[str, Any]) -> Deck:
+        """The deck with other values at some paths, as in ``deck.with_({"contact.0.friction": 0.2})``.
+
+        Raises
+        ------
+        KeyError, IndexError
+            For a path through what the deck does not have; its last part may be new.
+        """
+        keys = self.keys
+        for path, value in changes.items():
+            *parents, last = _parts(path)
+            at: Any = keys
+            for part in parents:
+                at = at[part]
+            if isinstance(at, dict):
+                at = _Renamed(at)
+            at[last] = copy.deepcopy(value)
+        changed = Deck(keys, folder=self.folder)
+        changed.file = self.file
+        changed.meshes = {**self.meshes, **changed.meshes}
+        return changed
+
+    def to_toml(self, path: str | PathLike[str] | None = None) -> str:
+        """The deck as TOML; with a path it is also written there, with the mesh beside it that no file has."""
+        if path is not None:
+            Path(path).write_text(self.text, encoding="utf-8")
+            for name, content in self.meshes.items():
+                (Path(path).parent / name).write_bytes(content)
+        return self.text
+
+    def check(self) -> Any:
+        """All that is wrong or doubtful, as a table with a row for each finding."""
+        _, found, _ = self._open()
+        return frame({name: [getattr(f, name) for f in found] for name in Finding._fields})
+
+    def _open(self) -> tuple[Core | None, list[Finding], str]:
+        core, found, shown = Core.open(self.text, self.folder, self.file, self.meshes)
+        return core, errors.findings(found), shown
+
+    def open(self) -> Core:
+        """The deck under way, as a simulation has it within. Doubts are warnings.
+
+        Raises
+        ------
+        DeckError
+            If anything is wrong.
+        """
+        core, found, shown = self._open()
+        if core is None:
+            raise DeckError(shown.rstrip(), found)
+        errors.warn(found)
+        return core
+
+    def __repr__(self) -> str:
+        return f"<deck {self.file}>"
+
+    def __str__(self) -> str:
+        return self.text
+
+
+class _Renamed:
+    """A table whose keys may be written with ``_``."""
+
+    def __init__(self, table: dict[str, Any]) -> None:
+        self.table = table
+
+    def __setitem__(self, name: str, value: Any) -> None:
+        self.table[name.replace("_", "-")] = value
+
+
+def _parts(path: str) -> list[Any]:
+    return [int(part) if part.isdigit() else part.replace("_", "-") for part in path.split(".")]
+
+
+def _dashed(value: Any) -> Any:
+    """Keys with ``-`` in place of ``_``, in what is in them too."""
+    if isinstance(value, Mapping):
+        return {name.replace("_", "-"): _dashed(v) for name, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_dashed(v) for v in value]
+    return value
+
+
+def _sampled(material: Mapping[str, Any]) -> dict[str, Any]:
+    """A material with a function of hardening as a table."""
+    given = {name.replace("_", "-"): value for name, value in material.items()}
+    hardening: Callable[[Any], Any] | Any = given.get("hardening")
+    if not callable(hardening):
+        return given
+    start = float(given.get("yield-stress", 0.0))
+    stress = [start + float(hardening(p)) for p in _SAMPLES.tolist()]
+    on = given.get("on")
+    if not np.isfinite(stress).all() or abs(stress[0] - start) > 1e-9 * abs(start):
+        message = f"hardening of {on!r} adds {stress[0] - start} at the strain 0, expected 0 there and finite numbers"
+        raise DeckError(message, [_softening(message)])
+    softer = np.flatnonzero(np.diff(stress) < 0.0)
+    if softer.size:
+        at = int(softer[0])
+        message = (
+            f"hardening of {on!r} softens at the equivalent plastic strain {_SAMPLES[at + 1]:.4g}: "
+            f"from {stress[at]:.6g} to {stress[at + 1]:.6g}, expected a stress that does not fall"
+        )
+        raise DeckError(message, [_softening(message)])
+    given["hardening"] = {"table": [[p, s] for p, s in zip(_SAMPLES.tolist(), stress)]}
+    return given
+
+
+def _softening(message: str) -> Finding:
+    return Finding("error", "values", message, "hardening", None, 0, 0)

@@ -1,0 +1,223 @@
+"""Decks as files, texts and keys; meshes as arrays and of other libraries; functions of hardening."""
+
+import sys
+import warnings
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import moreau_fem as mc
+from conftest import EXAMPLES
+
+
+def pulled(mesh, analysis="plane-strain", on="body", **more):
+    """A bar that is pulled, uniformly strained."""
+    axes = ["x", "y", "z"][: 3 if analysis == "solid" else 2]
+    fix = [dict(on=f"{side}", u=[axis]) for side, axis in zip(["left", "bottom", "back"], axes)]
+    return mc.Deck(
+        units="mm-N-MPa",
+        analysis=analysis,
+        mesh=mesh,
+        material=[dict(on=on, young=1000.0, poisson=0.25, **more)],
+        step=[dict(name="pull", increments=1, fix=fix, move=[dict(on="right", u=dict(x=0.01))])],
+    )
+
+
+def quad8(points):
+    """One cell on corners counterclockwise."""
+    x = np.array(points, dtype=float)
+    return np.vstack([x, (x + np.roll(x, -1, axis=0)) / 2])
+
+
+def square():
+    points = quad8([[0, 0], [1, 0], [1, 1], [0, 1]])
+    groups = {
+        "body": {"quad8": [range(8)]},
+        "left": {"line3": [[3, 0, 7]]},
+        "bottom": {"line3": [[0, 1, 4]]},
+        "right": {"vertex": [[1], [2], [5]]},
+    }
+    return mc.Mesh(points, {"quad8": [range(8)]}, groups)
+
+
+def force(deck):
+    return float(np.asarray(mc.run(deck).history["force.right.x"])[-1])
+
+
+# Plane strain: E / (1 - ν²) times the strain on a face of 1 mm².
+PULL = 1000.0 / (1 - 0.25**2) * 0.01
+
+
+def test_keys_text_and_file_are_one_deck(tmp_path):
+    path = EXAMPLES / "punched-block.toml"
+    text = path.read_text()
+    of_keys = mc.Deck(mc.Deck(text).keys)
+    loads = [np.asarray(mc.run(deck).history["force.punch.y"])[-1] for deck in (path, str(path), text, of_keys)]
+    assert len(set(loads)) == 1
+    assert mc.Deck(mc.Deck(path))["mesh.block.0.cells"] == [10, 2]
+    assert mc.Deck(path)["material.0.yield_stress"] == 300.0
+    # The same message, with the same line.
+    wrong = text.replace("friction = 0.1", "frixion = 0.1")
+    (tmp_path / "wrong.toml").write_text(wrong)
+    told = []
+    for deck in (wrong, tmp_path / "wrong.toml"):
+        with pytest.raises(mc.DeckError) as refused:
+            mc.run(deck)
+        (finding,) = (f for f in refused.value.findings if "frixion" in f.message)
+        told.append(finding)
+        assert f":{finding.line}:" in str(refused.value) and "frixion" in str(refused.value)
+    assert told[0] == told[1] and told[0].line == 1 + wrong[: wrong.index("frixion")].count("\n")
+    with pytest.raises(mc.DeckError):
+        mc.Deck("units = \n").keys
+    with pytest.raises(FileNotFoundError):
+        mc.run("nowhere.toml")
+
+
+def test_doubts_are_warnings():
+    text = (EXAMPLES / "punched-block.toml").read_text().replace("friction = 0.1", "friction = 0")
+    with pytest.warns(mc.DeckWarning, match="frictionless"):
+        mc.Simulation(text)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        mc.Simulation(EXAMPLES / "punched-block.toml")
+
+
+def test_arrays_of_numpy_and_any_text_are_keys():
+    deck = mc.Deck(title='a "b"\n\u00fc\\', step=[dict(increments=np.int64(3), x=np.array([1.5, 2]), y=np.bool_(True))])
+    assert deck.keys == {
+        "title": 'a "b"\n\u00fc\\',
+        "step": [{"increments": 3, "x": [1.5, 2.0], "y": True}],
+    }
+    with pytest.raises(TypeError, match="a deck cannot hold"):
+        mc.Deck(title=object())
+    changed = deck.with_({"step.0.body_force": [0, 1], "expect": {"u_x.y": 1}})
+    assert changed["step.0.body-force"] == [0, 1] and changed.keys["expect"] == {"u_x.y": 1}
+    assert "body-force" not in deck.text
+
+
+def test_a_mesh_of_arrays(tmp_path, monkeypatch):
+    deck = pulled(square())
+    # Wherever the process has gone meanwhile.
+    monkeypatch.chdir(tmp_path)
+    assert force(deck) == pytest.approx(PULL)
+    # With the mesh beside it, it is a deck on disk.
+    deck.to_toml(tmp_path / "bar.toml")
+    assert force(tmp_path / "bar.toml") == force(deck)
+    assert force(deck.with_({"material.0.young": 2000.0})) == pytest.approx(2 * PULL)
+    simulation = mc.Simulation.restore(mc.Simulation(deck).save())
+    assert next(simulation).increment == 1
+    # The mesh is there for another step too, and in what is saved then.
+    back = {**deck.keys["step"][0], "name": "back"}
+    simulation.step = back | {"move": [dict(on="right", u=dict(x=0.0))]}
+    simulation = mc.Simulation.restore(simulation.save())
+    assert next(simulation).step == 2
+    assert abs(np.asarray(simulation.history["force.right.x"])[-1]) < 1e-9
+    for wrong in [dict(quad7=[range(8)]), dict(quad8=[range(7)]), dict(quad8=[range(1, 9)])]:
+        with pytest.raises(ValueError):
+            mc.Mesh(square().points, wrong)
+    with pytest.raises(ValueError, match="quotes"):
+        mc.Mesh(square().points, square().cells, {'a "b"': square().cells})
+
+
+def test_a_mesh_of_meshio_and_of_pyvista():
+    mesh = square()
+    block = lambda kind, data: SimpleNamespace(type=kind, data=np.array(data))
+    of_meshio = SimpleNamespace(
+        points=np.column_stack([mesh.points, np.zeros(8)]),
+        cells=[block("quad8", [range(8)]), block("line3", [[3, 0, 7], [0, 1, 4]])],
+        cell_sets={"body": [np.array([0]), None], "left": [np.array([]), np.array([0])],
+                   "bottom": [None, np.array([1])]},
+        point_sets={"right": np.array([1, 2, 5])},
+        cell_data={},
+        field_data={},
+    )
+    assert force(pulled(of_meshio)) == pytest.approx(PULL)
+    of_gmsh = SimpleNamespace(**{**vars(of_meshio), "cell_sets": {}})
+    of_gmsh.cell_data = {"gmsh:physical": [np.array([4]), np.array([1, 2])]}
+    of_gmsh.field_data = {"body": [4, 2], "left": [1, 1], "bottom": [2, 1]}
+    assert force(pulled(of_gmsh)) == pytest.approx(PULL)
+    of_pyvista = SimpleNamespace(
+        points=of_meshio.points,
+        celltypes=np.array([23, 21, 21]),
+        cells_dict={23: np.array([range(8)]), 21: np.array([[3, 0, 7], [0, 1, 4]])},
+        cell_data={"body": np.array([1, 0, 0]), "left": np.array([0, 1, 0]), "bottom": np.array([0, 0, 1])},
+        point_data={"right": np.array([0, 1, 1, 0, 0, 1, 0, 0]), "height": mesh.points[:, 1]},
+    )
+    assert force(pulled(of_pyvista)) == pytest.approx(PULL)
+    pyvista = pytest.importorskip("pyvista")
+    cells = np.concatenate([[8, *range(8)], [3, 3, 0, 7], [3, 0, 1, 4]])
+    real = pyvista.UnstructuredGrid(cells, of_pyvista.celltypes, of_pyvista.points)
+    real.cell_data.update(of_pyvista.cell_data)
+    real.point_data["right"] = of_pyvista.point_data["right"]
+    assert force(pulled(real)) == pytest.approx(PULL)
+    with pytest.raises(TypeError, match="is no mesh"):
+        mc.Deck(mesh=3.0)
+
+
+@pytest.mark.parametrize("element", ["tet10", "hex20", "hex27"])
+def test_nodes_go_over_in_the_order_of_vtk_and_come_back(element):
+    """A grid of the core, in the order of VTK, is a mesh: its nodes are halfway between the same corners."""
+    box = dict(x=[0, 1], y=[0, 1], z=[0, 1], cells=[2, 1, 1])
+    group = [dict(name=n, on=f"b.{n}", x=[0, 1]) for n in ("left", "right", "bottom", "back")]
+    given = pulled([mc.block("b", element, **box), dict(group=group)], "solid", on="b")
+    first = mc.Simulation(given)
+    next(first)
+    arrays = first.arrays()
+    count = {"tet10": 10, "hex20": 20, "hex27": 27}[element]
+    nodes = arrays.cells.reshape(-1, count + 1)[:, 1:]
+    sides = {name: np.flatnonzero(np.isclose(arrays.points[:, axis], at))[:, None]
+             for name, axis, at in [("left", 0, 0), ("right", 0, 1), ("bottom", 1, 0), ("back", 2, 0)]}
+    groups = {"body": {element: nodes}} | {name: {"vertex": own} for name, own in sides.items()}
+    again = mc.Simulation(pulled(mc.Mesh(arrays.points, {element: nodes}, groups), "solid"))
+    next(again)
+    for grid in (arrays, again.arrays()):
+        stress = grid.cell_data["stress"]
+        assert stress[:, 0] == pytest.approx(10.0) and abs(stress[:, 1:]).max() < 1e-9
+    assert np.array_equal(again.arrays().types, arrays.types)
+    # Displacements at the same places, whatever the numbers of the nodes.
+    for a, b in [(first, again), (again, first)]:
+        table = {tuple(np.round(x, 9)): u for x, u in zip(a.nodes, a.displacement)}
+        assert all(np.allclose(table[tuple(np.round(x, 9))], u, atol=1e-12) for x, u in zip(b.nodes, b.displacement))
+
+
+def test_a_function_of_hardening_is_sampled():
+    squares = mc.block("body", "quad8", x=[0, 1], y=[0, 1], cells=[1, 1])
+    names = [dict(name=n, on=f"body.{n}", x=[0, 1]) for n in ("left", "right", "bottom")]
+    given = [squares, dict(group=names)]
+    linear = pulled(given, yield_stress=1.0, hardening=dict(linear=50.0))
+    sampled = pulled(given, yield_stress=1.0, hardening=lambda p: 50.0 * p)
+    assert force(sampled) == pytest.approx(force(linear), rel=1e-9)
+    assert force(linear) < 0.9 * PULL
+    for curve, words in [
+        (lambda p: 50.0 * p - 60.0 * max(p - 0.1, 0.0), "softens at the equivalent plastic strain 0.1"),
+        (lambda p: 5.0, "adds 5.0 at the strain 0"),
+    ]:
+        with pytest.raises(mc.DeckError, match=words) as refused:
+            pulled(given, yield_stress=1.0, hardening=curve)
+        assert refused.value.findings[0].severity == "error"
+
+
+def test_without_pandas_tables_are_arrays(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    result = mc.run(EXAMPLES / "punched-block.toml")
+    assert isinstance(result.history, dict) and len(result.history["time"]) == 20
+    assert result.contacts["status"][0] in {"open", "stick", "slip"}
+    assert mc.table([result], last=lambda r: r.history["time"][-1])["last"].tolist() == [1.0]
+
+
+def test_arrays_are_copies_that_may_be_written():
+    simulation = mc.Simulation(EXAMPLES / "punched-block.toml")
+    next(simulation)
+    kept = simulation.displacement
+    before = kept.copy()
+    next(simulation)
+    assert np.array_equal(kept, before) and not np.array_equal(simulation.displacement, before)
+    kept[:] = 7.0
+    assert simulation.displacement.max() < 1.0
+    assert simulation.arrays().units["stress"] == "MPa"
+
+
+def test_the_wheel_is_typed():
+    assert (Path(mc.__file__).parent / "py.typed").exists()

@@ -1,0 +1,165 @@
+"""Runs: the same numbers as the command's, in threads, after interruptions; and what ends them."""
+
+import csv
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import moreau_fem as mc
+from conftest import EXAMPLES, LOAD
+
+
+def column(history, name):
+    return np.asarray(history[name])
+
+
+def bits(simulation):
+    history = simulation.history
+    return [simulation.displacement.tobytes(), simulation.stress.tobytes()] + [
+        column(history, name).tobytes() for name in history
+    ]
+
+
+def test_the_command_of_the_wheel_has_the_same_numbers(block, tmp_path):
+    moreau = Path(sys.executable).with_name("moreau")
+    out = tmp_path / "results"
+    done = subprocess.run([moreau, "run", block, "--out", out, "--verify", "--quiet"], capture_output=True)
+    assert done.returncode == 0, done.stderr
+    with open(out / "history.csv") as file:
+        rows = list(csv.DictReader(file))
+    history = mc.run(block).history
+    written = [float(row["force.punch.y [N]"]) for row in rows]
+    assert written == column(history, "force.punch.y").tolist()
+    assert written[-1] == pytest.approx(LOAD, rel=1e-9)
+    wrong = subprocess.run([moreau, "run", "nowhere.toml"], capture_output=True, text=True)
+    assert wrong.returncode == 1 and "nowhere.toml" in wrong.stderr
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_the_command_of_the_wheel_has_its_own_answer_to_an_interrupt(block, tmp_path):
+    deck, out = tmp_path / "deck.toml", tmp_path / "results"
+    large = mc.Deck(block).with_({"mesh.block.0.cells": [60, 24], "step.0.increments": 400})
+    large.to_toml(deck)
+    moreau = Path(sys.executable).with_name("moreau")
+    running = subprocess.Popen([moreau, "run", deck, "--out", out], stderr=subprocess.PIPE, text=True)
+    while "increment 2 " not in running.stderr.readline():
+        assert running.poll() is None
+    running.send_signal(signal.SIGINT)
+    _, told = running.communicate(timeout=60)
+    assert running.returncode == 2 and "moreau resume" in told
+
+
+def test_twenty_runs_in_threads_have_the_bits_of_one_alone(block):
+    alone = bits(mc.run(block).simulation)
+    with ThreadPoolExecutor(4) as pool:
+        for simulation in pool.map(lambda _: mc.run(block).simulation, range(20)):
+            assert bits(simulation) == alone
+
+
+def test_the_interpreter_is_free_meanwhile(block):
+    ticks, done = [0], threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks[0] += 1
+            time.sleep(1e-3)
+
+    deck = mc.Deck(block).with_({"mesh.block.0.cells": [60, 24], "step.0.increments": 40})
+    simulation = mc.Simulation(deck)
+    thread = threading.Thread(target=tick)
+    thread.start()
+    before, start = ticks[0], time.perf_counter()
+    simulation._core.advance()
+    seen, seconds = ticks[0] - before, time.perf_counter() - start
+    done.set()
+    thread.join()
+    assert seen > 0.1 * seconds / 1e-3, f"{seen} ticks in {seconds} s"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_an_interrupt_within_an_increment_loses_nothing_and_the_end_is_the_same(block):
+    deck = mc.Deck(block).with_({"mesh.block.0.cells": [60, 24], "step.0.increments": 40})
+    increments = 6
+    undisturbed = mc.Simulation(deck)
+    for _ in range(increments):
+        next(undisturbed)
+    simulation, inside = mc.Simulation(deck), 0
+    while simulation.increments < increments:
+        committed, state = simulation.increments, bits(simulation) if simulation.increments else None
+        timer = threading.Timer(0.04, lambda: os.kill(os.getpid(), signal.SIGINT))
+        try:
+            timer.start()
+            next(simulation)
+            timer.cancel()
+        except KeyboardInterrupt:
+            if simulation.increments == committed:
+                inside += 1
+                assert state is None or bits(simulation) == state
+                # Now without a limit.
+                next(simulation)
+        finally:
+            timer.cancel()
+    assert inside >= 3
+    assert bits(simulation) == bits(undisturbed)
+
+
+def test_loads_beyond_collapse_are_an_exception_with_the_load(collapsing):
+    with pytest.raises(mc.Collapse) as collapse:
+        mc.run(collapsing)
+    error = collapse.value
+    assert error.load_factor == pytest.approx(0.5, rel=1e-5)
+    assert error.upper == pytest.approx(error.lower, rel=1e-5)
+    assert error.result.simulation.increments > 0
+    # Where a step is for that, it is an answer.
+    result = mc.run(EXAMPLES / "cylinder-to-collapse.toml")
+    assert result.outcome["collapse"]["load_factor"] > 0 and result.outcome["status"] == "done"
+
+
+def test_a_step_that_stops_is_an_exception_with_its_reasons(block):
+    # Pulled off its foundation: there is no equilibrium.
+    deck = mc.Deck(block).with_({"step.0.load": [dict(on="punch", pressure=-10)]})
+    keys = deck.keys
+    del keys["expect"], keys["step"][0]["move"]
+    with pytest.raises(mc.NotConverged) as stopped:
+        mc.run(keys)
+    error = stopped.value
+    assert "press" in str(error) and error.suggestion and error.plastic_fraction == 0.0
+    assert error.worst == [] or error.worst[0]["force"] > 0
+    assert error.result.outcome["status"] == "not converged"
+    simulation = error.result.simulation
+    with pytest.raises(mc.NotConverged):
+        next(simulation)
+    # It goes on from there with something that it can do.
+    simulation.step = dict(name="less", increments=1, fix=[dict(on="block.left", u=["x"])],
+                           move=[dict(on="punch", u=dict(y=-0.001))])
+    assert next(simulation).increment == simulation.increments
+
+
+def test_a_simulation_is_of_one_thread_at_a_time(block):
+    deck = mc.Deck(block).with_({"mesh.block.0.cells": [60, 24]})
+    simulation = mc.Simulation(deck)
+    thread = threading.Thread(target=simulation._core.advance)
+    thread.start()
+    time.sleep(0.05)
+    with pytest.raises(RuntimeError, match="another thread"):
+        simulation.displacement
+    thread.join()
+    assert simulation.increments == 1
+
+
+def test_a_state_that_is_none_is_refused(block):
+    simulation = mc.Simulation(block)
+    next(simulation)
+    saved = simulation.save()
+    for state in [b"", b"a picture", saved[:-8], saved.replace(b"0.3", b"0.4", 1)]:
+        with pytest.raises(ValueError):
+            mc.Simulation.restore(state)
+    assert bits(mc.Simulation.restore(saved)) == bits(simulation)
