@@ -30,11 +30,12 @@
 mod contact;
 mod course;
 mod diagnosis;
-mod grids;
+pub(crate) mod grids;
 mod history;
 mod outcome;
 pub(crate) mod pictures;
 mod saved;
+mod tools;
 mod touch;
 mod trace;
 mod warnings;
@@ -253,6 +254,11 @@ impl Simulation {
     /// The contact surfaces with gaps, slips, tractions and statuses; `None` without contacts.
     pub fn surface(&self) -> Option<Grid> {
         either!(&self.course, course => grids::surface(course.driver()))
+    }
+
+    /// The surfaces of the rigid tools where they are; `None` without tools.
+    pub fn tools(&self) -> Option<Grid> {
+        either!(&self.course, course => grids::tools(course.driver(), &self.deck))
     }
 
     /// The quadrature points with what was computed there, as a grid of one vertex each.

@@ -54,7 +54,7 @@ impl Collection {
         self.list.as_ref().map_or(Mark::default(), Stream::mark)
     }
 
-    /// Writes of the state of a simulation the body with its contact surfaces, the quadrature points, or both, and
+    /// Writes of the state of a simulation the body with its contact surfaces and tools, the quadrature points, or both, and
     /// lists them.
     pub(super) fn add(
         &mut self,
@@ -65,6 +65,7 @@ impl Collection {
         if bodies {
             files.push((0, "body", simulation.body()));
             files.extend(simulation.surface().map(|grid| (1, "contact", grid)));
+            files.extend(simulation.tools().map(|grid| (3, "tools", grid)));
         }
         if at_points {
             files.push((2, "points", simulation.points()));
@@ -98,7 +99,7 @@ impl Collection {
 /// Whether a name is that of a file that a collection may write.
 pub(super) fn is_ours(name: &str) -> bool {
     let number = |kind: &str| name.strip_prefix(kind)?.strip_suffix(".vtu");
-    let numbered = ["body_", "contact_", "points_"]
+    let numbered = ["body_", "contact_", "points_", "tools_"]
         .into_iter()
         .find_map(number);
     let digits = |n: &str| n.len() >= 5 && n.bytes().all(|b| b.is_ascii_digit());

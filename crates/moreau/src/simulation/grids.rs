@@ -1,12 +1,14 @@
-//! A body, its contact surfaces and its quadrature points with their fields, as grids; not the files.
+//! A body, its contact surfaces, its tools and its quadrature points with their fields, as grids; not the files.
 
 mod body;
 mod points;
 mod surface;
+mod tools;
 
 pub(super) use body::body;
 pub(super) use points::points;
 pub(super) use surface::surface;
+pub(crate) use tools::tools;
 
 use crate::driver::Driver;
 use crate::vtu::{Array, Grid, three};

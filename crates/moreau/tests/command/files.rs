@@ -69,7 +69,13 @@ fn the_history_has_its_columns_and_the_force_of_the_library() {
             .is_some_and(|g| g < 1e-10)
     );
     let pvd = fs::read_to_string(results.join("result.pvd")).expect("a list");
-    assert_eq!(pvd.matches("<DataSet").count(), 41);
+    // At the start the body, then the body, its contacts and the tools.
+    assert_eq!(pvd.matches("<DataSet").count(), 61);
+    let tools = pvd.lines().filter(|l| l.contains("name=\"tools\""));
+    assert_eq!(tools.count(), 20);
+    let tools = fs::read(results.join("tools_00020.vtu")).expect("tools");
+    let tools = String::from_utf8_lossy(&tools);
+    assert!(tools.contains("displacement") && tools.contains("\"tool\""));
 }
 
 #[test]

@@ -8,6 +8,7 @@ use crate::mesh::{Facet, Mesh};
 use crate::run::RunError;
 use crate::run::files::contact_table;
 use crate::run::vtu::{bodies, read_point_data};
+use crate::simulation::grids;
 use crate::simulation::pictures::{
     ContactLine, TRACTIONS, contact_axis, contact_labels, contact_lines, field, fields, label,
     usual_field, usual_magnification,
@@ -93,11 +94,50 @@ pub(super) fn viewer<const D: usize>(
         "colours": crate::plot::colours(),
         "length": deck.units.length(),
         "frames": frames,
+        "tools": tools(driver, deck, directory, &increments),
         "contact": match D {
             2 => contact_line(deck, directory, &increments)?,
             _ => contact_surface(mesh, deck, directory, (&points, &cells), &increments)?,
         },
     }))
+}
+
+/// The surfaces of the tools where they were at first, and how far their points have gone in every frame; null without
+/// tools.
+fn tools<const D: usize>(
+    driver: &Driver<D>,
+    deck: &Deck,
+    directory: &Path,
+    increments: &[usize],
+) -> serde_json::Value {
+    let Some(grid) = grids::tools(driver, deck) else {
+        return json!(null);
+    };
+    let displacement = |arrays: &[Array]| arrays.iter().find(|a| a.name == "displacement").cloned();
+    let Some(now) = displacement(&grid.point_data) else {
+        return json!(null);
+    };
+    let axis = |array: &Array, i: usize| -> Vec<f64> {
+        array.values.iter().skip(i).step_by(3).copied().collect()
+    };
+    let first = |i: usize| -> Vec<f64> {
+        let moved = axis(&now, i).into_iter().zip(&grid.points);
+        let large = f64::from(u8::from(driver.has_large_strains()));
+        moved.map(|(u, x)| x[i] - large * u).collect()
+    };
+    let frame = |&increment: &usize| {
+        let path = directory.join(format!("tools_{increment:05}.vtu"));
+        let read = read_point_data(&path)
+            .ok()
+            .and_then(|arrays| displacement(&arrays));
+        let array = read.unwrap_or_else(|| now.clone());
+        (0..D).map(|i| packed(&axis(&array, i))).collect::<Vec<_>>()
+    };
+    json!({
+        "nodes": (0..D).map(|i| packed(&first(i))).collect::<Vec<_>>(),
+        "pieces": grid.cells.iter().map(|(nodes, _)| nodes).collect::<Vec<_>>(),
+        "frames": increments.iter().map(frame).collect::<Vec<_>>(),
+    })
 }
 
 /// Tractions along the contact surfaces of a plane body in every frame; null without contact.
