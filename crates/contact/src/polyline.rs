@@ -1,22 +1,119 @@
-//! A rigid profile of straight pieces in the plane; not a closed body, not a surface in space.
+//! A rigid profile of straight pieces in the plane, its corners sharp or rounded; not a closed body, not a surface in
+//! space.
 
 use crate::{ContactError, Corner, Obstacle};
 use nalgebra::{Matrix2, Vector2};
 
-/// A rigid obstacle bounded by an open polyline, in the plane, that lies on the right of it.
+/// A rigid obstacle bounded by an open polyline, in the plane, that lies on the right of it; corners may be
+/// rounded by arcs.
 ///
 /// Its first and last segments go on for ever: the line has two sides everywhere, and a node that
-/// slides past its last point does not fall off. Seen from a convex corner the normal turns
+/// slides past its last point does not fall off. Seen from a sharp convex corner the normal turns
 /// continuously from that of one segment to that of the next; at the corner itself it halves the
-/// angle. In a concave corner it jumps where both segments are equally near; there the first one
+/// angle. In a sharp concave corner it jumps where both segments are equally near; there the first one
 /// is taken.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polyline {
-    points: Vec<Vector2<f64>>,
+    first: Vector2<f64>,
+    pieces: Vec<Piece>,
 }
 
-/// A corner nearer than this part of the length of a segment has no direction to the point.
+/// A piece of constant curvature.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Piece {
+    start: Vector2<f64>,
+    /// Unit tangent at the start.
+    along: Vector2<f64>,
+    length: f64,
+    /// Curvature \[1/mm\]: of a segment zero, positive where the line bends to the left.
+    bend: f64,
+}
+
+/// The point of the line nearest to another.
+#[derive(Debug, Clone, Copy)]
+struct Foot {
+    piece: usize,
+    /// Length along the piece \[mm\].
+    s: f64,
+    /// The sharp corner that it is: between this piece and the one before.
+    corner: Option<usize>,
+}
+
+/// A corner nearer than this part of the length of a segment has no direction to the point, and one of a
+/// smaller sine is none.
 const COINCIDENT: f64 = 1e-12;
+
+/// Angle between points of an arc that are drawn \[rad\].
+const DRAWN: f64 = 0.05;
+
+fn left(along: Vector2<f64>) -> Vector2<f64> {
+    Vector2::new(-along.y, along.x)
+}
+
+impl Piece {
+    fn segment(start: Vector2<f64>, end: Vector2<f64>) -> Self {
+        let along = end - start;
+        Self {
+            start,
+            along: along.normalize(),
+            length: along.norm(),
+            bend: 0.0,
+        }
+    }
+
+    fn at(&self, s: f64) -> Vector2<f64> {
+        match self.bend == 0.0 {
+            true => self.start + self.along * s,
+            false => {
+                let (sin, cos) = (self.bend * s).sin_cos();
+                self.start + (self.along * sin + left(self.along) * (1.0 - cos)) / self.bend
+            }
+        }
+    }
+
+    /// The unit tangent.
+    fn direction(&self, s: f64) -> Vector2<f64> {
+        let (sin, cos) = (self.bend * s).sin_cos();
+        self.along * cos + left(self.along) * sin
+    }
+
+    fn center(&self) -> Vector2<f64> {
+        self.start + left(self.along) / self.bend
+    }
+
+    /// Where the perpendicular from a point meets the piece, prolonged.
+    fn perpendicular(&self, x: &Vector2<f64>) -> f64 {
+        if self.bend == 0.0 {
+            return (x - self.start).dot(&self.along);
+        }
+        let (from, to) = (self.start - self.center(), x - self.center());
+        let angle = (from.perp(&to) * self.bend.signum()).atan2(from.dot(&to));
+        angle / self.bend.abs()
+    }
+
+    /// Signed distance and normal at a point whose perpendicular meets the piece at s.
+    fn straight_ahead(&self, x: &Vector2<f64>, s: f64) -> (f64, Vector2<f64>) {
+        if self.bend == 0.0 {
+            let normal = left(self.along);
+            return ((x - self.start).dot(&normal), normal);
+        }
+        let (side, from) = (-self.bend.signum(), x - self.center());
+        let length = from.norm();
+        let normal = match length > 0.0 {
+            true => from * (side / length),
+            false => left(self.direction(s)),
+        };
+        (side * (length - 1.0 / self.bend.abs()), normal)
+    }
+}
+
+fn refused<T>(what: &'static str, value: f64, expected: &'static str) -> Result<T, ContactError> {
+    Err(ContactError::OutOfRange {
+        what,
+        value,
+        expected,
+    })
+}
 
 impl Polyline {
     /// The polyline through points, at least two.
@@ -26,13 +123,17 @@ impl Polyline {
     /// length zero, and lines that turn back on themselves or cross themselves, their first and last
     /// segments prolonged.
     pub fn new(points: &[[f64; 2]]) -> Result<Self, ContactError> {
-        let refused = |what, value, expected| {
-            Err(ContactError::OutOfRange {
-                what,
-                value,
-                expected,
-            })
-        };
+        let inner = points.len().saturating_sub(2);
+        Self::rounded(points, &vec![0.0; inner])
+    }
+
+    /// The polyline through points whose inner corners are rounded by arcs of these radii \[mm\], of which zero leaves
+    /// a sharp one.
+    ///
+    /// # Errors
+    /// Those of [`Polyline::new`], for the sharp line; radii that are not one for each inner point, negative, or
+    /// so large that an arc is longer than its segments, or meets the next.
+    pub fn rounded(points: &[[f64; 2]], radii: &[f64]) -> Result<Self, ContactError> {
         if points.len() < 2 {
             let count = points.len() as f64;
             return refused("number of points of the polyline", count, "at least 2");
@@ -40,96 +141,181 @@ impl Polyline {
         if let Some(&x) = points.iter().flatten().find(|x| !x.is_finite()) {
             return refused("point of the polyline", x, "finite coordinates");
         }
-        let points: Vec<Vector2<f64>> = points.iter().map(|&x| x.into()).collect();
-        let line = Self { points };
-        for k in 0..line.segments() {
-            let length = line.along(k).norm();
-            if !(length > 0.0 && length.is_finite()) {
-                let what = "length of a segment of the polyline";
-                return refused(what, length, "a positive number");
-            }
+        if radii.len() != points.len() - 2 {
+            let what = "number of radii of the profile";
+            return refused(
+                what,
+                radii.len() as f64,
+                "one for each point between the ends",
+            );
         }
-        for k in 1..line.segments() {
-            let (a, b) = (line.along(k - 1).normalize(), line.along(k).normalize());
+        if let Some(&r) = radii.iter().find(|r| !(r.is_finite() && **r >= 0.0)) {
+            return refused("radius of the profile", r, "a number that is not negative");
+        }
+        let points: Vec<Vector2<f64>> = points.iter().map(|&x| x.into()).collect();
+        let segments: Vec<Piece> = points
+            .windows(2)
+            .map(|ends| Piece::segment(ends[0], ends[1]))
+            .collect();
+        let short = |s: &&Piece| !(s.length > 0.0 && s.length.is_finite());
+        if let Some(segment) = segments.iter().find(short) {
+            let what = "length of a segment of the polyline";
+            return refused(what, segment.length, "a positive number");
+        }
+        let line = Self {
+            first: points[0],
+            pieces: segments,
+        };
+        line.check_crossings()?;
+        line.round(radii)
+    }
+
+    /// # Errors
+    /// [`ContactError::OutOfRange`] for a line that turns back on itself or crosses itself.
+    fn check_crossings(&self) -> Result<(), ContactError> {
+        for k in 1..self.pieces.len() {
+            let (a, b) = (self.pieces[k - 1].along, self.pieces[k].along);
             if a.dot(&b) < 0.0 && a.perp(&b).abs() < COINCIDENT {
                 let what = "cosine of a corner of the polyline";
                 return refused(what, a.dot(&b), "no turn back on itself");
             }
             for j in 0..k - 1 {
-                if let Some(at) = line.crossing(j, k) {
+                if let Some(at) = self.crossing(j, k) {
                     let what = "crossing of the polyline with itself, at segment";
                     return refused(what, at + j as f64, "none, with both ends prolonged");
                 }
             }
         }
-        Ok(line)
+        Ok(())
     }
 
-    fn segments(&self) -> usize {
-        self.points.len() - 1
+    /// The line of segments with its corners rounded.
+    fn round(self, radii: &[f64]) -> Result<Self, ContactError> {
+        let segments = self.pieces;
+        let mut pieces = Vec::with_capacity(2 * segments.len());
+        // What the arc at its start takes off a segment.
+        let mut taken = 0.0;
+        for (k, segment) in segments.iter().enumerate() {
+            let next = segments.get(k + 1).zip(radii.get(k));
+            let turn = |next: &Piece| {
+                let (sin, cos) = (
+                    segment.along.perp(&next.along),
+                    segment.along.dot(&next.along),
+                );
+                sin.atan2(cos)
+            };
+            let arc = next.and_then(|(next, &radius)| {
+                let turn = turn(next);
+                (radius > 0.0 && turn.abs() > COINCIDENT).then_some((radius, turn))
+            });
+            let cut = arc.map_or(0.0, |(radius, turn)| radius * (0.5 * turn).abs().tan());
+            let left_over = segment.length - taken - cut;
+            let fits = left_over >= -COINCIDENT * segment.length;
+            let last = segments.get(k + 1).is_none_or(|next| cut <= next.length);
+            if !(fits && last) {
+                let radius = arc.map_or(0.0, |(radius, _)| radius);
+                let what = "radius of the profile";
+                return refused(what, radius, "one whose arc leaves room for its neighbours");
+            }
+            if left_over > COINCIDENT * segment.length {
+                pieces.push(Piece {
+                    start: segment.at(taken),
+                    length: left_over,
+                    ..*segment
+                });
+            }
+            if let Some((radius, turn)) = arc {
+                pieces.push(Piece {
+                    start: segment.at(segment.length - cut),
+                    along: segment.along,
+                    length: radius * turn.abs(),
+                    bend: turn.signum() / radius,
+                });
+            }
+            taken = cut;
+        }
+        Ok(Self {
+            first: self.first,
+            pieces,
+        })
     }
 
-    /// From the start of segment k to its end.
-    fn along(&self, k: usize) -> Vector2<f64> {
-        self.points[k + 1] - self.points[k]
+    /// Its points, with some on every arc.
+    pub fn outline(&self) -> Vec<[f64; 2]> {
+        let of = |piece: &Piece| {
+            let parts = (piece.length * piece.bend.abs() / DRAWN).ceil().max(1.0);
+            let at = |k: usize| piece.at(piece.length * k as f64 / parts).into();
+            (0..parts as usize).map(at).collect::<Vec<_>>()
+        };
+        let ends = self.pieces.last().map(|last| last.at(last.length).into());
+        self.pieces.iter().flat_map(of).chain(ends).collect()
     }
 
-    /// Unit normal of segment k, to its left.
-    fn left(&self, k: usize) -> Vector2<f64> {
-        let along = self.along(k).normalize();
-        Vector2::new(-along.y, along.x)
-    }
-
-    /// Part of segment k nearest to `s`: within [0, 1], but for the ends of the line.
+    /// Part of a piece nearest to `s`: within its length, but for the ends of the line.
     fn clamped(&self, k: usize, s: f64) -> f64 {
         let low = if k == 0 { f64::NEG_INFINITY } else { 0.0 };
-        let high = match k + 1 == self.segments() {
+        let high = match k + 1 == self.pieces.len() {
             true => f64::INFINITY,
-            false => 1.0,
+            false => self.pieces[k].length,
         };
         s.clamp(low, high)
     }
 
     /// Where segment j is crossed by segment k, in parts of j.
     fn crossing(&self, j: usize, k: usize) -> Option<f64> {
-        let (a, b) = (self.along(j), self.along(k));
-        let between = self.points[k] - self.points[j];
-        let det = a.perp(&b);
-        let (s, t) = (between.perp(&b) / det, between.perp(&a) / det);
+        let (a, b) = (&self.pieces[j], &self.pieces[k]);
+        let between = b.start - a.start;
+        let det = a.along.perp(&b.along);
+        let (s, t) = (between.perp(&b.along) / det, between.perp(&a.along) / det);
         // Parallel segments do not cross: s and t are infinite or NaN.
         (s.is_finite() && t.is_finite() && self.clamped(j, s) == s && self.clamped(k, t) == t)
-            .then_some(s)
+            .then_some(s / a.length)
     }
 
-    /// The segment nearest to a point, and the part of it where it is.
-    fn nearest_segment(&self, x: &Vector2<f64>) -> (usize, f64) {
+    /// Whether the line has a corner between a piece and the one before.
+    fn is_sharp(&self, k: usize) -> bool {
+        let (before, after) = (&self.pieces[k - 1], &self.pieces[k]);
+        let turn = before.direction(before.length).perp(&after.along);
+        before.bend == 0.0 && after.bend == 0.0 && turn.abs() > COINCIDENT
+    }
+
+    fn nearest(&self, x: &Vector2<f64>) -> Foot {
         let mut best = (f64::INFINITY, 0, 0.0);
-        for k in 0..self.segments() {
-            let along = self.along(k);
-            let s = self.clamped(k, (x - self.points[k]).dot(&along) / along.norm_squared());
-            let squared = (x - self.points[k] - along * s).norm_squared();
+        for (k, piece) in self.pieces.iter().enumerate() {
+            let straight = piece.perpendicular(x);
+            let s = match piece.bend == 0.0 {
+                true => self.clamped(k, straight),
+                // At its ends the neighbours are as near.
+                false => straight.clamp(0.0, piece.length),
+            };
+            let squared = (x - piece.at(s)).norm_squared();
             if squared < best.0 {
                 best = (squared, k, s);
             }
         }
-        (best.1, best.2)
+        let (_, piece, s) = best;
+        let end = match s {
+            0.0 if piece > 0 => Some(piece),
+            s if s == self.pieces[piece].length && piece + 1 < self.pieces.len() => Some(piece + 1),
+            _ => None,
+        };
+        Foot {
+            piece,
+            s,
+            corner: end.filter(|&k| self.is_sharp(k)),
+        }
     }
 
     /// Signed distance and normal.
-    fn nearest(&self, x: &Vector2<f64>) -> (f64, Vector2<f64>) {
-        let (k, s) = self.nearest_segment(x);
-        let corner = match s {
-            0.0 if k > 0 => k,
-            1.0 if k + 1 < self.segments() => k + 1,
-            _ => {
-                let normal = self.left(k);
-                return ((x - self.points[k]).dot(&normal), normal);
-            }
+    fn measured(&self, x: &Vector2<f64>) -> (f64, Vector2<f64>) {
+        let foot = self.nearest(x);
+        let Some(k) = foot.corner else {
+            return self.pieces[foot.piece].straight_ahead(x, foot.s);
         };
-        let bisector = self.left(corner - 1) + self.left(corner);
-        let from = x - self.points[corner];
+        let bisector = left(self.pieces[k - 1].along) + left(self.pieces[k].along);
+        let from = x - self.pieces[k].start;
         let (side, length) = (from.dot(&bisector).signum(), from.norm());
-        match length > COINCIDENT * self.along(k).norm() {
+        match length > COINCIDENT * self.pieces[k].length {
             true => (side * length, from * (side / length)),
             false => (side * length, bisector.normalize()),
         }
@@ -138,55 +324,56 @@ impl Polyline {
 
 impl Obstacle<2> for Polyline {
     fn distance(&self, x: &Vector2<f64>) -> f64 {
-        self.nearest(x).0
+        self.measured(x).0
     }
 
     fn normal(&self, x: &Vector2<f64>) -> Vector2<f64> {
-        self.nearest(x).1
+        self.measured(x).1
     }
 
     fn curvature(&self, x: &Vector2<f64>) -> Matrix2<f64> {
-        let (k, s) = self.nearest_segment(x);
-        let corner = match s {
-            0.0 if k > 0 => k,
-            1.0 if k + 1 < self.segments() => k + 1,
-            _ => return Matrix2::zeros(),
+        let foot = self.nearest(x);
+        let piece = &self.pieces[foot.piece];
+        // About a corner and about the centre of an arc the normal turns as that of a circle.
+        let (from, side) = match foot.corner {
+            Some(k) => (x - self.pieces[k].start, self.distance(x).signum()),
+            None if piece.bend != 0.0 => (x - piece.center(), -piece.bend.signum()),
+            None => return Matrix2::zeros(),
         };
-        // About a corner the normal turns as that of a circle.
-        let (n, from) = (self.normal(x), (x - self.points[corner]).norm());
-        match from > COINCIDENT * self.along(k).norm() {
-            true => (Matrix2::identity() - n * n.transpose()) * (self.distance(x).signum() / from),
+        let (n, length) = (self.normal(x), from.norm());
+        match length > COINCIDENT * piece.length {
+            true => (Matrix2::identity() - n * n.transpose()) * (side / length),
             false => Matrix2::zeros(),
         }
     }
 
     fn way(&self, from: &Vector2<f64>, to: &Vector2<f64>) -> Vector2<f64> {
         let place = |x: &Vector2<f64>| {
-            let (k, s) = self.nearest_segment(x);
-            let before: f64 = (0..k).map(|j| self.along(j).norm()).sum();
-            before + s * self.along(k).norm()
+            let foot = self.nearest(x);
+            let before: f64 = self.pieces[..foot.piece].iter().map(|p| p.length).sum();
+            before + foot.s
         };
         let n = self.normal(to);
         Vector2::new(n.y, -n.x) * (place(to) - place(from))
     }
 
     fn reference(&self) -> Vector2<f64> {
-        self.points[0]
+        self.first
     }
 
     fn corner(&self, x: &Vector2<f64>, tolerance: f64) -> Option<Corner<2>> {
-        let (nearest, _) = self.nearest_segment(x);
+        let nearest = self.nearest(x).piece;
         let ends = [nearest, nearest + 1].into_iter();
-        let inner = ends.filter(|&k| k > 0 && k < self.segments());
+        let inner = ends.filter(|&k| k > 0 && k < self.pieces.len() && self.is_sharp(k));
         let mut corners = inner.filter_map(|k| {
-            let (before, after) = (self.left(k - 1), self.left(k));
-            let axis = (before + after).normalize();
-            let across = (x - self.points[k]).perp(&axis);
-            let convex = self.along(k - 1).perp(&self.along(k)) < 0.0;
+            let [a, b] = [k - 1, k].map(|k| self.pieces[k].along);
+            let axis = (left(a) + left(b)).normalize();
+            let across = (x - self.pieces[k].start).perp(&axis);
+            let convex = a.perp(&b) < 0.0;
             (convex && across.abs() <= tolerance).then(|| Corner {
-                position: self.points[k],
+                position: self.pieces[k].start,
                 axis,
-                half_angle: 0.5 * before.angle(&after),
+                half_angle: 0.5 * left(a).angle(&left(b)),
             })
         });
         corners.next()
@@ -256,10 +443,11 @@ mod tests {
             let x = Vector2::from(x);
             let distance = line.distance(&x).abs();
             // No point of the line is nearer, and the one along the normal is on the line.
-            for k in 0..line.segments() {
+            for k in 0..line.pieces.len() {
                 for i in -100..=100 {
-                    let s = line.clamped(k, 0.05 * f64::from(i));
-                    let point = line.points[k] + line.along(k) * s;
+                    let piece = &line.pieces[k];
+                    let s = line.clamped(k, 0.05 * f64::from(i) * piece.length);
+                    let point = piece.at(s);
                     prop_assert!((point - x).norm() >= distance - 1e-12);
                 }
             }
@@ -279,6 +467,90 @@ mod tests {
             prop_assert!((line.distance(&x) - plane.distance(&x)).abs() < 1e-12);
             prop_assert!((line.normal(&x) - plane.normal(&x)).norm() < 1e-12);
         }
+    }
+
+    /// Corners to both sides.
+    fn wave(radius: f64) -> Polyline {
+        let points = [
+            [-4.0, 0.0],
+            [-1.0, 0.5],
+            [1.0, -1.5],
+            [2.0, -1.4],
+            [5.0, 2.0],
+        ];
+        Polyline::rounded(&points, &[radius, 0.6 * radius, radius]).expect("valid")
+    }
+
+    proptest! {
+        /// Distance, normal, curvature and way belong to each other, on segments and arcs.
+        #[test]
+        fn a_rounded_line_is_smooth(
+            radius in 0.3..0.8f64,
+            at in (0..7usize, 0.0..1.0f64, -0.15..0.15f64),
+            by in prop::array::uniform2(-1.0..1.0f64),
+        ) {
+            let line = wave(radius);
+            let (piece, s, off) = (&line.pieces[at.0], at.1, at.2);
+            let s = s * piece.length;
+            // Within the smallest radius both sides of the line are smooth.
+            let x = piece.at(s) + left(piece.direction(s)) * off;
+            let h = 1e-5;
+            let (n, v) = (line.normal(&x), Vector2::from(by));
+            prop_assert!((n.norm() - 1.0).abs() < 1e-12);
+            let slope = (line.distance(&(x + v * h)) - line.distance(&(x - v * h))) / (2.0 * h);
+            prop_assert!((slope - n.dot(&v)).abs() < 1e-8, "{slope}");
+            // Where the curvature does not jump in between.
+            let pieces = [x + v * h, x - v * h].map(|x| line.nearest(&x).piece);
+            if pieces[0] == pieces[1] {
+                let turn = (line.normal(&(x + v * h)) - line.normal(&(x - v * h))) / (2.0 * h);
+                prop_assert!((turn - line.curvature(&x) * v).norm() < 1e-6, "{turn}");
+            }
+            // A short way is that of the foot.
+            let foot = |x: Vector2<f64>| x - line.normal(&x) * line.distance(&x);
+            let (from, to) = (x - v * h, x + v * h);
+            let way = line.way(&from, &to);
+            prop_assert!((way - (foot(to) - foot(from))).norm() < 1e-7, "{way}");
+            prop_assert!(line.corner(&x, 0.1).is_none());
+        }
+
+        #[test]
+        fn points_of_arcs_and_segments_are_on_the_line(radius in 0.2..0.8f64, s in 0.0..1.0f64) {
+            let line = wave(radius);
+            for piece in &line.pieces {
+                let x = piece.at(s * piece.length);
+                prop_assert!(line.distance(&x).abs() < 1e-12);
+                let n = left(piece.direction(s * piece.length));
+                prop_assert!((line.normal(&x) - n).norm() < 1e-9);
+            }
+            // Smooth, from end to end.
+            for ends in line.pieces.windows(2) {
+                prop_assert!((ends[0].at(ends[0].length) - ends[1].start).norm() < 1e-12);
+                let before = ends[0].direction(ends[0].length);
+                prop_assert!((before - ends[1].along).norm() < 1e-12);
+            }
+        }
+    }
+
+    /// A corner of a right angle, rounded, beside the circle that touches both sides.
+    #[test]
+    fn a_rounded_corner_is_a_ball() {
+        let line =
+            Polyline::rounded(&[[-3.0, 0.0], [0.0, 0.0], [0.0, -3.0]], &[0.5]).expect("valid");
+        let ball = Ball::new([-0.5, -0.5], 0.5).expect("valid");
+        for x in [[0.3, 0.7], [-0.2, -0.1], [1.0, 0.0]].map(Vector2::from) {
+            assert!((line.distance(&x) - ball.distance(&x)).abs() < 1e-14);
+            assert!((line.normal(&x) - ball.normal(&x)).norm() < 1e-14);
+            assert!((line.curvature(&x) - ball.curvature(&x)).norm() < 1e-13);
+        }
+        let quarter = line.way(&Vector2::new(-1.0, 0.2), &Vector2::new(0.2, -1.0));
+        assert!((quarter - Vector2::new(0.0, -1.0 - 0.25 * PI)).norm() < 1e-14);
+        for radii in [&[][..], &[-0.1], &[3.5], &[f64::NAN], &[0.1, 0.1]] {
+            let points = [[-3.0, 0.0], [0.0, 0.0], [0.0, -3.0]];
+            assert!(Polyline::rounded(&points, radii).is_err(), "{radii:?}");
+        }
+        let step = [[-1.0, 0.0], [0.0, 0.0], [0.0, -1.0], [1.0, -1.0]];
+        assert!(Polyline::rounded(&step, &[0.5, 0.5]).is_ok());
+        assert!(Polyline::rounded(&step, &[0.5, 0.6]).is_err());
     }
 
     /// Half a circle of short chords is the circle, but for their sagitta.
