@@ -48,7 +48,7 @@ pub(crate) use course::Course;
 pub(crate) use saved::{sealed, unsealed};
 
 use crate::deck::{Deck, Findings, Meshes, Problem, open_with};
-use crate::driver::{IncrementError, IncrementReport, Iteration, Numbers};
+use crate::driver::{IncrementError, IncrementReport, Iteration, ModelError, Numbers};
 use crate::laws::Status;
 use crate::mesh::Mesh;
 use crate::table::Table;
@@ -315,10 +315,7 @@ impl Simulation {
     }
 
     /// Takes over what [`Simulation::write`] left of the same deck; of no use after an error.
-    pub(crate) fn read(
-        &mut self,
-        numbers: &mut Numbers<'_>,
-    ) -> Result<(), crate::driver::ModelError> {
+    pub(crate) fn read(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
         either!(&mut self.course, course => course.read(numbers))
     }
 
