@@ -190,7 +190,8 @@ impl Simulation {
     }
 
     /// Gives up what is left of the step under way and the steps after it, and goes on with another: the keys of a
-    /// `[[step]]` of a deck. A step that failed is given up where it failed.
+    /// `[[step]]` of a deck. A step that failed is given up where it failed. Expectations, which are of another end, go
+    /// too, and so do the columns of the history of groups that only later steps held.
     ///
     /// # Errors
     /// [`Refusal`]; nothing has changed then.
@@ -198,6 +199,7 @@ impl Simulation {
         let begun = either!(&self.course, course => course.begun());
         let mut deck = self.deck.clone();
         deck.steps.truncate(begun);
+        deck.expectations.clear();
         let text = format!("{}\n[[step]]\n{step}\n", deck.resolved());
         let (deck, problem, findings) = open_with(&text, Path::new(""), &self.meshes);
         let Some(problem) = problem else {
