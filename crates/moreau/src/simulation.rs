@@ -49,7 +49,7 @@ pub(crate) use course::Course;
 pub(crate) use saved::{sealed, unsealed};
 
 use crate::deck::{Deck, Findings, Meshes, Problem, open_with};
-use crate::driver::{IncrementError, IncrementReport, Iteration, Numbers};
+use crate::driver::{IncrementError, IncrementReport, Iteration, ModelError, Numbers};
 use crate::laws::Status;
 use crate::mesh::Mesh;
 use crate::table::Table;
@@ -191,7 +191,8 @@ impl Simulation {
     }
 
     /// Gives up what is left of the step under way and the steps after it, and goes on with another: the keys of a
-    /// `[[step]]` of a deck. A step that failed is given up where it failed.
+    /// `[[step]]` of a deck. A step that failed is given up where it failed. Expectations, which are of another end, go
+    /// too, and so do the columns of the history of groups that only later steps held.
     ///
     /// # Errors
     /// [`Refusal`]; nothing has changed then.
@@ -199,6 +200,7 @@ impl Simulation {
         let begun = either!(&self.course, course => course.begun());
         let mut deck = self.deck.clone();
         deck.steps.truncate(begun);
+        deck.expectations.clear();
         let text = format!("{}\n[[step]]\n{step}\n", deck.resolved());
         let (deck, problem, findings) = open_with(&text, Path::new(""), &self.meshes);
         let Some(problem) = problem else {
@@ -321,10 +323,7 @@ impl Simulation {
     }
 
     /// Takes over what [`Simulation::write`] left of the same deck; of no use after an error.
-    pub(crate) fn read(
-        &mut self,
-        numbers: &mut Numbers<'_>,
-    ) -> Result<(), crate::driver::ModelError> {
+    pub(crate) fn read(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
         either!(&mut self.course, course => course.read(numbers))
     }
 

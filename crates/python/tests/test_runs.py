@@ -84,29 +84,48 @@ def test_the_interpreter_is_free_meanwhile(block):
     assert seen > 0.1 * seconds / 1e-3, f"{seen} ticks in {seconds} s"
 
 
-@pytest.mark.skipif(os.name != "posix", reason="signals")
-def test_an_interrupt_within_an_increment_loses_nothing_and_the_end_is_the_same(block):
-    deck = mc.Deck(block).with_({"mesh.block.0.cells": [60, 24], "step.0.increments": 40})
-    increments = 6
+@pytest.fixture
+def interrupts():
+    """Interrupts, while it is armed, that come so many seconds after it was."""
+    if os.name != "posix":
+        pytest.skip("signals are those of posix")
+    armed = [False]
+
+    def interrupt(*_):
+        if armed[0]:
+            raise KeyboardInterrupt
+
+    def after(seconds):
+        armed[0] = seconds is not None
+        signal.setitimer(signal.ITIMER_REAL, seconds or 0.0)
+
+    kept = signal.signal(signal.SIGALRM, interrupt)
+    yield after
+    after(None)
+    signal.signal(signal.SIGALRM, kept)
+
+
+def test_an_interrupt_within_an_increment_loses_nothing_and_the_end_is_the_same(block, interrupts):
+    deck = mc.Deck(block).with_({"mesh.block.0.cells": [100, 40], "step.0.increments": 40})
+    increments, start = 5, time.perf_counter()
     undisturbed = mc.Simulation(deck)
     for _ in range(increments):
         next(undisturbed)
+    seconds = (time.perf_counter() - start) / increments
     simulation, inside = mc.Simulation(deck), 0
     while simulation.increments < increments:
-        committed, state = simulation.increments, bits(simulation) if simulation.increments else None
-        timer = threading.Timer(0.04, lambda: os.kill(os.getpid(), signal.SIGINT))
+        committed, state = simulation.increments, simulation.displacement
         try:
-            timer.start()
+            interrupts(0.3 * seconds)
             next(simulation)
-            timer.cancel()
+            interrupts(None)
         except KeyboardInterrupt:
+            interrupts(None)
             if simulation.increments == committed:
                 inside += 1
-                assert state is None or bits(simulation) == state
-                # Now without a limit.
+                assert np.array_equal(simulation.displacement, state)
+                # Now as long as it takes.
                 next(simulation)
-        finally:
-            timer.cancel()
     assert inside >= 3
     assert bits(simulation) == bits(undisturbed)
 
@@ -144,13 +163,13 @@ def test_a_step_that_stops_is_an_exception_with_its_reasons(block):
 
 
 def test_a_simulation_is_of_one_thread_at_a_time(block):
-    deck = mc.Deck(block).with_({"mesh.block.0.cells": [60, 24]})
+    deck = mc.Deck(block).with_({"mesh.block.0.cells": [100, 40]})
     simulation = mc.Simulation(deck)
     thread = threading.Thread(target=simulation._core.advance)
     thread.start()
-    time.sleep(0.05)
     with pytest.raises(RuntimeError, match="another thread"):
-        simulation.displacement
+        while thread.is_alive():
+            simulation.displacement
     thread.join()
     assert simulation.increments == 1
 

@@ -129,6 +129,25 @@ fn syntax_errors_have_a_place() {
     );
 }
 
+/// In characters, whatever bytes they take.
+#[test]
+fn findings_have_line_and_column() {
+    let from = "contact = [{ surface = \"é\", frixion = 0.1 }]\n";
+    for (text, wrong) in [
+        (DECK.replace("friction = 0.1", "frixion = 0.1"), "frixion"),
+        (format!("{from}{DECK}"), "frixion"),
+        (DECK.replacen('#', "titel = \"\"\n#", 1), "titel"),
+    ] {
+        let (_, _, findings) = open(&text);
+        let mut places = findings.places(&text);
+        let found = places.find(|(finding, ..)| finding.message.contains(wrong));
+        let (_, line, column) = found.expect("a finding");
+        let own = text.lines().nth(line - 1).expect("a line");
+        let from: String = own.chars().skip(column - 1).collect();
+        assert!(from.starts_with(wrong), "{line}:{column} is {from:?}");
+    }
+}
+
 #[test]
 fn a_resolved_deck_is_the_same_deck() {
     for text in [

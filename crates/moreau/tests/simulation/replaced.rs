@@ -44,6 +44,21 @@ fn a_step_after_the_end_may_hold_other_groups() {
     assert!(force[19].is_nan() && force[20].is_finite(), "{force:?}");
 }
 
+/// What is said of steps that no longer come is no error.
+#[test]
+fn expectations_of_the_end_that_is_given_up_go_with_it() {
+    let (head, _) = DECK.split_once("[expect]").expect("two parts");
+    let later = RELEASE.replace("block.left", "block.right");
+    let expect = "[expect]\n\"force.block.right.x\" = { value = 0.0, absolute = 1.0 }\n";
+    let mut pressed = simulation(&format!("{head}\n[[step]]\n{later}\n{expect}"));
+    assert!(advance(&mut pressed));
+    pressed.replace_step(RELEASE).expect("a step");
+    let released = finish(pressed);
+    assert!(released.outcome().verdicts.is_empty());
+    assert!(released.history().column("force.block.right.x").is_none());
+    assert_eq!(released.history().rows(), 5);
+}
+
 #[test]
 fn a_step_that_is_wrong_is_shown_and_changes_nothing() {
     let mut pressed = simulation(DECK);
