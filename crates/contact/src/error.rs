@@ -30,6 +30,14 @@ pub enum ContactError {
         /// The admissible range in words.
         expected: &'static str,
     },
+    /// Triangles that bound nothing.
+    #[error("{what}, from {:?} to {:?}: expected a closed surface", at[0], at[1])]
+    Surface {
+        /// What is wrong with it.
+        what: &'static str,
+        /// The ends of the edge \[mm\].
+        at: [[f64; 3]; 2],
+    },
     /// The interface stiffness is singular where the method needs its inverse: a body is held
     /// by contact alone.
     #[error(

@@ -34,6 +34,7 @@ mod polyline;
 mod problem;
 mod solvers;
 mod tied;
+mod triangulated;
 
 pub use error::ContactError;
 pub use global::{GlobalProblem, GlobalSolution};
@@ -46,3 +47,4 @@ pub use solvers::{
     Tolerance, TrescaFixedPoint, Unsolved, Uzawa, solve_tied, uzawa_steps,
 };
 pub use tied::{Springs, Structure, TiedProblem};
+pub use triangulated::Triangulated;

@@ -158,7 +158,10 @@ fn shape(shape: &Shape, length: &str) -> String {
             let inside = inside(*hollow);
             format!("cylinder around {center:?} along {axis:?}, radius {radius} {length}{inside}")
         }
-        Shape::Polyline(points) => format!("polyline {points:?}"),
+        Shape::Polyline(points, radii) if radii.is_empty() => format!("polyline {points:?}"),
+        Shape::Polyline(points, radii) => {
+            format!("polyline {points:?} with its corners rounded by {radii:?} {length}")
+        }
     }
 }
 

@@ -163,7 +163,15 @@ fn tool(tool: &ToolEntry, out: &mut String) -> fmt::Result {
             )?;
             writeln!(out, "inside = {hollow}")?;
         }
-        Shape::Polyline(points) => writeln!(out, "polyline = {points:?}")?,
+        Shape::Polyline(points, radii) if radii.is_empty() => {
+            writeln!(out, "polyline = {points:?}")?;
+        }
+        Shape::Polyline(points, radii) => {
+            writeln!(
+                out,
+                "profile = {{ points = {points:?}, radii = {radii:?} }}"
+            )?;
+        }
     }
     if let Some(reference) = &tool.reference {
         writeln!(out, "reference = {:?}", reference.value)?;

@@ -187,8 +187,8 @@ pub enum Shape {
     Ball(Vec<f64>, f64, bool, &'static str),
     /// In space: point and direction of the axis, radius and whether the tool is hollow.
     Cylinder(Vec<f64>, Vec<f64>, f64, bool),
-    /// In the plane: points with the tool on the right.
-    Polyline(Vec<[f64; 2]>),
+    /// In the plane: points with the tool on the right, and radii that round the corners between them, or none.
+    Polyline(Vec<[f64; 2]>, Vec<f64>),
 }
 
 /// `[[tool]]`.

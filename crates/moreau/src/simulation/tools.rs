@@ -2,6 +2,7 @@
 
 use crate::deck::{Shape, ToolEntry};
 use crate::vtu::three;
+use moreau_contact::Polyline;
 use nalgebra::{Rotation3, Vector3};
 use std::f64::consts::{PI, TAU};
 
@@ -34,10 +35,11 @@ impl Sheet {
     pub(crate) fn new(tool: &ToolEntry, dimension: usize, to: Vector3<f64>, reach: f64) -> Self {
         let vector = |v: &[f64]| Vector3::from(three(v));
         let (points, pieces, reference) = match (&tool.shape.value, dimension) {
-            (Shape::Polyline(points), _) => {
-                let points: Vec<_> = points.iter().map(|x| vector(x)).collect();
-                let first = points.first().copied().unwrap_or_default();
-                (points, None, first)
+            (Shape::Polyline(points, radii), _) => {
+                let first = points.first().map_or(Vector3::zeros(), |x| vector(x));
+                let rounded = Polyline::rounded(points, radii).map(|line| line.outline());
+                let points = rounded.unwrap_or_else(|_| points.clone());
+                (points.iter().map(|x| vector(x)).collect(), None, first)
             }
             (Shape::Plane(point, normal), 2) => {
                 let (point, n) = (vector(point), vector(normal).normalize());
@@ -202,7 +204,7 @@ mod tests {
 
     #[test]
     fn a_tool_turns_about_its_reference() {
-        let line = tool(Shape::Polyline(vec![[1.0, 0.0], [3.0, 0.0]]));
+        let line = tool(Shape::Polyline(vec![[1.0, 0.0], [3.0, 0.0]], Vec::new()));
         let sheet = Sheet::new(&line, 2, Vector3::zeros(), 1.0);
         let pose = Pose {
             translation: Vector3::new(0.0, -1.0, 0.0),

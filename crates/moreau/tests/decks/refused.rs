@@ -153,6 +153,10 @@ const IN_THE_PLANE: [(&str, &[&str]); 22] = [
             "polyline = [[0, 0]]",
             "polyline = [[0, 0, 0], [1, 0, 0]]",
             "polyline = [[1, 0], [0, 0]]\ninside = true",
+            "profile = { points = [[9, 0], [4, 0], [4, -5]] }",
+            "profile = { points = [[9, 0], [4, 0], [4, -5]], radii = [-1] }",
+            "profile = { points = [[9, 0]], radii = [] }",
+            "profile = { points = [[9, 0], [4, 0]], radii = [], radius = 1 }",
         ],
     ),
     (
@@ -365,6 +369,14 @@ fn what_is_right_fits() {
     let yields = "yield-stress = 300.0";
     for (from, to) in [
         (tool, "polyline = [[60, 0], [-10, 0]]"),
+        (
+            tool,
+            "profile = { points = [[60, 0], [0, 0], [0, -9]], radii = [2] }",
+        ),
+        (
+            tool,
+            "profile = { points = [[60, 0], [0, 0], [0, -9]], radii = [0, 2, 0] }",
+        ),
         (tool, "cylinder = { center = [0, -9], radius = 9 }"),
         (
             tool,

@@ -96,6 +96,23 @@ fn tools_and_contacts_out_of_their_range_are_pointed_at() {
         "inside",
         &["a polyline has no inside", "reverse the order"],
     );
+    let profile = |radii: &str| {
+        format!("profile = {{ points = [[60, 0], [20, 0], [20, -9], [0, -9]], radii = {radii} }}")
+    };
+    for (radii, expected) in [
+        ("[1]", "expected 2 radii, one for each corner"),
+        ("[4, 6]", "one whose arc leaves room"),
+        ("[4, -1]", "a number that is not negative"),
+        ("[4, \"r\"]", "number"),
+    ] {
+        says(plane, &profile(radii), "profile", &[expected]);
+    }
+    says(
+        plane,
+        "profile = { points = [[9, 0], [4, 0], [4, 5], [6, 5], [6, -5]], radii = [0, 0, 0] }",
+        "profile",
+        &["crossing of the polyline with itself"],
+    );
     says(
         plane,
         "cylinder = { center = [0, -9], radius = 0 }",

@@ -306,7 +306,10 @@ fn simple<const D: usize>(shape: &Shape) -> Option<Result<Box<dyn Obstacle<D>>, 
 /// A surface in the plane.
 pub(super) fn profile(shape: &Shape) -> Option<Result<Box<dyn Obstacle<2>>, ContactError>> {
     match shape {
-        Shape::Polyline(points) => Some(Polyline::new(points).map(boxed)),
+        Shape::Polyline(points, radii) if radii.is_empty() => {
+            Some(Polyline::new(points).map(boxed))
+        }
+        Shape::Polyline(points, radii) => Some(Polyline::rounded(points, radii).map(boxed)),
         other => simple(other),
     }
 }

@@ -4,7 +4,7 @@ use crate::deck::entries::{Adjust, Analysis, ContactEntry, FrictionEntry, Shape,
 use crate::deck::finding::At;
 use crate::deck::reader::{self, Table};
 
-const SHAPES: [&str; 4] = ["plane", "cylinder", "sphere", "polyline"];
+const SHAPES: [&str; 5] = ["plane", "cylinder", "sphere", "polyline", "profile"];
 
 /// The tools, and the names of all of them.
 pub(super) fn read_tools(root: &Table<'_>, analysis: Analysis) -> (Vec<ToolEntry>, Vec<String>) {
@@ -40,8 +40,9 @@ fn shape(table: &Table<'_>, analysis: Analysis) -> Option<At<Shape>> {
         log.borrow_mut().error(
             &table.span,
             format!(
-                "a [[tool]] has {} surfaces, expected one of plane, cylinder, sphere, polyline",
-                given.len()
+                "a [[tool]] has {} surfaces, expected one of {}",
+                given.len(),
+                SHAPES.join(", ")
             ),
             "one surface a tool",
         );
@@ -58,20 +59,20 @@ fn shape(table: &Table<'_>, analysis: Analysis) -> Option<At<Shape>> {
             },
         );
     }
+    let lines = key == "polyline" || key == "profile";
+    if lines && dimension == 3 {
+        return reader::wrong(value, key, "a tool of a plane analysis", log);
+    }
     if key == "polyline" {
-        if dimension == 3 {
-            return reader::wrong(value, key, "a tool of a plane analysis", log);
-        }
-        let points: Option<Vec<[f64; 2]>> = reader::items(value, key, "[[x, y], …]", log)?
-            .into_iter()
-            .map(|v| {
-                let point = reader::vector(v, "a point", 2, log)?;
-                Some([point.value[0], point.value[1]])
-            })
-            .collect();
-        return Some(At::new(Shape::Polyline(points?), value.span()));
+        let points = points(value, key, log)?;
+        return Some(At::new(Shape::Polyline(points, Vec::new()), value.span()));
     }
     let inner = reader::table(value, key, key, log)?;
+    if key == "profile" {
+        let shape = profile(&inner);
+        inner.finish();
+        return Some(At::new(shape?, value.span()));
+    }
     let vector = |key: &'static str| {
         let value = inner.need(key, "[ … ]")?;
         reader::vector(value, key, dimension, log)
@@ -101,6 +102,39 @@ fn shape(table: &Table<'_>, analysis: Analysis) -> Option<At<Shape>> {
     };
     inner.finish();
     Some(At::new(shape, value.span()))
+}
+
+/// `[[x, y], …]`.
+fn points(value: reader::Value<'_>, key: &str, log: &reader::Log) -> Option<Vec<[f64; 2]>> {
+    let point = |value| {
+        let point = reader::vector(value, "a point", 2, log)?;
+        Some([point.value[0], point.value[1]])
+    };
+    let points = reader::items(value, key, "[[x, y], …]", log)?.into_iter();
+    points.map(point).collect()
+}
+
+/// `{ points = [[x, y], …], radii = [r, …] }`, a radius for each corner; ends may be given one of zero.
+fn profile(table: &Table<'_>) -> Option<Shape> {
+    let log = table.log();
+    let points = points(table.need("points", "[[x, y], …]")?, "points", log);
+    let given = table.need("radii", "[r, …]")?;
+    let radii = reader::items(given, "radii", "[r, …]", log)?.into_iter();
+    let mut radii: Vec<f64> = radii
+        .map(|r| reader::number(r, "a radius", log).map(|r| r.value))
+        .collect::<Option<_>>()?;
+    let points = points?;
+    if let [0.0, corners @ .., 0.0] = &radii[..]
+        && radii.len() == points.len()
+    {
+        radii = corners.to_vec();
+    }
+    let corners = points.len().saturating_sub(2);
+    if radii.len() != corners {
+        let expected = format!("{corners} radii, one for each corner between the ends");
+        return reader::wrong(given, "radii", &expected, log);
+    }
+    Some(Shape::Polyline(points, radii))
 }
 
 pub(super) fn read_contacts(root: &Table<'_>, dimension: usize) -> Vec<ContactEntry> {

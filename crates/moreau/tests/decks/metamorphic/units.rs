@@ -36,6 +36,8 @@ fn powers(keys: &str) -> (i32, i32) {
             "center",
             "radius",
             "polyline",
+            "points",
+            "radii",
             "move",
             "u",
             "thickness",

@@ -1,0 +1,368 @@
+//! A rigid closed surface in space, given by triangles and smooth between them; no file that it comes from.
+
+mod patch;
+
+use crate::{ContactError, Obstacle};
+use nalgebra::{Matrix3, Vector2, Vector3};
+use patch::{Jet, Patch, handles};
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{PointDistance, RTree};
+use std::collections::{BTreeMap, HashMap};
+
+type Point = Vector3<f64>;
+
+/// A rigid obstacle bounded by triangles whose surface is closed.
+///
+/// Across an edge where two triangles meet at an angle below a limit the surface is smooth: its corners keep their
+/// places, normals there are means over the triangles around, and curved patches in place of the triangles join with
+/// one normal along every such edge, so that the normal is everywhere the gradient of the distance. Other edges are
+/// sharp. Points of a sphere or of a cylinder give their normals exactly, and the surface is off by a small multiple of
+/// the fourth power of the length of an edge over the radius; plane parts stay plane.
+///
+/// Source of the normals: N. Max, *Journal of Graphics Tools* 4 (1999) 1-6.
+#[derive(Debug, Clone)]
+pub struct Triangulated {
+    patches: Vec<Patch>,
+    /// Boxes around the patches.
+    boxes: RTree<GeomWithData<Rectangle<[f64; 3]>, usize>>,
+    first: Point,
+    size: f64,
+    side: f64,
+}
+
+/// The point of the surface nearest to another.
+struct Foot {
+    jet: Jet,
+    /// Out of the obstacle, of the patch.
+    normal: Point,
+    /// From the foot to the point.
+    from: Point,
+    /// What of that is along the surface: none but at a sharp edge or corner.
+    aside: f64,
+    /// Along the edge, if it is on one and at no corner: the square is how far it goes as the point goes along.
+    edge: Option<Point>,
+}
+
+/// Distances that are one, in parts of the size of the surface.
+const SAME: f64 = 1e-11;
+
+/// Barycentric coordinates on an edge.
+const EDGE: f64 = 1e-9;
+
+impl Triangulated {
+    /// The surface of triangles given by the numbers of their corners among points \[mm\], counter-clockwise seen from
+    /// outside, or all clockwise; sharp where two of them meet at an angle of more than `sharp` \[rad\].
+    ///
+    /// # Errors
+    /// [`ContactError::OutOfRange`] for coordinates or an angle out of their range, corners that are none of the points,
+    /// and triangles without an area. [`ContactError::Surface`] for an edge that is not one of two triangles which go
+    /// along it in opposite senses.
+    pub fn new(
+        points: &[[f64; 3]],
+        triangles: &[[usize; 3]],
+        sharp: f64,
+    ) -> Result<Self, ContactError> {
+        let refused = |what, value, expected| {
+            Err(ContactError::OutOfRange {
+                what,
+                value,
+                expected,
+            })
+        };
+        if !(0.0..=std::f64::consts::PI).contains(&sharp) {
+            let expected = "an angle from 0 to 180 degrees";
+            return refused("angle of sharp edges", sharp.to_degrees(), expected);
+        }
+        if let Some(&x) = points.iter().flatten().find(|x| !x.is_finite()) {
+            return refused("point of the surface", x, "finite coordinates");
+        }
+        let named = triangles.iter().flatten();
+        if let Some(&k) = named.clone().find(|&&k| k >= points.len()) {
+            return refused("corner of a triangle", k as f64, "one of the points");
+        }
+        if triangles.is_empty() {
+            return refused("number of triangles", 0.0, "at least 4");
+        }
+        let at: Vec<Point> = points.iter().map(|&x| x.into()).collect();
+        let (low, high) = named.fold((at[triangles[0][0]], at[triangles[0][0]]), |(l, h), &k| {
+            (l.inf(&at[k]), h.sup(&at[k]))
+        });
+        let size = (high - low).norm();
+        let volume: f64 = triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|k| at[k] - low);
+                a.dot(&b.cross(&c))
+            })
+            .sum();
+        let mut faces: Vec<[usize; 3]> = triangles.to_vec();
+        if volume < 0.0 {
+            faces.iter_mut().for_each(|face| face.swap(1, 2));
+        }
+        let patches = smooth(&at, &faces, sharp)?;
+        let boxed = patches.iter().enumerate().map(|(k, patch)| {
+            let [low, high] = patch.around();
+            GeomWithData::new(Rectangle::from_corners(low, high), k)
+        });
+        let boxes = RTree::bulk_load(boxed.collect());
+        Ok(Self {
+            patches,
+            boxes,
+            first: at[faces[0][0]],
+            size,
+            side: 1.0,
+        })
+    }
+
+    /// The same surface around a hollow: the body is inside.
+    pub fn hollow(self) -> Self {
+        Self { side: -1.0, ..self }
+    }
+
+    fn foot(&self, x: &Point) -> Foot {
+        let mut best: Option<(f64, Foot)> = None;
+        let near = self.boxes.nearest_neighbor_iter([x[0], x[1], x[2]]);
+        for found in near {
+            let least = found.geom().distance_2(&[x[0], x[1], x[2]]).sqrt();
+            if best
+                .as_ref()
+                .is_some_and(|(d, _)| least > d + SAME * self.size)
+            {
+                break;
+            }
+            let patch = &self.patches[found.data];
+            let at = patch.nearest(x);
+            let jet = patch.at(&at);
+            let from = x - jet.x;
+            let (distance, normal) = (from.norm(), jet.normal().unwrap_or_else(Point::x));
+            let aside = (from - normal * normal.dot(&from)).norm();
+            let nearer = |(d, other): &(f64, Foot)| {
+                // Of patches that are as near, that which the point is in front of: it knows the side.
+                let tied = (distance - d).abs() <= SAME * self.size;
+                if tied {
+                    aside < other.aside
+                } else {
+                    distance < *d
+                }
+            };
+            if best.as_ref().is_none_or(nearer) {
+                let edge = edge_of(&at, &jet, &from);
+                let foot = Foot {
+                    jet,
+                    normal,
+                    from,
+                    aside,
+                    edge,
+                };
+                best = Some((distance, foot));
+            }
+        }
+        let (_, foot) = best.expect("a surface has patches");
+        foot
+    }
+}
+
+/// Along the edge that a point of a patch is on, none inside and at corners: as long as the root of how far the point
+/// of the edge that is nearest to another, `from` there, goes as that goes along.
+fn edge_of(at: &Vector2<f64>, jet: &Jet, from: &Point) -> Option<Point> {
+    let on = [1.0 - at.x - at.y, at.x, at.y].map(|c| c < EDGE);
+    let along = match on {
+        [true, false, false] => Vector2::new(-1.0, 1.0),
+        [false, true, false] => Vector2::new(0.0, 1.0),
+        [false, false, true] => Vector2::new(1.0, 0.0),
+        _ => return None,
+    };
+    let direction = jet.d * along;
+    let bend = along.dot(&(jet.second(from) * along));
+    let ahead = direction.norm_squared() - bend;
+    (ahead > 0.0).then(|| direction / ahead.sqrt())
+}
+
+impl Foot {
+    /// Whether the point is opposite a sharp edge or corner, not of the face beside it.
+    fn is_off(&self, size: f64) -> bool {
+        self.aside > 1e-9 * size
+    }
+
+    /// Signed distance, positive outside.
+    fn distance(&self, size: f64) -> f64 {
+        let ahead = self.from.dot(&self.normal);
+        match self.is_off(size) {
+            true => self.from.norm().copysign(ahead),
+            false => ahead,
+        }
+    }
+
+    /// Out of the obstacle.
+    fn normal(&self, size: f64) -> Point {
+        match self.is_off(size) {
+            true => self.from / self.distance(size),
+            false => self.normal,
+        }
+    }
+
+    fn curvature(&self, size: f64) -> Matrix3<f64> {
+        let distance = self.distance(size);
+        if self.is_off(size) {
+            let n = self.normal(size);
+            let along = self.edge.unwrap_or_default();
+            let across = Matrix3::identity() - n * n.transpose() - along * along.transpose();
+            return across / distance;
+        }
+        // dn = D G⁻¹ B dξ where D (1 + g G⁻¹ B) dξ is what of dx is along the surface.
+        let (d, bend) = (&self.jet.d, -self.jet.second(&self.normal));
+        let metric = d.transpose() * d;
+        let Some(inverse) = metric.try_inverse() else {
+            return Matrix3::zeros();
+        };
+        let shape = inverse * bend;
+        let ahead = nalgebra::Matrix2::identity() + shape * distance;
+        let turned = ahead.try_inverse().map(|ahead| shape * ahead);
+        turned.map_or_else(Matrix3::zeros, |t| d * t * inverse * d.transpose())
+    }
+}
+
+/// The patches of faces, oriented outwards.
+fn smooth(at: &[Point], faces: &[[usize; 3]], sharp: f64) -> Result<Vec<Patch>, ContactError> {
+    let mut normals = Vec::with_capacity(faces.len());
+    for face in faces {
+        let [a, b, c] = face.map(|k| at[k]);
+        let area = (b - a).cross(&(c - a));
+        let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
+        if !(area.norm() > 1e-10 * longest * longest) {
+            return Err(ContactError::Surface {
+                what: "a triangle has no area",
+                at: [a.into(), b.into()],
+            });
+        }
+        normals.push(area.normalize());
+    }
+    let opposite = across(at, faces)?;
+    // Corner k of face f is 3 f + k; those that a smooth edge joins have one normal.
+    let mut joined: Vec<usize> = (0..3 * faces.len()).collect();
+    let is_smooth = |f: usize, g: usize| normals[f].angle(&normals[g]) <= sharp;
+    for (edge, &other) in opposite.iter().enumerate() {
+        let (f, g) = (edge / 3, other / 3);
+        if is_smooth(f, g) {
+            join(&mut joined, edge, 3 * g + (other + 1) % 3);
+            join(&mut joined, 3 * f + (edge + 1) % 3, other);
+        }
+    }
+    let mut sums: HashMap<usize, Point> = HashMap::new();
+    let roots: Vec<usize> = (0..joined.len()).map(|k| root(&joined, k)).collect();
+    for (k, &root) in roots.iter().enumerate() {
+        let face = &faces[k / 3];
+        let [x, y, z] = [0, 1, 2].map(|i| at[face[(k + i) % 3]]);
+        let (a, b) = (y - x, z - x);
+        *sums.entry(root).or_default() += a.cross(&b) / (a.norm_squared() * b.norm_squared());
+    }
+    let normal = |k: usize| sums[&roots[k]].try_normalize(0.0);
+    let normal = |k: usize| normal(k).unwrap_or(normals[k / 3]);
+    let edge = |edge: usize| {
+        let (f, g) = (edge / 3, opposite[edge] / 3);
+        let next = 3 * f + (edge + 1) % 3;
+        let ends = [edge, next].map(|k| at[faces[f][k % 3]]);
+        let chord = ends[1] - ends[0];
+        let beside = [3 * g + (opposite[edge] + 1) % 3, opposite[edge]];
+        let along = |k: usize, other: usize| {
+            let n = normal(k);
+            // A smooth edge goes on in its own plane, a sharp one along both of its faces.
+            let crease = n.cross(&normal(other));
+            let along = match is_smooth(f, g) || crease.norm() < 1e-6 {
+                true => chord - n * n.dot(&chord),
+                false => crease * crease.dot(&chord).signum(),
+            };
+            along.try_normalize(0.0).unwrap_or(chord.normalize())
+        };
+        handles(ends, [along(edge, beside[0]), along(next, beside[1])])
+    };
+    Ok((0..faces.len())
+        .map(|f| {
+            let corners = [0, 1, 2].map(|k| 3 * f + k);
+            Patch::new(
+                corners.map(|k| at[faces[f][k % 3]]),
+                corners.map(normal),
+                corners.map(edge),
+            )
+        })
+        .collect())
+}
+
+/// For edge k of face f, which goes from corner k to the next and is 3 f + k, the same edge of the other face.
+fn across(at: &[Point], faces: &[[usize; 3]]) -> Result<Vec<usize>, ContactError> {
+    let ends = |edge: usize| [faces[edge / 3][edge % 3], faces[edge / 3][(edge + 1) % 3]];
+    let mut edges: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
+    for edge in 0..3 * faces.len() {
+        let [a, b] = ends(edge);
+        edges.entry([a.min(b), a.max(b)]).or_default().push(edge);
+    }
+    let mut opposite = vec![0; 3 * faces.len()];
+    for (pair, found) in &edges {
+        let what = match found[..] {
+            [e, f] if ends(e) != ends(f) => {
+                (opposite[e], opposite[f]) = (f, e);
+                continue;
+            }
+            [_, _] => "two triangles go along an edge in the same sense",
+            [_] => "the surface is open along an edge",
+            _ => "more than two triangles meet at an edge",
+        };
+        return Err(ContactError::Surface {
+            what,
+            at: pair.map(|k| at[k].into()),
+        });
+    }
+    Ok(opposite)
+}
+
+fn root(joined: &[usize], mut k: usize) -> usize {
+    while joined[k] != k {
+        k = joined[k];
+    }
+    k
+}
+
+fn join(joined: &mut [usize], a: usize, b: usize) {
+    let (a, b) = (root(joined, a), root(joined, b));
+    joined[a.max(b)] = a.min(b);
+}
+
+impl Obstacle<3> for Triangulated {
+    fn distance(&self, x: &Point) -> f64 {
+        self.side * self.foot(x).distance(self.size)
+    }
+
+    fn normal(&self, x: &Point) -> Point {
+        self.foot(x).normal(self.size) * self.side
+    }
+
+    fn curvature(&self, x: &Point) -> Matrix3<f64> {
+        self.foot(x).curvature(self.size) * self.side
+    }
+
+    fn way(&self, from: &Point, to: &Point) -> Point {
+        let [start, end] = [from, to].map(|x| self.foot(x));
+        let [before, now] = [&start, &end].map(|foot| foot.normal(self.size));
+        let chord = end.jet.x - start.jet.x;
+        // What of the chord the normal turns along is that of an arc.
+        let turn = now - before;
+        let (half, squared) = (0.5 * turn.norm(), turn.norm_squared());
+        let round = match half > 0.0 && half < 1.0 {
+            true => turn * (turn.dot(&chord) / squared * (half.asin() / half - 1.0)),
+            false => Point::zeros(),
+        };
+        let way = chord + round;
+        let along = way - now * now.dot(&way);
+        match along.norm() > 0.0 {
+            true => along * (way.norm() / along.norm()),
+            false => along,
+        }
+    }
+
+    fn reference(&self) -> Point {
+        self.first
+    }
+}
+
+#[cfg(test)]
+mod tests;

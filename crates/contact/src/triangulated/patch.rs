@@ -1,0 +1,307 @@
+//! A curved triangle whose tangent planes along an edge depend on that edge alone; not its neighbours.
+
+use nalgebra::{Matrix2, Matrix3x2, Vector2, Vector3};
+
+type Point = Vector3<f64>;
+
+/// A triangular Gregory patch of degree four: it passes through three corners with given normals, and joins the
+/// patch across an edge with the same tangent planes where both are given the same curve and normals at its ends.
+///
+/// Source: D. J. Walton and D. S. Meek, *Computer-Aided Design* 28 (1996) 113-119.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Patch {
+    corners: [Point; 3],
+    /// Bernstein coefficients of the boundary, by [`BOUNDARY`].
+    boundary: [Point; 12],
+    /// Inner coefficients near a corner: that for the edge out of the corner, and that for the edge into it.
+    inner: [[Point; 2]; 3],
+}
+
+/// A point of a patch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Jet {
+    pub(super) x: Point,
+    /// First derivatives by the coordinates of corners 1 and 2.
+    pub(super) d: Matrix3x2<f64>,
+    /// Second derivatives: ₁₁, ₁₂ and ₂₂.
+    dd: [Point; 3],
+}
+
+/// Powers of the barycentric coordinates, edge by edge.
+const BOUNDARY: [[i32; 3]; 12] = [
+    [4, 0, 0],
+    [3, 1, 0],
+    [2, 2, 0],
+    [1, 3, 0],
+    [0, 4, 0],
+    [0, 3, 1],
+    [0, 2, 2],
+    [0, 1, 3],
+    [0, 0, 4],
+    [1, 0, 3],
+    [2, 0, 2],
+    [3, 0, 1],
+];
+
+/// Binomial coefficients of the points of an edge of degree four.
+const BINOMIAL: [f64; 5] = [1.0, 4.0, 6.0, 4.0, 1.0];
+
+/// Handles of the cubic curve between two points with these directions, each of unit length, such that an arc of a
+/// circle is met to sixth order.
+pub(super) fn handles(ends: [Point; 2], directions: [Point; 2]) -> [Point; 2] {
+    let chord = ends[1] - ends[0];
+    let length = chord.norm();
+    let handle = |along: &Point| 2.0 * length / (3.0 * (1.0 + along.dot(&chord) / length));
+    let [a, b] = directions;
+    [ends[0] + a * handle(&a), ends[1] - b * handle(&b)]
+}
+
+impl Patch {
+    /// The patch through corners with normals at them, along edges whose cubic curves have these handles; edge k goes
+    /// from corner k to the next.
+    pub(super) fn new(corners: [Point; 3], normals: [Point; 3], handles: [[Point; 2]; 3]) -> Self {
+        // The edges raised to degree four.
+        let edges: [[Point; 5]; 3] = std::array::from_fn(|k| {
+            let (from, [a, b], to) = (corners[k], handles[k], corners[(k + 1) % 3]);
+            [
+                from,
+                0.25 * from + 0.75 * a,
+                0.5 * (a + b),
+                0.75 * b + 0.25 * to,
+                to,
+            ]
+        });
+        let boundary = std::array::from_fn(|k| edges[k / 4][k % 4]);
+        let mut inner = [[Point::zeros(); 2]; 3];
+        for k in 0..3 {
+            let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+            let p = &edges[k];
+            // Direction of the curve, and across it in the tangent plane, as quadratic curves.
+            let [a, b] = handles[k];
+            let w = [a - corners[k], b - a, corners[next] - b];
+            let across = |n: &Point, w: &Point| n.cross(w).normalize();
+            let (first, second) = (across(&normals[k], &w[0]), across(&normals[next], &w[2]));
+            let v = [first, (first + second).normalize(), second];
+            // What the other edges leave of the derivative across this one at its ends.
+            let start = edges[last][3] - 0.5 * (p[0] + p[1]);
+            let end = edges[next][1] - 0.5 * (p[3] + p[4]);
+            let along = [
+                start.dot(&w[0]) / w[0].norm_squared(),
+                end.dot(&w[2]) / w[2].norm_squared(),
+            ];
+            let aside = [start.dot(&v[0]), end.dot(&v[2])];
+            let blend = |[c, d]: [f64; 2], q: &[Point; 3]| {
+                [
+                    (2.0 * c * q[1] + d * q[0]) / 3.0,
+                    (c * q[2] + 2.0 * d * q[1]) / 3.0,
+                ]
+            };
+            let (s, t) = (blend(along, &w), blend(aside, &v));
+            inner[k][0] = 0.5 * (p[1] + p[2]) + s[0] + t[0];
+            inner[next][1] = 0.5 * (p[2] + p[3]) + s[1] + t[1];
+        }
+        Self {
+            corners,
+            boundary,
+            inner,
+        }
+    }
+
+    /// Least and greatest coordinates of a box around it.
+    pub(super) fn around(&self) -> [[f64; 3]; 2] {
+        let points = || self.boundary.iter().chain(self.inner.iter().flatten());
+        let most = |i: usize, side: fn(f64, f64) -> f64| {
+            let of = points().map(|p| p[i]);
+            of.reduce(side).unwrap_or_default()
+        };
+        [f64::min, f64::max].map(|side| std::array::from_fn(|i| most(i, side)))
+    }
+
+    /// Where it is at the coordinates of corners 1 and 2, with derivatives.
+    pub(super) fn at(&self, at: &Vector2<f64>) -> Jet {
+        let c = [1.0 - at.x - at.y, at.x, at.y];
+        // By the barycentric coordinates; second derivatives ₀₀, ₁₁, ₂₂, ₀₁, ₁₂, ₂₀.
+        let mut sum = (Point::zeros(), [Point::zeros(); 3], [Point::zeros(); 6]);
+        let mut add = |point: &Point, value: f64, d: [f64; 3], dd: [f64; 6]| {
+            sum.0 += point * value;
+            (0..3).for_each(|i| sum.1[i] += point * d[i]);
+            (0..6).for_each(|i| sum.2[i] += point * dd[i]);
+        };
+        for (k, (point, powers)) in self.boundary.iter().zip(&BOUNDARY).enumerate() {
+            let factor = BINOMIAL[k % 4];
+            let power = |i: usize, down: i32| match (powers[i], down) {
+                (n, 0) => c[i].powi(n),
+                (n, 1) if n > 0 => f64::from(n) * c[i].powi(n - 1),
+                (n, 2) if n > 1 => f64::from(n * (n - 1)) * c[i].powi(n - 2),
+                _ => 0.0,
+            };
+            let term = |down: [i32; 3]| factor * (0..3).map(|i| power(i, down[i])).product::<f64>();
+            let d = [term([1, 0, 0]), term([0, 1, 0]), term([0, 0, 1])];
+            let own = [term([2, 0, 0]), term([0, 2, 0]), term([0, 0, 2])];
+            let mixed = [term([1, 1, 0]), term([0, 1, 1]), term([1, 0, 1])];
+            let dd = [own[0], own[1], own[2], mixed[0], mixed[1], mixed[2]];
+            add(point, term([0; 3]), d, dd);
+        }
+        for k in 0..3 {
+            let (p, q) = ((k + 1) % 3, (k + 2) % 3);
+            for (point, (p, q)) in self.inner[k].iter().zip([(p, q), (q, p)]) {
+                let (mut d, mut dd) = ([0.0; 3], [0.0; 6]);
+                let [f, f_p, f_q, f_pp, f_pq, f_qq] = share(c[p], c[q]);
+                let s = 12.0 * c[k] * c[k];
+                (d[k], d[p], d[q]) = (24.0 * c[k] * f, s * f_p, s * f_q);
+                (dd[k], dd[p], dd[q]) = (24.0 * f, s * f_pp, s * f_qq);
+                dd[between(k, p)] = 24.0 * c[k] * f_p;
+                dd[between(k, q)] = 24.0 * c[k] * f_q;
+                dd[between(p, q)] = s * f_pq;
+                add(point, s * f, d, dd);
+            }
+        }
+        let (x, d, dd) = sum;
+        Jet {
+            x,
+            d: Matrix3x2::from_columns(&[d[1] - d[0], d[2] - d[0]]),
+            dd: [
+                dd[1] - 2.0 * dd[3] + dd[0],
+                dd[4] - dd[3] - dd[5] + dd[0],
+                dd[2] - 2.0 * dd[5] + dd[0],
+            ],
+        }
+    }
+
+    /// Coordinates of the point of the plane triangle nearest to one, of the plane itself.
+    fn flat(&self, x: &Point) -> Vector2<f64> {
+        let [a, b, c] = self.corners;
+        let sides = Matrix3x2::from_columns(&[b - a, c - a]);
+        let metric = sides.transpose() * sides;
+        let found = metric
+            .try_inverse()
+            .map(|inverse| inverse * (sides.transpose() * (x - a)));
+        found.unwrap_or_else(|| Vector2::repeat(1.0 / 3.0))
+    }
+
+    /// Coordinates of its point nearest to x: of its inside, or of its edges.
+    pub(super) fn nearest(&self, x: &Point) -> Vector2<f64> {
+        let flat = self.flat(x);
+        if let Some(inside) = self.perpendicular(x, inwards(flat)) {
+            return inside;
+        }
+        let far = |at: &Vector2<f64>| (self.at(at).x - x).norm_squared();
+        let on_edges = (0..3).map(|k| self.on_edge(x, k));
+        let nearest = on_edges.min_by(|a, b| far(a).total_cmp(&far(b)));
+        nearest.unwrap_or(flat)
+    }
+
+    /// Where inside a perpendicular to the patch meets x, by Newton's method; none where the nearest point is on an
+    /// edge.
+    fn perpendicular(&self, x: &Point, start: Vector2<f64>) -> Option<Vector2<f64>> {
+        let mut at = start;
+        for _ in 0..STEPS {
+            let jet = self.at(&at);
+            let slope = jet.d.transpose() * (x - jet.x);
+            let metric = jet.d.transpose() * jet.d;
+            let whole = metric - jet.second(&(x - jet.x));
+            // Where the distance is no valley, as a plane patch would have it.
+            let valley = whole.determinant() > 0.0 && whole.trace() > 0.0;
+            let step = if valley { whole } else { metric }.try_inverse()? * slope;
+            at += step * (LONGEST / step.amax()).min(1.0);
+            if !(least(&at) > -BEYOND) {
+                return None;
+            }
+            if step.amax() < MET {
+                return (least(&at) > -MET).then_some(at);
+            }
+        }
+        None
+    }
+
+    /// Coordinates of the point of edge k nearest to x.
+    fn on_edge(&self, x: &Point, k: usize) -> Vector2<f64> {
+        let ends = [k, (k + 1) % 3].map(|i| Vector2::new(f64::from(i == 1), f64::from(i == 2)));
+        let along = ends[1] - ends[0];
+        let point = |s: f64| ends[0] + along * s;
+        let [a, b] = [k, (k + 1) % 3].map(|i| self.corners[i]);
+        let chord = b - a;
+        let mut s = ((x - a).dot(&chord) / chord.norm_squared()).clamp(0.0, 1.0);
+        for _ in 0..STEPS {
+            let jet = self.at(&point(s));
+            let (d, from) = (jet.d * along, x - jet.x);
+            let bend = along.dot(&(jet.second(&from) * along));
+            let whole = d.norm_squared() - bend;
+            let stiffness = if whole > 0.0 { whole } else { d.norm_squared() };
+            let next = (s + (d.dot(&from) / stiffness).clamp(-LONGEST, LONGEST)).clamp(0.0, 1.0);
+            let step = next - s;
+            s = next;
+            if step.abs() < MET {
+                break;
+            }
+        }
+        point(s)
+    }
+}
+
+/// Steps of a search for the nearest point.
+const STEPS: usize = 30;
+
+/// Largest step of it, in coordinates of the patch.
+const LONGEST: f64 = 0.3;
+
+/// How far beyond its edges a patch is followed.
+const BEYOND: f64 = 0.5;
+
+/// Coordinates that are met.
+const MET: f64 = 1e-13;
+
+fn least(at: &Vector2<f64>) -> f64 {
+    at.x.min(at.y).min(1.0 - at.x - at.y)
+}
+
+/// The point itself within the triangle; otherwise one of its inside.
+fn inwards(at: Vector2<f64>) -> Vector2<f64> {
+    let middle = Vector2::repeat(1.0 / 3.0);
+    let low = least(&at);
+    match low > 0.0 {
+        true => at,
+        false => middle + (at - middle) * ((1.0 / 3.0) / (1.0 / 3.0 - low)).min(1.0),
+    }
+}
+
+/// Place of a mixed second derivative among ₀₁, ₁₂, ₂₀.
+fn between(a: usize, b: usize) -> usize {
+    match (a.min(b), a.max(b)) {
+        (0, 1) => 3,
+        (1, 2) => 4,
+        _ => 5,
+    }
+}
+
+/// f = p² q / (p + q), f_p, f_q, f_pp, f_pq and f_qq; where both are zero, nothing.
+fn share(p: f64, q: f64) -> [f64; 6] {
+    let s = p + q;
+    if s <= 0.0 {
+        return [0.0; 6];
+    }
+    let (p, q, s2, s3) = (p, q, s * s, s * s * s);
+    [
+        p * p * q / s,
+        p * q * (p + 2.0 * q) / s2,
+        p * p * p / s2,
+        2.0 * q * q * q / s3,
+        p * p * (p + 3.0 * q) / s3,
+        -2.0 * p * p * p / s3,
+    ]
+}
+
+impl Jet {
+    /// The unit normal, to the left of the first two corners seen from the third: out of the surface where corners
+    /// go round counter-clockwise.
+    pub(super) fn normal(&self) -> Option<Point> {
+        let n = self.d.column(0).cross(&self.d.column(1));
+        n.try_normalize(0.0)
+    }
+
+    /// The second derivatives of the point along a vector.
+    pub(super) fn second(&self, along: &Point) -> Matrix2<f64> {
+        let [a, b, c] = self.dd.map(|dd| dd.dot(along));
+        Matrix2::new(a, b, b, c)
+    }
+}

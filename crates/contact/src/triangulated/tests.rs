@@ -1,0 +1,253 @@
+use super::*;
+use crate::Ball;
+use proptest::prelude::*;
+use std::collections::HashMap;
+use std::f64::consts::{PI, TAU};
+
+const SHARP: f64 = 1.0;
+
+type Skin = (Vec<[f64; 3]>, Vec<[usize; 3]>);
+
+/// A ball of radius 2 around (1, 0, 0): an octahedron whose triangles are cut in four, so many times.
+fn ball(times: usize) -> Skin {
+    let center = Point::new(1.0, 0.0, 0.0);
+    let mut at: Vec<Point> = [1.0, -1.0]
+        .iter()
+        .flat_map(|s| [Point::x() * *s, Point::y() * *s, Point::z() * *s])
+        .collect();
+    let mut faces = vec![
+        [0, 1, 2],
+        [1, 3, 2],
+        [3, 4, 2],
+        [4, 0, 2],
+        [1, 0, 5],
+        [3, 1, 5],
+        [4, 3, 5],
+        [0, 4, 5],
+    ];
+    for _ in 0..times {
+        let mut middles: HashMap<[usize; 2], usize> = HashMap::new();
+        let mut finer = Vec::new();
+        for face in &faces {
+            let middle = [0, 1, 2].map(|k| {
+                let [a, b] = [face[k], face[(k + 1) % 3]];
+                *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                    at.push((at[a] + at[b]).normalize());
+                    at.len() - 1
+                })
+            });
+            finer.extend((0..3).map(|k| [face[k], middle[k], middle[(k + 2) % 3]]));
+            finer.push(middle);
+        }
+        faces = finer;
+    }
+    let points = at.iter().map(|x| (center + x * 2.0).into()).collect();
+    (points, faces)
+}
+
+/// The cylinder of radius 2 around the axis z from 0 to 6, with ends, of n sides.
+fn can(n: usize) -> Skin {
+    let ring = |z: f64| {
+        (0..n).map(move |k| {
+            let (s, c) = (TAU * k as f64 / n as f64).sin_cos();
+            [2.0 * c, 2.0 * s, z]
+        })
+    };
+    let mut points: Vec<[f64; 3]> = ring(0.0).chain(ring(6.0)).collect();
+    points.extend([[0.0; 3], [0.0, 0.0, 6.0]]);
+    let faces = (0..n).flat_map(|k| {
+        let l = (k + 1) % n;
+        [
+            [k, l, n + l],
+            [k, n + l, n + k],
+            [l, k, 2 * n],
+            [n + k, n + l, 2 * n + 1],
+        ]
+    });
+    (points, faces.collect())
+}
+
+fn cube() -> Skin {
+    let points = (0..8).map(|k| [k & 1, (k >> 1) & 1, k >> 2].map(|b| b as f64));
+    let sides = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let faces = sides
+        .iter()
+        .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    (points.collect(), faces.collect())
+}
+
+fn surface((points, faces): &Skin) -> Triangulated {
+    Triangulated::new(points, faces, SHARP).expect("closed")
+}
+
+/// Directions spread over the sphere.
+fn directions(n: usize) -> impl Iterator<Item = Point> {
+    (0..n).map(move |k| {
+        let z = 1.0 - (2.0 * k as f64 + 1.0) / n as f64;
+        let (s, c) = (PI * (1.0 + 5f64.sqrt()) * k as f64).sin_cos();
+        Point::new((1.0 - z * z).sqrt() * c, (1.0 - z * z).sqrt() * s, z)
+    })
+}
+
+/// Largest error of distance and normal beside a ball.
+fn off(times: usize) -> (f64, f64) {
+    let (surface, ball) = (
+        surface(&ball(times)),
+        Ball::new([1.0, 0.0, 0.0], 2.0).expect("a ball"),
+    );
+    directions(300).fold((0.0f64, 0.0f64), |(g, n), d| {
+        let x = Point::new(1.0, 0.0, 0.0) + d * 2.3;
+        let gap = (surface.distance(&x) - ball.distance(&x)).abs();
+        (
+            g.max(gap),
+            n.max((surface.normal(&x) - ball.normal(&x)).norm()),
+        )
+    })
+}
+
+/// The surface is nearer to a ball by the fourth power of the edge, and its normal by the third.
+#[test]
+fn a_ball_of_triangles_is_round() {
+    let [(g1, n1), (g2, n2), (g3, n3)] = [1, 2, 3].map(off);
+    assert!(g1 < 4e-2 && g2 < 4e-3 && g3 < 3e-4, "{g1} {g2} {g3}");
+    assert!(g1 > 8.0 * g2 && g2 > 12.0 * g3, "{g1} {g2} {g3}");
+    assert!(n1 > 5.0 * n2 && n2 > 6.0 * n3, "{n1} {n2} {n3}");
+}
+
+/// Seen from both of its patches, an edge between smooth triangles has one normal.
+#[test]
+fn normals_are_continuous_across_smooth_edges() {
+    let surface = surface(&ball(1));
+    let mut seen: HashMap<[i64; 3], Vec<Point>> = HashMap::new();
+    for patch in &surface.patches {
+        for (a, b) in [
+            ([0.0, 0.0], [1.0, 0.0]),
+            ([1.0, 0.0], [0.0, 1.0]),
+            ([0.0, 1.0], [0.0, 0.0]),
+        ] {
+            for s in [0.25, 0.5, 0.75] {
+                let at = Vector2::from(a) * (1.0 - s) + Vector2::from(b) * s;
+                let jet = patch.at(&at);
+                let key = jet.x.map(|x| (x * 1e7).round() as i64).into();
+                seen.entry(key)
+                    .or_default()
+                    .push(jet.normal().expect("a normal"));
+            }
+        }
+    }
+    for normals in seen.values() {
+        assert_eq!(normals.len(), 2);
+        assert!((normals[0] - normals[1]).norm() < 1e-12);
+    }
+}
+
+/// A mantle is round, its ends are plane, and both meet along a round edge.
+#[test]
+fn a_can_has_sharp_edges() {
+    let off = |n: usize| {
+        let can = surface(&can(n));
+        directions(200).fold(0.0f64, |most, d| {
+            let x = Point::new(3.0 * d.x, 3.0 * d.y, 3.0 + 4.0 * d.z);
+            let (beyond, outside) = ((x.z - 3.0).abs() - 3.0, x.xy().norm() - 2.0);
+            let exact = match beyond > 0.0 && outside > 0.0 {
+                true => beyond.hypot(outside),
+                false => beyond.max(outside),
+            };
+            most.max((can.distance(&x) - exact).abs())
+        })
+    };
+    let (coarse, fine) = (off(24), off(48));
+    assert!(coarse < 3e-4 && fine < coarse / 12.0, "{coarse} {fine}");
+    let can = surface(&can(24));
+    assert!((can.distance(&Point::new(1.9, 0.3, 7.0)) - 1.0).abs() < 1e-14);
+}
+
+proptest! {
+    /// Of a cube the distance is known everywhere.
+    #[test]
+    fn a_cube_is_met_to_rounding(x in prop::array::uniform3(-1.0..2.0f64)) {
+        let outside = x.map(|x| (x - 0.5f64).abs() - 0.5);
+        let most = outside.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
+        let exact = match most > 0.0 {
+            true => outside.iter().map(|d| d.max(0.0).powi(2)).sum::<f64>().sqrt(),
+            false => most,
+        };
+        let x = Point::from(x);
+        let cube = surface(&cube());
+        prop_assert!((cube.distance(&x) - exact).abs() < 1e-12);
+        prop_assert!((cube.clone().hollow().distance(&x) + exact).abs() < 1e-12);
+        if exact > 0.05 {
+            prop_assert!((x - cube.normal(&x) * exact).iter().all(|v| (-1e-12..1.0 + 1e-12).contains(v)));
+        }
+    }
+
+    /// Normals are gradients of the distance, and curvatures those of normals: off edges to the order of the step.
+    #[test]
+    fn derivatives_are_those_of_differences(x in prop::array::uniform3(-1.0..1.0f64), which in 0..2usize) {
+        let (surface, center) = match which {
+            0 => (surface(&ball(1)), Point::new(1.0, 0.0, 0.0)),
+            _ => (surface(&can(16)), Point::new(0.0, 0.0, 3.0)),
+        };
+        let Some(d) = Point::from(x).try_normalize(0.1) else { return Ok(()) };
+        let x = center + d * 4.0;
+        let (n, h) = (surface.normal(&x), 1e-5);
+        prop_assert!((n.norm() - 1.0).abs() < 1e-12);
+        let curvature = surface.curvature(&x);
+        for i in 0..3 {
+            let e = Point::from_fn(|k, _| if k == i { h } else { 0.0 });
+            let slope = (surface.distance(&(x + e)) - surface.distance(&(x - e))) / (2.0 * h);
+            prop_assert!((slope - n[i]).abs() < 1e-8, "{slope} {}", n[i]);
+            let [left, right] = [x - e, x + e].map(|x| surface.normal(&x));
+            let (to, back) = ((right - n) / h, (n - left) / h);
+            // Where the curvature jumps, at an edge, one side is as good as the other.
+            if (to - back).norm() < 1e-3 {
+                let turned = (right - left) / (2.0 * h);
+                prop_assert!((turned - curvature.column(i)).norm() < 2e-4, "{turned} {curvature}");
+            }
+        }
+        prop_assert!((curvature - curvature.transpose()).norm() < 1e-12);
+    }
+
+    /// Ways are as long as on the round surface.
+    #[test]
+    fn ways_are_arcs(a in 0.1..3.0f64, b in 0.1..3.0f64, c in -1.0..1.0f64) {
+        let (surface, round) = (surface(&ball(3)), Ball::new([1.0, 0.0, 0.0], 2.0).expect("a ball"));
+        let at = |a: f64, b: f64| Point::new(1.0, 0.0, 0.0) + Point::new(a.cos() * b.sin(), a.sin() * b.sin(), b.cos()) * 2.05;
+        let (from, to) = (at(a, b), at(a + 0.5 * c, b + 0.2));
+        let (way, exact) = (surface.way(&from, &to), round.way(&from, &to));
+        prop_assert!((way - exact).norm() < 2e-3 * exact.norm(), "{way} {exact}");
+    }
+}
+
+#[test]
+fn what_is_no_closed_surface_is_refused() {
+    let (points, faces) = cube();
+    let said = |faces: &[[usize; 3]], points: &[[f64; 3]]| {
+        Triangulated::new(points, faces, SHARP)
+            .expect_err("refused")
+            .to_string()
+    };
+    assert!(said(&faces[1..], &points).contains("open along an edge"));
+    let mut turned = faces.clone();
+    turned[3].swap(0, 1);
+    assert!(said(&turned, &points).contains("same sense"));
+    let twice = [&faces[..], &faces[..1]].concat();
+    assert!(said(&twice, &points).contains("more than two"));
+    let mut flat = points.clone();
+    flat[2] = [0.0, 0.5, 0.5];
+    flat[3] = [0.0, 0.25, 0.25];
+    flat[0] = [0.0, 0.75, 0.75];
+    assert!(said(&faces, &flat).contains("no area"));
+    assert!(said(&[], &points).contains("number of triangles"));
+    assert!(said(&[[0, 1, 9]], &points).contains("one of the points"));
+    let inwards: Vec<[usize; 3]> = faces.iter().map(|&[a, b, c]| [b, a, c]).collect();
+    let cube = surface(&(points, inwards));
+    assert!((cube.distance(&Point::new(0.5, 0.5, 2.0)) - 1.0).abs() < 1e-14);
+}
