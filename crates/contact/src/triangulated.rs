@@ -131,6 +131,12 @@ impl Triangulated {
                 break;
             }
             let patch = &self.patches[found.data];
+            if best
+                .as_ref()
+                .is_some_and(|(d, _)| patch.away(x) > d + SAME * self.size)
+            {
+                continue;
+            }
             let at = patch.nearest(x);
             let jet = patch.at(&at);
             let from = x - jet.x;

@@ -8,8 +8,9 @@ mod write;
 
 pub use write::write_gmsh;
 
-use crate::Mesh;
 use crate::read::{Cell, Draft, Loss, ReadError, Side};
+use crate::skin::Skin;
+use crate::{CellKind, Mesh, nearest};
 use input::{Coding, Input};
 use kind::Kind;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -85,6 +86,16 @@ pub fn read_gmsh<const D: usize>(bytes: &[u8]) -> Result<Mesh<D>, ReadError> {
 pub fn read_gmsh_noting<const D: usize>(bytes: &[u8]) -> Result<(Mesh<D>, Vec<Loss>), ReadError> {
     const { assert!(D == 2 || D == 3) };
     read(bytes)?.draft::<D>()?.finish()
+}
+
+/// The triangles of a physical group of surfaces of a file of Gmsh, or of all its surfaces; quadrangles are halved, and
+/// triangles of six nodes quartered.
+///
+/// # Errors
+/// Those of [`read_gmsh`]; [`ReadError::NoGroup`] for a name that no group of surfaces has, with the nearest one that
+/// does; [`ReadError::NoTriangles`].
+pub fn read_gmsh_skin(bytes: &[u8], group: Option<&str>) -> Result<Skin, ReadError> {
+    read(bytes)?.skin(group)
 }
 
 /// What a file says.
@@ -252,6 +263,44 @@ impl File {
     fn name(&self, dimension: usize, tag: u32) -> String {
         let name = self.names.get(&(dimension, tag));
         name.map_or_else(|| tag.to_string(), Clone::clone)
+    }
+
+    fn skin(&self, group: Option<&str>) -> Result<Skin, ReadError> {
+        let surfaces = || self.elements.iter().filter(|e| e.kind.dimension == 2);
+        let names = |e: &Element| -> Vec<String> {
+            let tags = self.physicals(e).iter();
+            tags.map(|&tag| self.name(2, tag)).collect()
+        };
+        let is_of = |e: &Element| group.is_none_or(|group| names(e).iter().any(|n| n == group));
+        if let Some(group) = group
+            && !surfaces().any(is_of)
+        {
+            let names: Vec<String> = surfaces().flat_map(names).collect();
+            let near = nearest(group, names.iter().map(String::as_str));
+            return Err(ReadError::NoGroup {
+                group: group.into(),
+                nearest: near.map(Into::into),
+            });
+        }
+        let places: HashMap<u64, [f64; 3]> = self.nodes.iter().copied().collect();
+        let mut triangles = Vec::new();
+        for element in surfaces().filter(|e| is_of(e)) {
+            let parts: &[[usize; 3]] = match element.kind.cell {
+                Some(CellKind::Tri3) => &[[0, 1, 2]],
+                Some(CellKind::Tri6) => &[[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]],
+                _ => &[[0, 1, 2], [0, 2, 3]],
+            };
+            for part in parts {
+                let mut corners = [[0.0; 3]; 3];
+                for (corner, &k) in corners.iter_mut().zip(part) {
+                    let (element, node) = (element.number, element.nodes[k]);
+                    let place = places.get(&node);
+                    *corner = *place.ok_or(ReadError::UnknownNode { element, node })?;
+                }
+                triangles.push(corners);
+            }
+        }
+        Skin::of(triangles.into_iter())
     }
 
     fn draft<const D: usize>(mut self) -> Result<Draft, ReadError> {

@@ -10,6 +10,7 @@
 //! | pair two surfaces | [`Mesh::mortar_rows`] |
 //! | make one | [`block2`], [`block3`] on the lines of [`uniform`], [`geometric`], [`refine`] |
 //! | read one, from the bytes of a file | [`read_gmsh`], [`read_abaqus`] |
+//! | read a surface in space | [`read_stl`], [`read_gmsh_skin`] |
 //! | write one | [`write_gmsh`] |
 //!
 //! Cells are numbered as in Gmsh, lengths are in millimetres, tensors are Mandel vectors
@@ -57,6 +58,7 @@ pub mod pairing;
 pub mod quadrature;
 pub mod read;
 mod sample;
+pub mod skin;
 
 pub use abaqus::{read_abaqus, read_abaqus_noting};
 pub use cell::{CellKind, FacetKind, UnknownKind};
@@ -65,10 +67,11 @@ pub use element::{
 };
 pub use error::{GroupKind, MeshError};
 pub use generate::{block2, block3, geometric, refine, uniform};
-pub use gmsh::{read_gmsh, read_gmsh_noting, write_gmsh};
+pub use gmsh::{read_gmsh, read_gmsh_noting, read_gmsh_skin, write_gmsh};
 pub use hypothesis::{Axisymmetric, Entry, Hypothesis, PlaneStrain, Solid};
 pub use mesh::{Facet, Mesh, NodeKind, PositiveShare, Pressed, Share};
 pub use nearest::nearest;
 pub use pairing::{MortarRow, Pairing};
 pub use quadrature::{Integration, Point, Rule, gauss};
 pub use read::{Loss, Place, ReadError};
+pub use skin::{Skin, read_stl};

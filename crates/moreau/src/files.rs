@@ -1,7 +1,8 @@
 //! Mesh files on disk: read and written by the ending of their names; no mesh is changed.
 
 use crate::mesh::{
-    Loss, Mesh, ReadError, nearest, read_abaqus_noting, read_gmsh_noting, write_gmsh,
+    Loss, Mesh, ReadError, Skin, nearest, read_abaqus_noting, read_gmsh_noting, read_gmsh_skin,
+    read_stl, write_gmsh,
 };
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -132,6 +133,27 @@ pub fn mesh_of<const D: usize>(
     })
 }
 
+/// The surface of a file, `.stl` or `.msh` (Gmsh); of the latter that of a physical group, or all.
+///
+/// # Errors
+/// [`FileError`], as of [`read_mesh`].
+pub fn read_skin(path: &Path, group: Option<&str>) -> Result<Skin, FileError> {
+    let read: fn(&[u8], Option<&str>) -> Result<Skin, ReadError> = match ending(path).as_str() {
+        "stl" => |bytes, _| read_stl(bytes),
+        "msh" => read_gmsh_skin,
+        _ => {
+            return Err(FileError::Format {
+                path: path.into(),
+                expected: ".stl or .msh (Gmsh)",
+            });
+        }
+    };
+    read(&bytes(path)?, group).map_err(|source| FileError::Mesh {
+        path: path.into(),
+        source,
+    })
+}
+
 fn bytes(path: &Path) -> Result<Vec<u8>, FileError> {
     let size = fs::metadata(path).map(|m| m.len());
     if let Ok(bytes @ LARGEST..) = size {
@@ -158,7 +180,7 @@ fn nearest_file(missing: &Path) -> Option<String> {
     let entries = fs::read_dir(folder).ok()?;
     let names: Vec<String> = entries
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .filter(|name| ["msh", "inp"].contains(&ending(Path::new(name)).as_str()))
+        .filter(|name| ["msh", "inp", "stl"].contains(&ending(Path::new(name)).as_str()))
         .collect();
     let name = missing.file_name()?.to_string_lossy();
     nearest(&name, names.iter().map(String::as_str)).map(Into::into)

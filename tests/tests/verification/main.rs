@@ -33,6 +33,7 @@ mod soils;
 mod sphere;
 mod strip;
 mod transactions;
+mod triangles;
 
 /// Asserts |value − reference| ≤ tolerance · |reference|; NaN fails.
 #[track_caller]

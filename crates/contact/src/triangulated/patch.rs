@@ -15,6 +15,8 @@ pub(super) struct Patch {
     boundary: [Point; 12],
     /// Inner coefficients near a corner: that for the edge out of the corner, and that for the edge into it.
     inner: [[Point; 2]; 3],
+    /// How far it is at most from its plane triangle \[mm\].
+    bulge: f64,
 }
 
 /// A point of a patch.
@@ -28,7 +30,7 @@ pub(super) struct Jet {
 }
 
 /// Powers of the barycentric coordinates, edge by edge.
-const BOUNDARY: [[i32; 3]; 12] = [
+const BOUNDARY: [[usize; 3]; 12] = [
     [4, 0, 0],
     [3, 1, 0],
     [2, 2, 0],
@@ -100,11 +102,38 @@ impl Patch {
             inner[k][0] = 0.5 * (p[1] + p[2]) + s[0] + t[0];
             inner[next][1] = 0.5 * (p[2] + p[3]) + s[1] + t[1];
         }
-        Self {
+        let plane = Self {
             corners,
             boundary,
             inner,
-        }
+            bulge: 0.0,
+        };
+        // It lies within its coefficients, and the distance to a triangle is convex.
+        let points = boundary.iter().chain(inner.iter().flatten());
+        let bulge = points.fold(0.0, |most, p| f64::max(most, plane.away(p)));
+        Self { bulge, ..plane }
+    }
+
+    /// What its distance from a point is at least \[mm\].
+    pub(super) fn away(&self, x: &Point) -> f64 {
+        let [a, b, c] = self.corners;
+        let flat = self.flat(x);
+        let foot = match least(&flat) >= 0.0 {
+            true => a + (b - a) * flat.x + (c - a) * flat.y,
+            false => {
+                let on = |k: usize| {
+                    let (from, along) =
+                        (self.corners[k], self.corners[(k + 1) % 3] - self.corners[k]);
+                    let s = (x - from).dot(&along) / along.norm_squared();
+                    from + along * s.clamp(0.0, 1.0)
+                };
+                let far = |p: &Point| (p - x).norm_squared();
+                let [p, q, r] = [on(0), on(1), on(2)];
+                let nearer = |p: Point, q: Point| if far(&p) <= far(&q) { p } else { q };
+                nearer(nearer(p, q), r)
+            }
+        };
+        (x - foot).norm() - self.bulge
     }
 
     /// Least and greatest coordinates of a box around it.
@@ -127,15 +156,20 @@ impl Patch {
             (0..3).for_each(|i| sum.1[i] += point * d[i]);
             (0..6).for_each(|i| sum.2[i] += point * dd[i]);
         };
-        for (k, (point, powers)) in self.boundary.iter().zip(&BOUNDARY).enumerate() {
-            let factor = BINOMIAL[k % 4];
-            let power = |i: usize, down: i32| match (powers[i], down) {
-                (n, 0) => c[i].powi(n),
-                (n, 1) if n > 0 => f64::from(n) * c[i].powi(n - 1),
-                (n, 2) if n > 1 => f64::from(n * (n - 1)) * c[i].powi(n - 2),
-                _ => 0.0,
+        // Powers of each coordinate, with first and second derivatives.
+        let powers = c.map(|c| {
+            let (c2, c3) = (c * c, c * c * c);
+            [
+                [1.0, c, c2, c3, c2 * c2],
+                [0.0, 1.0, 2.0 * c, 3.0 * c2, 4.0 * c3],
+                [0.0, 0.0, 2.0, 6.0 * c, 12.0 * c2],
+            ]
+        });
+        for (k, (point, of)) in self.boundary.iter().zip(&BOUNDARY).enumerate() {
+            let term = |down: [usize; 3]| {
+                let [a, b, c] = [0, 1, 2].map(|i| powers[i][down[i]][of[i]]);
+                BINOMIAL[k % 4] * a * b * c
             };
-            let term = |down: [i32; 3]| factor * (0..3).map(|i| power(i, down[i])).product::<f64>();
             let d = [term([1, 0, 0]), term([0, 1, 0]), term([0, 0, 1])];
             let own = [term([2, 0, 0]), term([0, 2, 0]), term([0, 0, 2])];
             let mixed = [term([1, 1, 0]), term([0, 1, 1]), term([1, 0, 1])];
@@ -182,18 +216,20 @@ impl Patch {
     /// Coordinates of its point nearest to x: of its inside, or of its edges.
     pub(super) fn nearest(&self, x: &Point) -> Vector2<f64> {
         let flat = self.flat(x);
-        if let Some(inside) = self.perpendicular(x, inwards(flat)) {
-            return inside;
-        }
+        let out = match self.perpendicular(x, inwards(flat)) {
+            Ok(inside) => return inside,
+            Err(out) => out,
+        };
+        // Edge k is opposite corner k + 2.
+        let beyond = |k: &usize| [1.0 - out.x - out.y, out.x, out.y][(k + 2) % 3] < MET;
         let far = |at: &Vector2<f64>| (self.at(at).x - x).norm_squared();
-        let on_edges = (0..3).map(|k| self.on_edge(x, k));
+        let on_edges = (0..3).filter(beyond).map(|k| self.on_edge(x, k));
         let nearest = on_edges.min_by(|a, b| far(a).total_cmp(&far(b)));
-        nearest.unwrap_or(flat)
+        nearest.unwrap_or(out)
     }
 
-    /// Where inside a perpendicular to the patch meets x, by Newton's method; none where the nearest point is on an
-    /// edge.
-    fn perpendicular(&self, x: &Point, start: Vector2<f64>) -> Option<Vector2<f64>> {
+    /// Where inside a perpendicular to the patch meets x, by Newton's method; or how far beyond its edges one may be.
+    fn perpendicular(&self, x: &Point, start: Vector2<f64>) -> Result<Vector2<f64>, Vector2<f64>> {
         let mut at = start;
         for _ in 0..STEPS {
             let jet = self.at(&at);
@@ -202,16 +238,19 @@ impl Patch {
             let whole = metric - jet.second(&(x - jet.x));
             // Where the distance is no valley, as a plane patch would have it.
             let valley = whole.determinant() > 0.0 && whole.trace() > 0.0;
-            let step = if valley { whole } else { metric }.try_inverse()? * slope;
+            let step = if valley { whole } else { metric }.try_inverse();
+            let Some(step) = step.map(|inverse| inverse * slope) else {
+                return Err(at);
+            };
             at += step * (LONGEST / step.amax()).min(1.0);
             if !(least(&at) > -BEYOND) {
-                return None;
+                return Err(at);
             }
             if step.amax() < MET {
-                return (least(&at) > -MET).then_some(at);
+                return if least(&at) > -MET { Ok(at) } else { Err(at) };
             }
         }
-        None
+        Err(at)
     }
 
     /// Coordinates of the point of edge k nearest to x.

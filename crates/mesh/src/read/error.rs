@@ -115,6 +115,29 @@ pub enum ReadError {
         node: u64,
     },
 
+    /// What is no STL file.
+    #[error("this is no STL file: {reason}")]
+    Stl {
+        /// Where it is not.
+        reason: String,
+    },
+
+    /// A surface without triangles.
+    #[error("there are no triangles")]
+    NoTriangles,
+
+    /// A physical group of surfaces that no element is in.
+    #[error(
+        "no surface is in the physical group {group:?}: {}",
+        suggestion(nearest)
+    )]
+    NoGroup {
+        /// The name.
+        group: String,
+        /// The nearest name of a group of surfaces.
+        nearest: Option<String>,
+    },
+
     /// An element of a higher dimension than the mesh to be read.
     #[error("element {element} is of dimension {found}: the mesh is read in dimension {expected}")]
     Dimension {

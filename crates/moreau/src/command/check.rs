@@ -162,6 +162,14 @@ fn shape(shape: &Shape, length: &str) -> String {
         Shape::Polyline(points, radii) => {
             format!("polyline {points:?} with its corners rounded by {radii:?} {length}")
         }
+        Shape::Triangles(entry) => {
+            let (n, inside) = (entry.skin.triangles.len(), inside(entry.hollow));
+            let file = entry.file.display();
+            format!(
+                "{n} triangles of {file}, sharp above {}°{inside}",
+                entry.sharp
+            )
+        }
     }
 }
 

@@ -172,6 +172,18 @@ fn tool(tool: &ToolEntry, out: &mut String) -> fmt::Result {
                 "profile = {{ points = {points:?}, radii = {radii:?} }}"
             )?;
         }
+        Shape::Triangles(entry) => {
+            let path = std::path::absolute(&entry.file).unwrap_or_else(|_| entry.file.clone());
+            let group = entry.group.as_ref();
+            let group = group.map_or(String::new(), |g| format!(", group = {}", text(g)));
+            writeln!(
+                out,
+                "surface = {{ file = {}{group}, sharp = {:?} }}",
+                text(&path.to_string_lossy()),
+                entry.sharp
+            )?;
+            writeln!(out, "inside = {}", entry.hollow)?;
+        }
     }
     if let Some(reference) = &tool.reference {
         writeln!(out, "reference = {:?}", reference.value)?;

@@ -3,7 +3,7 @@
 use super::finding::At;
 use super::units::Units;
 use crate::driver::Increments;
-use crate::mesh::{CellKind, Integration};
+use crate::mesh::{CellKind, Integration, Skin};
 use std::fmt;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -189,6 +189,23 @@ pub enum Shape {
     Cylinder(Vec<f64>, Vec<f64>, f64, bool),
     /// In the plane: points with the tool on the right, and radii that round the corners between them, or none.
     Polyline(Vec<[f64; 2]>, Vec<f64>),
+    /// In space: a closed surface of triangles.
+    Triangles(SkinEntry),
+}
+
+/// `surface` of a `[[tool]]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SkinEntry {
+    /// Path of the file.
+    pub file: PathBuf,
+    /// Physical group of a file of Gmsh.
+    pub group: Option<String>,
+    /// Angle between triangles above which their edge is sharp \[degrees\].
+    pub sharp: f64,
+    /// Whether the tool is hollow.
+    pub hollow: bool,
+    /// What is in the file.
+    pub skin: Skin,
 }
 
 /// `[[tool]]`.

@@ -85,7 +85,7 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
     if root.get("material").is_none() {
         missing(root, "[[material]]", "on, young and poisson");
     }
-    let (tools, tool_names) = tool::read_tools(root, analysis);
+    let (tools, tool_names) = tool::read_tools(root, analysis, folder);
     let contacts = tool::read_contacts(root, dimension);
     let steps = root
         .tables("step", "[[step]]")

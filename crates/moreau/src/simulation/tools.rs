@@ -54,7 +54,7 @@ impl Sheet {
                 let at = |s: f64, t: f64| foot + (along * s + across * t) * reach;
                 let side = [-1.0, 1.0];
                 let points = grid([GRID[0]; 2], |[s, t]| at(mix(side, s), mix(side, t)));
-                (points, Some(([GRID[0]; 2], false)), point)
+                (points, Some(quadrilaterals([GRID[0]; 2], false)), point)
             }
             (Shape::Ball(center, radius, ..), 2) => {
                 let center = vector(center);
@@ -73,7 +73,15 @@ impl Sheet {
                     let ((sin, cos), (b, a)) = ((most * s).sin_cos(), (TAU * t).sin_cos());
                     center + (pole * cos + (along * a + across * b) * sin) * *radius
                 });
-                (points, Some((GRID, true)), center)
+                (points, Some(quadrilaterals(GRID, true)), center)
+            }
+            (Shape::Triangles(entry), _) => {
+                let skin = &entry.skin;
+                let points: Vec<_> = skin.points.iter().map(|x| vector(x)).collect();
+                let pieces = skin.triangles.iter().map(|t| t.to_vec());
+                let first = skin.triangles[0][0];
+                let first = points[first];
+                (points, Some(pieces.collect()), first)
             }
             (Shape::Cylinder(center, axis, radius, _), _) => {
                 let (center, axis) = (vector(center), vector(axis).normalize());
@@ -85,13 +93,11 @@ impl Sheet {
                     let (b, a) = (most * (2.0 * t - 1.0)).sin_cos();
                     foot + axis * mix([-reach, reach], s) + (out * a + across * b) * *radius
                 });
-                (points, Some((GRID, false)), center)
+                (points, Some(quadrilaterals(GRID, false)), center)
             }
         };
-        let pieces = match pieces {
-            None => (1..points.len()).map(|k| vec![k - 1, k]).collect(),
-            Some((grid, pole)) => quadrilaterals(grid, pole),
-        };
+        let chain = || (1..points.len()).map(|k| vec![k - 1, k]).collect();
+        let pieces: Vec<Vec<usize>> = pieces.unwrap_or_else(chain);
         let reference = tool
             .reference
             .as_ref()

@@ -8,6 +8,7 @@ mod mutants;
 mod refused;
 mod schema;
 mod supports;
+mod surfaces;
 mod values;
 
 use moreau::deck::{Class, Problem, open, open_in};

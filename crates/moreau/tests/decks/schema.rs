@@ -76,6 +76,14 @@ fn unknown_key_in_model(table: &str) -> Option<Vec<String>> {
                 "cylinder = { center = [0, 0, 0], axis = [0, 0, 1], radius = 1, zzz = 1 }",
             ),
         ],
+        "profile" => vec![with(
+            tool,
+            "profile = { points = [[9, 0], [0, 0]], radii = [], zzz = 1 }",
+        )],
+        "surface" => vec![solid_with(
+            tool,
+            "surface = { file = \"none.stl\", zzz = 1 }",
+        )],
         "sphere" => vec![solid_with(
             tool,
             "sphere = { center = [0, 0, 0], radius = 1, zzz = 1 }",

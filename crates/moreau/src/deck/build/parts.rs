@@ -2,7 +2,7 @@
 //! libraries.
 
 use super::groups::HIDDEN;
-use crate::contact::{Ball, ContactError, Cylinder, Obstacle, Plane, Polyline};
+use crate::contact::{Ball, ContactError, Cylinder, Obstacle, Plane, Polyline, Triangulated};
 use crate::deck::entries::{
     Adjust, Curve, Deck, FrictionEntry, Hardening, MaterialEntry, Shape, SoilEntry,
 };
@@ -320,6 +320,11 @@ pub(super) fn surface(shape: &Shape) -> Option<Result<Box<dyn Obstacle<3>>, Cont
         Shape::Cylinder(center, axis, radius, hollow) => {
             let cylinder = Cylinder::new(fixed(center), fixed(axis), *radius);
             Some(cylinder.map(|c| boxed(if *hollow { c.hollow() } else { c })))
+        }
+        Shape::Triangles(entry) => {
+            let (skin, sharp) = (&entry.skin, entry.sharp.to_radians());
+            let closed = Triangulated::new(&skin.points, &skin.triangles, sharp);
+            Some(closed.map(|t| boxed(if entry.hollow { t.hollow() } else { t })))
         }
         other => simple(other),
     }

@@ -1,13 +1,26 @@
 //! `[[tool]]` and `[[contact]]`: surfaces and pairs as they are given.
 
-use crate::deck::entries::{Adjust, Analysis, ContactEntry, FrictionEntry, Shape, ToolEntry};
+use crate::deck::entries::{
+    Adjust, Analysis, ContactEntry, FrictionEntry, Shape, SkinEntry, ToolEntry,
+};
 use crate::deck::finding::At;
 use crate::deck::reader::{self, Table};
+use crate::files::read_skin;
+use std::path::Path;
 
-const SHAPES: [&str; 5] = ["plane", "cylinder", "sphere", "polyline", "profile"];
+const SHAPES: [&str; 6] = [
+    "plane", "cylinder", "sphere", "polyline", "profile", "surface",
+];
+
+/// Angle between triangles above which their edge is sharp \[degrees\].
+const SHARP: f64 = 30.0;
 
 /// The tools, and the names of all of them.
-pub(super) fn read_tools(root: &Table<'_>, analysis: Analysis) -> (Vec<ToolEntry>, Vec<String>) {
+pub(super) fn read_tools(
+    root: &Table<'_>,
+    analysis: Analysis,
+    folder: &Path,
+) -> (Vec<ToolEntry>, Vec<String>) {
     let mut names = Vec::new();
     let tools = root
         .tables("tool", "[[tool]]")
@@ -15,7 +28,7 @@ pub(super) fn read_tools(root: &Table<'_>, analysis: Analysis) -> (Vec<ToolEntry
         .filter_map(|table| {
             let name = table.name("name");
             names.extend(name.iter().map(|n| n.value.clone()));
-            let shape = shape(&table, analysis);
+            let shape = shape(&table, analysis, folder);
             let reference = table.get("reference").and_then(|value| {
                 reader::vector(value, "reference", analysis.dimension(), table.log())
             });
@@ -30,7 +43,7 @@ pub(super) fn read_tools(root: &Table<'_>, analysis: Analysis) -> (Vec<ToolEntry
     (tools, names)
 }
 
-fn shape(table: &Table<'_>, analysis: Analysis) -> Option<At<Shape>> {
+fn shape(table: &Table<'_>, analysis: Analysis, folder: &Path) -> Option<At<Shape>> {
     let log = table.log();
     let dimension = analysis.dimension();
     let inside = table.boolean_if("inside");
@@ -48,7 +61,7 @@ fn shape(table: &Table<'_>, analysis: Analysis) -> Option<At<Shape>> {
         );
         return None;
     };
-    let sided = key == "cylinder" || key == "sphere";
+    let sided = ["cylinder", "sphere", "surface"].contains(&key);
     if let Some(inside) = inside.filter(|i| i.value && !sided) {
         log.borrow_mut().error(
             &inside.span,
@@ -67,7 +80,15 @@ fn shape(table: &Table<'_>, analysis: Analysis) -> Option<At<Shape>> {
         let points = points(value, key, log)?;
         return Some(At::new(Shape::Polyline(points, Vec::new()), value.span()));
     }
+    if key == "surface" && dimension == 2 {
+        return reader::wrong(value, key, "a tool of analysis = \"solid\"", log);
+    }
     let inner = reader::table(value, key, key, log)?;
+    if key == "surface" {
+        let entry = skin(&inner, hollow, folder);
+        inner.finish();
+        return Some(At::new(Shape::Triangles(entry?), value.span()));
+    }
     if key == "profile" {
         let shape = profile(&inner);
         inner.finish();
@@ -102,6 +123,41 @@ fn shape(table: &Table<'_>, analysis: Analysis) -> Option<At<Shape>> {
     };
     inner.finish();
     Some(At::new(shape, value.span()))
+}
+
+/// `{ file = "…", group = "…", sharp = 30 }`, and what is in the file.
+fn skin(table: &Table<'_>, hollow: bool, folder: &Path) -> Option<SkinEntry> {
+    let log = table.log();
+    let file = table.text("file");
+    let group = table.get("group");
+    let group = group.and_then(|v| reader::text(v, "group", log));
+    let sharp = table.number_if("sharp").map_or(SHARP, |s| s.value);
+    let file = file?;
+    let path = folder.join(&file.value);
+    if let Some(group) = group.as_ref().filter(|_| !file.value.ends_with(".msh")) {
+        let message = "only a file of Gmsh has groups: of others all is the surface";
+        log.borrow_mut()
+            .error(&group.span, message, "no group here");
+        return None;
+    }
+    match read_skin(&path, group.as_ref().map(|g| g.value.as_str())) {
+        Ok(skin) => Some(SkinEntry {
+            file: path,
+            group: group.map(|g| g.value),
+            sharp,
+            hollow,
+            skin,
+        }),
+        Err(error) => {
+            let mut log = log.borrow_mut();
+            let message = error.to_string();
+            match error.help() {
+                Some(help) => log.error_with(&file.span, message, "this file", help),
+                None => log.error(&file.span, message, "this file"),
+            };
+            None
+        }
+    }
 }
 
 /// `[[x, y], …]`.
