@@ -41,7 +41,7 @@ struct Sheet<'a, const D: usize> {
     nodes: Vec<SVector<f64, D>>,
     offsets: Vec<f64>,
     tool: &'a dyn Obstacle<D>,
-    /// Direction into the cell.
+    /// Direction into the cell, across the facet.
     inwards: SVector<f64, D>,
     /// How far it is followed \[mm\].
     limit: f64,
@@ -61,7 +61,19 @@ impl<'a, const D: usize> Sheet<'a, D> {
             |a: &SVector<f64, D>| corners.iter().map(|b| (a - b).norm()).fold(0.0, f64::max);
         let size = corners.iter().map(apart).fold(0.0, f64::max);
         let middle = corners.iter().sum::<SVector<f64, D>>() / corners.len() as f64;
-        let half = middle_of_cell - middle;
+        // Across the facet: of a cell that is sheared the middle lies beside it.
+        let mut half = middle_of_cell - middle;
+        let mut along: Vec<SVector<f64, D>> = Vec::new();
+        for corner in corners {
+            let mut side = corner - middle;
+            along.iter().for_each(|t| side -= t * t.dot(&side));
+            if along.len() + 1 < D
+                && let Some(side) = side.try_normalize(FINE * size)
+            {
+                half -= side * side.dot(&half);
+                along.push(side);
+            }
+        }
         Self {
             kind,
             inwards: half.try_normalize(0.0).unwrap_or_else(SVector::zeros),
@@ -210,5 +222,38 @@ impl<const D: usize> Driver<D> {
             position: (body.turned(x, &turn) + at).into(),
             pressed,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use moreau_contact::Ball;
+    use nalgebra::Vector2;
+
+    /// A facet drawn over a disc has its bow behind it, however the cell below is sheared.
+    #[test]
+    fn a_sheared_cell_is_looked_into_across_its_facet() {
+        let disc = Ball::new([0.0, 3.0], 3.0).expect("a disc");
+        let on = |degrees: f64| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            Vector2::new(3.0 * sin, 3.0 - 3.0 * cos)
+        };
+        let depth = |middle: Vector2<f64>| {
+            let nodes = vec![on(20.0), on(60.0), on(40.0)];
+            Sheet::new(FacetKind::Line3, (nodes, vec![0.0; 3]), middle, &disc)
+                .deepest()
+                .1
+        };
+        let (along, across) = (on(60.0) - on(20.0), on(40.0) - Vector2::new(0.0, 3.0));
+        let straight = depth(on(40.0) + across * 0.2);
+        assert!(straight < 1e-2, "{straight}");
+        for shear in [-2.0, 2.0] {
+            let sheared = depth(on(40.0) + across * 0.2 + along * shear);
+            assert!(
+                (sheared - straight).abs() < 1e-3,
+                "{shear}: {sheared} {straight}"
+            );
+        }
     }
 }
