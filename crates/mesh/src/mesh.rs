@@ -181,6 +181,31 @@ impl<const D: usize> Mesh<D> {
         inverted
     }
 
+    /// The quality of the worst cell with displaced nodes, which cell that is, and where \[mm\]: D det(M)^(2/D) / |M|²,
+    /// least among the points of the full rule, of the map M from a square, cube or equilateral simplex. Of a
+    /// rectangle with sides 1 : a it is 2 a / (1 + a²), of a square sheared by γ 2 / (2 + γ²), and of what is turned
+    /// inside out not positive.
+    ///
+    /// Source: P. M. Knupp, *SIAM J. Sci. Comput.* 23 (2001) 193-218.
+    pub fn worst_quality(&self, positions: &[[f64; D]]) -> (f64, usize, [f64; D]) {
+        let mut samples = BTreeMap::new();
+        let mut worst = (f64::INFINITY, 0, [0.0; D]);
+        for cell in 0..self.cell_count() {
+            let kind = self.kind(cell);
+            let table = samples.entry(kind).or_insert_with(|| cell_samples(kind));
+            let nodes = self.cell_nodes(cell).iter();
+            let x: Vec<[f64; D]> = nodes.map(|&a| positions[a]).collect();
+            let simplex = kind.corner_count() == D + 1;
+            for sample in &table.rule {
+                let quality = sample.regularity(&x, simplex);
+                if quality < worst.0 {
+                    worst = (quality, cell, sample.position(&x));
+                }
+            }
+        }
+        worst
+    }
+
     /// Coordinates of the nodes of a cell, in its order.
     fn cell_positions(&self, cell: usize) -> Vec<[f64; D]> {
         self.cell_nodes(cell)

@@ -27,6 +27,29 @@ impl<const D: usize> Sample<D> {
         dot(&g[0], &cofactors(&g)[0])
     }
 
+    /// D det(M)^(2/D) / |M|² of the map M from the regular cell of the same kind, a square or an equilateral triangle, to
+    /// a cell: 1 if it is similar to that, and 0 or less where it has no volume.
+    pub(crate) fn regularity(&self, nodes: &[[f64; D]], simplex: bool) -> f64 {
+        let g = basis(&self.gradient, nodes);
+        // Of the regular simplex with unit edges the metric is ½ (1 + δ), whose inverse is 2 (δ − 1 / (D + 1)).
+        let d = D as f64;
+        let metric = |i: usize, j: usize| match (simplex, i == j) {
+            (true, same) => 2.0 * (f64::from(u8::from(same)) - 1.0 / (d + 1.0)),
+            (false, same) => f64::from(u8::from(same)),
+        };
+        let volume = match (simplex, D) {
+            (true, 2) => 0.75f64.sqrt(),
+            (true, _) => 0.5f64.sqrt(),
+            (false, _) => 1.0,
+        };
+        let squared: f64 = (0..D)
+            .flat_map(|i| (0..D).map(move |j| (i, j)))
+            .map(|(i, j)| metric(i, j) * dot(&g[i], &g[j]))
+            .sum();
+        let det = dot(&g[0], &cofactors(&g)[0]) / volume;
+        d * det.signum() * det.abs().powf(2.0 / d) / squared
+    }
+
     /// Area vector of a facet, outwards: its length is the factor from reference to physical area.
     pub(crate) fn area_vector(&self, nodes: &[[f64; D]]) -> [f64; D] {
         cofactors(&basis(&self.gradient, nodes))[0]

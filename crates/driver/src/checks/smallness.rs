@@ -117,6 +117,14 @@ impl<const D: usize> Driver<D> {
         }
     }
 
+    /// The quality of the worst cell where the body is, which cell that is, and where, as
+    /// [`Mesh::worst_quality`](moreau_mesh::Mesh::worst_quality) has it.
+    pub fn worst_quality(&self) -> (f64, usize, [f64; D]) {
+        let nodes = 0..self.mesh.nodes().len();
+        let positions: Vec<[f64; D]> = nodes.map(|a| self.position(a).into()).collect();
+        self.mesh.worst_quality(&positions)
+    }
+
     /// K_σ v of the committed stresses σ: ∫ (∂v/∂x · σ) : ∂δv/∂x dΩ at every degree of freedom \[N\].
     pub(crate) fn stress_stiffness(&self, v: &[f64]) -> Vec<f64> {
         let mut force = vec![0.0; self.state.displacement.len()];

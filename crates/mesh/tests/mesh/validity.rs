@@ -247,3 +247,59 @@ fn bodies_are_found_across_interleaved_cells() {
     assert!(interior.iter().all(|facet| !boundary.contains(facet)));
     assert!(boundary.is_sorted());
 }
+
+/// Squares, cubes and equilateral simplices are best, whatever their size and place; flat, sheared and inverted cells
+/// have the quality of their formulas.
+#[test]
+fn the_quality_of_cells_is_known() {
+    fn check<const D: usize>() {
+        for kind in kinds(D) {
+            let cell = (0..kind.nodes()).collect();
+            let mesh = Mesh::new(reference_cell::<D>(kind), vec![(kind, cell)]).expect("valid");
+            let nodes = mesh.nodes().to_vec();
+            let simplex = kind.corner_count() == D + 1;
+            // From the reference cell to a regular one of edges 3.
+            let regular = |x: &[f64; D]| -> [f64; D] {
+                let edges: [[f64; 3]; 3] = match (simplex, D) {
+                    (false, _) => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+                    (true, _) => [
+                        [1.0, 0.0, 0.0],
+                        [0.5, 0.75f64.sqrt(), 0.0],
+                        [0.5, 1.0 / 12f64.sqrt(), (2.0f64 / 3.0).sqrt()],
+                    ],
+                };
+                std::array::from_fn(|i| 7.0 + 3.0 * (0..D).map(|k| x[k] * edges[k][i]).sum::<f64>())
+            };
+            let quality = |f: &dyn Fn([f64; D]) -> [f64; D]| {
+                let moved: Vec<[f64; D]> = nodes.iter().map(|x| f(regular(x))).collect();
+                mesh.worst_quality(&moved).0
+            };
+            assert!((quality(&|x| x) - 1.0).abs() < 1e-12, "{kind}");
+            let turned = quality(&|mut x| {
+                (x[0], x[1]) = (0.6 * x[0] - 0.8 * x[1], 0.8 * x[0] + 0.6 * x[1]);
+                x
+            });
+            assert!((turned - 1.0).abs() < 1e-12, "{kind}");
+            // |F|² of an equilateral simplex is that of the map itself.
+            let drawn = |mut x: [f64; D]| {
+                x[0] *= 5.0;
+                x
+            };
+            let d = D as f64;
+            let flat = d * 5f64.powf(2.0 / d) / (25.0 + d - 1.0);
+            assert!((quality(&drawn) - flat).abs() < 1e-12, "{kind}");
+            let sheared = |mut x: [f64; D]| {
+                x[0] += 3.0 * x[1];
+                x
+            };
+            assert!((quality(&sheared) - d / (d + 9.0)).abs() < 1e-12, "{kind}");
+            let over = |mut x: [f64; D]| {
+                x[0] *= -1.0;
+                x
+            };
+            assert!((quality(&over) + 1.0).abs() < 1e-12, "{kind}");
+        }
+    }
+    check::<2>();
+    check::<3>();
+}

@@ -85,6 +85,9 @@ pub(crate) fn columns<const D: usize>(setup: &Setup<D>) -> Vec<(String, Unit)> {
         }
     }
     setup.surfaces.iter().for_each(|name| add(&mut list, name));
+    if setup.driver.has_large_strains() {
+        list.push(("cell_quality".into(), Unit::None));
+    }
     for field in setup.driver.fields() {
         let unit = match field.name.contains("stress") {
             true => Unit::Stress,

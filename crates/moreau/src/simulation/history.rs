@@ -130,6 +130,9 @@ impl History {
             row.extend((0..D).map(|i| force.map_or(f64::NAN, |f| f[i])));
             row.extend(mean_displacement(driver, surface));
         }
+        if driver.has_large_strains() {
+            row.push(driver.worst_quality().0);
+        }
         row.extend(driver.fields().iter().map(largest));
         self.table.push(&row);
     }

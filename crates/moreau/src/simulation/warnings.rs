@@ -29,9 +29,11 @@ enum Kind {
     Unstable,
     /// A limit of the load, beyond which it falls.
     Limit,
+    /// Cells distorted by large strains.
+    Distorted,
 }
 
-const KINDS: [Kind; 10] = [
+const KINDS: [Kind; 11] = [
     Kind::Strain,
     Kind::Rotation,
     Kind::Inverted,
@@ -42,7 +44,14 @@ const KINDS: [Kind; 10] = [
     Kind::Free,
     Kind::Unstable,
     Kind::Limit,
+    Kind::Distorted,
 ];
+
+/// Quality below which a cell is distorted: that of a rectangle 1 : 20, or of a square sheared by 4.2.
+const DISTORTED: f64 = 0.1;
+
+/// And in parts of that of the undeformed mesh, which may be of flat cells.
+const HALF: f64 = 0.5;
 
 /// Where a doubt is worst.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -139,6 +148,9 @@ impl Warnings {
         if !(to_collapse || driver.has_large_strains()) {
             self.deformed(&driver.deformation(), report.increment);
         }
+        if driver.has_large_strains() {
+            self.distorted(driver, report.increment);
+        }
         if let Some(Between {
             contact,
             depth,
@@ -209,6 +221,20 @@ impl Warnings {
                 Some(worst) => worst.numbers[0] = worst.numbers[0].max(count),
                 None => self.note(Kind::Inverted, vec![count], (cell, position.to_vec()), when),
             }
+        }
+    }
+
+    /// Takes note of the worst cell if it is distorted, and of the increment in which one first was.
+    fn distorted<const D: usize>(&mut self, driver: &Driver<D>, when: usize) {
+        let (quality, cell, position) = driver.worst_quality();
+        let virgin = || driver.mesh().worst_quality(driver.mesh().nodes()).0;
+        let first = match &self.worst[Kind::Distorted as usize] {
+            Some(worst) => worst.number(1),
+            None => when as f64,
+        };
+        if quality < DISTORTED && quality < HALF * virgin() {
+            let numbers = vec![1.0 - quality, first];
+            self.note(Kind::Distorted, numbers, (cell, position.to_vec()), when);
         }
     }
 
@@ -324,6 +350,14 @@ impl Worst {
                  equilibria under loads that fall and rise again, which a body under its full load leaves at once, \
                  snapping to where that load is balanced again",
                 shown(self.number(0), 6)
+            ),
+            Kind::Distorted => format!(
+                "cells are distorted: cell {index} at {at} has a quality of {} in increment {when}, where 1 is \
+                 best; a new mesh is due from increment {} on, in which one first was below {}: what follows is \
+                 less accurate; begin with cells that are longer across the direction in which they are drawn",
+                shown(1.0 - self.number(0), 2),
+                shown(self.number(1), 9),
+                shown(DISTORTED, 2)
             ),
             Kind::Buckling => self.buckling(deck),
         }
