@@ -3,7 +3,9 @@
 
 use moreau::contact::Penalty;
 use moreau::driver::{Driver, Energies, Settings};
+use moreau::mesh::PlaneStrain;
 use verification::problems::Fallible;
+use verification::problems::large::SQUARE;
 use verification::problems::punched::Punched;
 
 /// Stress that is never reached [MPa].
@@ -121,5 +123,33 @@ fn penalty_springs_are_in_the_balance() -> Fallible {
         imbalances.push(imbalance);
     }
     halves(&imbalances);
+    Ok(())
+}
+
+/// Under large strains the balance closes to the second order of the increment, while pressures grow, and points
+/// slip.
+#[test]
+fn the_balance_of_large_strains_is_of_second_order() -> Fallible {
+    let imbalance = |increments: usize| -> Fallible<f64> {
+        let mut driver = SQUARE.driver(PlaneStrain::default(), 500.0, 0.2)?;
+        let step = SQUARE.held("upset").tool("platen", [0.0, -2.0]);
+        let mut course = vec![Energies::default()];
+        driver.run(&step, increments, |_, report| course.push(report.energies))?;
+        for pair in course.windows(2) {
+            let spent = pair[1].plastic_dissipation - pair[0].plastic_dissipation;
+            let rubbed = pair[1].friction_dissipation - pair[0].friction_dissipation;
+            assert!(spent >= 0.0 && rubbed >= 0.0, "{spent} {rubbed}");
+        }
+        // The increment in which it first yields is counted by its ends.
+        let part = &course[increments / 4..];
+        let [first, last] = [part[0], part[part.len() - 1]].map(|e| e.imbalance());
+        Ok((last - first) / course[increments].external_work)
+    };
+    let [coarse, fine] = [imbalance(16)?, imbalance(32)?];
+    println!("{coarse:.2e} {fine:.2e}");
+    assert!(
+        coarse.abs() < 2e-3 && fine.abs() < 0.3 * coarse.abs(),
+        "{coarse} {fine}"
+    );
     Ok(())
 }

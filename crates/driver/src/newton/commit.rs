@@ -4,7 +4,7 @@
 use crate::driver::{Driver, State};
 use crate::error::IncrementError;
 use crate::model::load::Loading;
-use crate::model::points::Kinematics;
+use crate::model::points::{ContactPoint, Kinematics, RelativeMotionRow, turned};
 use crate::newton::candidate::{Candidate, Counts};
 use crate::report::{ContactRecord, Energies, IncrementReport};
 use crate::vector::SparseVector;
@@ -122,12 +122,17 @@ impl<const D: usize> Driver<D> {
     ) -> (Energies, f64) {
         let mut energies = self.state.energies;
         energies.external_work += work;
+        let large = self.has_large_strains();
         let (mut friction, mut penalty) = (0.0, 0.0);
         for (k, (c, before)) in kinematics
             .iter()
             .zip(contacts.iter().zip(&self.state.contacts))
         {
-            friction -= (1..D).map(|j| c.t[j] * (c.u[j] + c.spring[j])).sum::<f64>();
+            let slipped = (1..D).map(|j| c.t[j] * (c.u[j] + c.spring[j])).sum::<f64>();
+            friction -= match large && c.t[0] > 0.0 {
+                true => slipped * self.mean_bound(k, before.t[0], c.t[0]),
+                false => slipped,
+            };
             // Springs in series: ½ t·C t, with C t₀* the part they held before.
             let held = k.local_force(&before.force);
             penalty += 0.5 * c.spring[0] * c.t[0];
@@ -148,6 +153,16 @@ impl<const D: usize> Driver<D> {
             volume += energy.volume;
         }
         (energies, fraction(plastic_volume, volume))
+    }
+
+    /// The mean of the largest shears at both pressures, over that at the last: by which slip under a pressure that
+    /// changes is counted to second order in the increment.
+    fn mean_bound(&self, kinematics: &Kinematics<D>, before: f64, now: f64) -> f64 {
+        let bound = |t_n: f64| kinematics.law.bound(t_n);
+        match bound(now) > 0.0 {
+            true => 0.5 * (bound(before.max(0.0)) / bound(now) + 1.0),
+            false => 1.0,
+        }
     }
 
     /// Displacements at the end of an increment: prescribed values exactly, not as sums of increments.
@@ -225,6 +240,19 @@ impl<const D: usize> Driver<D> {
         work
     }
 
+    /// The normal of its tool at a contact point at the start of an increment.
+    fn normal_before(
+        &self,
+        point: &ContactPoint<D>,
+        motion_row: &RelativeMotionRow<D>,
+    ) -> Option<SVector<f64, D>> {
+        let tool = point.tool?;
+        let normal = self.tools[tool]
+            .obstacle
+            .normal(&self.seen(point, motion_row));
+        Some(turned(normal, &self.state.loading.turn_of(tool)))
+    }
+
     /// Work of turning tools over the increment, by the trapezoidal rule.
     fn turning_work(
         &self,
@@ -257,12 +285,19 @@ impl<const D: usize> Driver<D> {
         d_u: &[f64],
     ) -> f64 {
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
-        let points = self.motion_rows.iter().zip(kinematics);
+        let large = self.has_large_strains();
+        let points = self.points.iter().zip(&self.motion_rows).zip(kinematics);
         let points = points.zip(self.state.contacts.iter().zip(contacts));
-        let work = points.map(|((motion_row, k), (before, now))| {
+        let work = points.map(|(((p, motion_row), k), (before, now))| {
+            let (n, parted) = (k.axes.column(0).into_owned(), motion_row.relative(moved));
             let mean = 0.5 * (k.local_force(&before.force)[0] + now.t[0]);
-            let opened = k.axes.column(0).dot(&motion_row.relative(moved));
-            mean * (opened + now.spring[0] - before.spring[0])
+            let sprung = mean * (now.spring[0] - before.spring[0]);
+            sprung
+                + match self.normal_before(p, motion_row).filter(|_| large) {
+                    // Along a curved tool each pressure has a normal of its own.
+                    Some(first) => 0.5 * (first * before.t[0] + n * now.t[0]).dot(&parted),
+                    None => mean * n.dot(&parted),
+                }
         });
         work.sum()
     }
