@@ -46,8 +46,14 @@ impl<const D: usize> Sample<D> {
             .flat_map(|i| (0..D).map(move |j| (i, j)))
             .map(|(i, j)| metric(i, j) * dot(&g[i], &g[j]))
             .sum();
-        let det = dot(&g[0], &cofactors(&g)[0]) / volume;
-        d * det.signum() * det.abs().powf(2.0 / d) / squared
+        // A ratio first: other units of length are then the same to the bit.
+        let cube = if D == 2 {
+            squared
+        } else {
+            squared * squared.sqrt()
+        };
+        let det = dot(&g[0], &cofactors(&g)[0]) / (volume * cube);
+        d * det.signum() * det.abs().powf(2.0 / d)
     }
 
     /// Area vector of a facet, outwards: its length is the factor from reference to physical area.

@@ -195,7 +195,7 @@ fn same(a: &History, b: &History, what: &str, factor: impl Fn(&str, &str) -> f64
         let most = match name.as_str() {
             // Beyond limit points and bifurcations rounding decides how far a step is shortened.
             _ if large && EFFORTS.contains(&name.as_str()) => f64::INFINITY,
-            "plastic_fraction" => 1e-9,
+            "plastic_fraction" | "cell_quality" => 1e-9,
             name if name.starts_with("largest.") && unit.is_empty() => 1e-9,
             _ if unit.is_empty() => 0.0,
             _ => 1e-9 * scale(unit),

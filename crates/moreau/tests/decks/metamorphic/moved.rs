@@ -82,6 +82,22 @@ fn tools_moved(deck: &mut Table, change: impl Fn(&str, f64) -> f64) {
     numbers(deck, &only);
 }
 
+/// A profile has its tool on the right: its mirror image is gone through the other way, and turns about the same point.
+fn profiles_reversed(deck: &mut Table) {
+    let tools = deck.get_mut("tool").and_then(Value::as_array_mut);
+    for tool in tools.into_iter().flatten().filter_map(Value::as_table_mut) {
+        let Some(profile) = tool.get_mut("profile").and_then(Value::as_table_mut) else {
+            continue;
+        };
+        let first = profile["points"][0].clone();
+        for key in ["points", "radii"] {
+            let list = profile.get_mut(key).and_then(Value::as_array_mut);
+            list.expect("a list").reverse();
+        }
+        tool.entry("reference").or_insert(first);
+    }
+}
+
 /// Number of a node that has nothing to do with where it was.
 fn shuffled(n: usize, count: usize) -> usize {
     let primes = [7919, 104_729, 1_299_709];
@@ -121,19 +137,29 @@ fn a_mirror_and_a_shift_change_nothing() {
         let horizontal = |keys: &str, v: f64| {
             let last = keys.rsplit('.').next().expect("a key");
             let vectors = [
-                "point", "normal", "center", "axis", "traction", "force", "move",
+                "point",
+                "normal",
+                "center",
+                "axis",
+                "traction",
+                "force",
+                "move",
+                "points",
+                "reference",
             ];
             let in_vector = keys.split('.').any(|k| vectors.contains(&k));
-            let first = last == "0" && in_vector;
+            let first = last == "0" && in_vector && !keys.contains(".radii.");
             let in_move = keys.contains("move.") && last == "x";
             // In the plane; a turn in space is about an axis.
             let turns = last == "turn";
             if first || in_move || turns { -v } else { v }
         };
         tools_moved(&mut mirror, horizontal);
+        profiles_reversed(&mut mirror);
         let found = history(&mirror, &at, &format!("{name}-mirror"), false);
+        // Moments and turns are about axes: those about the axis of the mirror stay.
         let turns = |column: &str| column.starts_with("moment.") || column.starts_with("turn.");
-        let factor = |column: &str, _: &str| match column.ends_with(".x") || turns(column) {
+        let factor = |column: &str, _: &str| match column.ends_with(".x") != turns(column) {
             true => -1.0,
             false => 1.0,
         };
@@ -146,7 +172,7 @@ fn a_mirror_and_a_shift_change_nothing() {
         let shift = |x: [f64; 3]| [0, 1, 2].map(|i| x[i] + by[i]);
         let (mut shifted, at) = moved(&format!("{name}-shift"), &deck, |n, _| n, shift);
         let along = |keys: &str, v: f64| {
-            let place = [".point.", ".center.", ".reference."];
+            let place = [".point.", ".points.", ".center.", ".reference."];
             let place = place.iter().any(|p| keys.contains(p));
             let axis = keys
                 .rsplit('.')
@@ -230,7 +256,11 @@ fn axes_in_space_are_alike() {
             for row in &mut found.rows {
                 *row = order.iter().map(|&k| row[k]).collect();
             }
-            same(&base, &found, &format!("{name}, {what}"), |_, _| 1.0);
+            let factor = |column: &str, _: &str| match column.starts_with("moment.") {
+                true if what == "mirrored" => -1.0,
+                _ => 1.0,
+            };
+            same(&base, &found, &format!("{name}, {what}"), factor);
         }
     }
 }
