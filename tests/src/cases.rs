@@ -5,6 +5,7 @@ mod block;
 mod cattaneo;
 mod collapse;
 mod compare;
+mod forming;
 mod greco;
 mod large;
 mod penalty;
@@ -36,5 +37,8 @@ pub fn all() -> Vec<Case> {
         large::NECK,
         large::INDENTATION,
         large::TURNING,
+        forming::ROLLING,
+        forming::DRAWING,
+        forming::HARDNESS,
     ]
 }

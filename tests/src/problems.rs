@@ -4,6 +4,7 @@
 pub mod collapsing;
 pub mod disguise;
 pub mod fields;
+pub mod forming;
 pub mod greco;
 pub mod large;
 pub mod limit;

@@ -235,7 +235,7 @@ fn smooth(at: &[Point], faces: &[[usize; 3]], sharp: f64) -> Result<Vec<Patch>, 
         let [a, b, c] = face.map(|k| at[k]);
         let area = (b - a).cross(&(c - a));
         let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
-        if !(area.norm() > 1e-10 * longest * longest) {
+        if area.norm() <= 1e-10 * longest * longest || !area.norm().is_finite() {
             return Err(ContactError::Surface {
                 what: "a triangle has no area",
                 at: [a.into(), b.into()],

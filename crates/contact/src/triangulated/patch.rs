@@ -243,7 +243,8 @@ impl Patch {
                 return Err(at);
             };
             at += step * (LONGEST / step.amax()).min(1.0);
-            if !(least(&at) > -BEYOND) {
+            let inside = least(&at);
+            if inside.is_nan() || inside <= -BEYOND {
                 return Err(at);
             }
             if step.amax() < MET {
