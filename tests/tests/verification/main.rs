@@ -30,6 +30,7 @@ mod report;
 mod slender;
 mod sliders;
 mod soils;
+mod solids;
 mod sphere;
 mod strip;
 mod transactions;

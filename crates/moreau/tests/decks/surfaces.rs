@@ -123,9 +123,7 @@ fn a_cube_presses_as_a_plane() {
             panic!("{}", findings.render("deck.toml", &text, false));
         };
         let stage = &setup.stages[0];
-        let run = setup
-            .driver
-            .run(&stage.step, stage.increments.clone(), |_, _| {});
+        let run = setup.driver.run(&stage.step, stage.increments, |_, _| {});
         run.expect("converges");
         setup.driver.tool_force("die").expect("a force")
     });
