@@ -19,12 +19,11 @@ pub struct Skin {
 /// # Errors
 /// [`ReadError::Stl`] for what is no STL file, [`ReadError::NoTriangles`] for one without any.
 pub fn read_stl(bytes: &[u8]) -> Result<Skin, ReadError> {
-    let read = || -> std::io::Result<Vec<stl_io::Triangle>> {
-        stl_io::create_stl_reader(&mut Cursor::new(bytes))?.collect()
-    };
-    let triangles = read().map_err(|error| ReadError::Stl {
-        reason: error.to_string(),
-    })?;
+    let triangles: Vec<stl_io::Triangle> = stl_io::create_stl_reader(&mut Cursor::new(bytes))
+        .and_then(Iterator::collect)
+        .map_err(|error| ReadError::Stl {
+            reason: error.to_string(),
+        })?;
     let corners = triangles.iter().map(|t| {
         // Zero has two signs.
         t.vertices.map(|v| v.0.map(|x| f64::from(x) + 0.0))

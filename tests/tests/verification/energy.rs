@@ -146,7 +146,6 @@ fn the_balance_of_large_strains_is_of_second_order() -> Fallible {
         Ok((last - first) / course[increments].external_work)
     };
     let [coarse, fine] = [imbalance(16)?, imbalance(32)?];
-    println!("{coarse:.2e} {fine:.2e}");
     assert!(
         coarse.abs() < 2e-3 && fine.abs() < 0.3 * coarse.abs(),
         "{coarse} {fine}"

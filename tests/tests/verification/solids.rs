@@ -147,7 +147,6 @@ fn a_quarter_of_a_ring_is_axial_symmetry_within_its_facets() -> Fallible {
         Ok([0, 1].map(|i| (found[i] / exact[i] - 1.0).abs()))
     };
     let (coarse, fine) = (off(8)?, off(16)?);
-    println!("{coarse:?} {fine:?}");
     for i in 0..2 {
         assert!(
             coarse[i] < 2e-2 && fine[i] < 0.3 * coarse[i],

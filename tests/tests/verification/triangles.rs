@@ -77,10 +77,6 @@ fn a_ball_of_triangles_presses_as_a_ball() -> Fallible {
     for (times, tolerance) in [(2, 1e-5), (3, 5e-6)] {
         let (force, needed) = pressed(ball(times)?)?;
         let off = (force / exact - 1.0).abs();
-        println!(
-            "{} triangles: {off:.1e}, {needed} iterations",
-            8 << (2 * times)
-        );
         assert!(off < tolerance, "{force} {exact}");
         assert_eq!(needed, iterations);
     }

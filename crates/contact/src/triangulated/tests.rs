@@ -1,3 +1,5 @@
+//! Properties of triangulated tools, on a ball, a can and a cube.
+
 use super::*;
 use crate::Ball;
 use proptest::prelude::*;
