@@ -1,6 +1,7 @@
 //! A model: mesh, materials, tools and contacts; not its loads, which are steps.
 
 pub(crate) mod load;
+pub(crate) mod motion_row;
 pub(crate) mod points;
 
 use crate::assembly::block::{Block, SolidBlock};

@@ -37,7 +37,7 @@ impl<const D: usize> Driver<D> {
     }
 
     fn least_gap(&self, contact: usize) -> Option<LeastGap<D>> {
-        let pairs = self.points.iter().zip(&self.motion_rows);
+        let pairs = self.points.iter().zip(&self.footing.rows);
         let own = pairs.filter(|(p, _)| p.contact == contact);
         let gaps = own.filter_map(|(p, motion_row)| {
             let gap = match p.tool {

@@ -30,7 +30,7 @@ impl<const D: usize> Driver<D> {
     ) -> Result<(), IncrementError> {
         let size = self.mesh.size();
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
-        for (p, motion_row) in self.points.iter().zip(&self.motion_rows) {
+        for (p, motion_row) in self.points.iter().zip(&self.footing.rows) {
             let Some(tool) = p.tool else { continue };
             let (start, turn) = (self.seen(p, motion_row), end.turn_of(tool));
             let mut way = turned(motion_row.relative(moved), &-turn);

@@ -105,7 +105,7 @@ impl<const D: usize> Driver<D> {
             u,
             t,
             force: kinematics.force(&t),
-            area: self.motion_rows[i].area,
+            area: self.footing.rows[i].area,
             status,
             held,
             spring: solution.irreversible[i] - solution.displacement[i],
@@ -257,7 +257,7 @@ impl<const D: usize> Driver<D> {
         d_u: &[f64],
     ) -> f64 {
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
-        let points = self.motion_rows.iter().zip(kinematics);
+        let points = self.footing.rows.iter().zip(kinematics);
         let points = points.zip(self.state.contacts.iter().zip(contacts));
         let work = points.map(|((motion_row, k), (before, now))| {
             let mean = 0.5 * (k.local_force(&before.force)[0] + now.t[0]);

@@ -168,6 +168,9 @@ impl<const D: usize> Driver<D> {
         // What is committed is the last that was evaluated.
         let none = SparseVector::default();
         self.assemble(system, end, (&candidate.d_u, &none), Stiffness::None);
+        if self.repairs() {
+            self.pair_at(end, &candidate.d_u)?;
+        }
         Ok(())
     }
 
@@ -198,6 +201,9 @@ impl<const D: usize> Driver<D> {
             };
             let mut increment = self.begin_increment(system, (start, &here), d_u, None);
             if let Some(last) = &last {
+                if self.repairs() {
+                    self.pair_at(&here, &last.d_u)?;
+                }
                 increment.iterate.contact =
                     self.contact_forces(&last.kinematics, &last.solution.force);
                 increment.solution = Some(last.solution.clone());
@@ -267,7 +273,7 @@ impl<const D: usize> Driver<D> {
         watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<Candidate<D>, IncrementError> {
         loop {
-            let balance = self.balance_of(system, &mut increment);
+            let balance = self.balance_of(system, &mut increment)?;
             self.tell(&increment, &balance, watch)?;
             if let Some(solution) = self.accepted(system, &mut increment, &balance) {
                 increment.count(system);
@@ -287,9 +293,19 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Where the iterate stands, with the normals of where it is.
-    fn balance_of(&self, system: &System, increment: &mut Increment<'_, '_, D>) -> Balance<D> {
+    ///
+    /// # Errors
+    /// [`Driver::pair_at`].
+    fn balance_of(
+        &mut self,
+        system: &System,
+        increment: &mut Increment<'_, '_, D>,
+    ) -> Result<Balance<D>, IncrementError> {
         let arrived = increment.has_arrived();
         let (iterate, end) = (&mut increment.iterate, &*increment.end);
+        if self.repairs() {
+            self.pair_at(end, &iterate.d_u)?;
+        }
         let kinematics = if arrived {
             self.kinematics(system, end, &iterate.d_u)
         } else {
@@ -311,13 +327,13 @@ impl<const D: usize> Driver<D> {
         }
         // Forces of an iterative contact solver are out of balance by what it left.
         let left = increment.solution.as_ref().map_or(0.0, slack);
-        Balance {
+        Ok(Balance {
             accepted: self.accepted_residual(system, scale, &iterate.d_u) + left,
             kinematics,
             residual,
             largest,
             scale,
-        }
+        })
     }
 
     fn tell(
