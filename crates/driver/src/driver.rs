@@ -360,9 +360,14 @@ impl<const D: usize> Driver<D> {
     pub fn contact_force(&self, group: &str) -> Result<SVector<f64, D>, ModelError> {
         let mut sum = SVector::zeros();
         for node in self.mesh.node_group(group)? {
-            sum += SVector::from(self.state.contact.at_node::<D>(node));
+            sum += self.nodal_contact_force(node);
         }
         Ok(sum)
+    }
+
+    /// Contact force on a node \[N\].
+    pub fn nodal_contact_force(&self, node: usize) -> SVector<f64, D> {
+        SVector::from(self.state.contact.at_node::<D>(node))
     }
 
     /// Applies one increment, up to the loading `end`: commits it, or fails and changes nothing.

@@ -89,7 +89,17 @@ impl<const D: usize> Driver<D> {
         let reach = largest(low.iter().chain(&high).copied());
         let rounding = 16.0 * f64::EPSILON * reach * stiffness;
         let tolerance = self.settings.tolerance * scale + slack(solution) + rounding;
-        let holds = |i: usize| {
+        solution.exact && self.law_residual(system, kinematics, solution) <= tolerance
+    }
+
+    /// By how much gaps and slips do not obey the law with the forces of a solution \[N\].
+    pub(crate) fn law_residual(
+        &self,
+        system: &System,
+        kinematics: &[Kinematics<D>],
+        solution: &ContactSolution<D>,
+    ) -> f64 {
+        let of = |i: usize| {
             let elastic = solution.irreversible[i] - solution.displacement[i];
             let mut u = kinematics[i].u + elastic;
             let mut t = solution.force[i];
@@ -99,9 +109,9 @@ impl<const D: usize> Driver<D> {
                 }
             }
             // α of the size of the structure's stiffness, as in the contact problem.
-            kinematics[i].law.natural_map(&u, &t, stiffness).norm() <= tolerance
+            kinematics[i].law.natural_map(&u, &t, system.shift()).norm()
         };
-        solution.exact && (0..kinematics.len()).all(holds)
+        largest((0..kinematics.len()).map(of))
     }
 
     /// The error of an increment that iterations have not brought into balance.

@@ -14,7 +14,7 @@ use crate::newton::control::Control;
 use crate::newton::criteria::slack;
 use crate::newton::iterate::Iterate;
 use crate::newton::line_search::NewtonStep;
-use crate::newton::linearised::Linearised;
+use crate::newton::linearised::{Answer, Linearised};
 use crate::newton::tangent::STIFFENED;
 use crate::report::{IncrementReport, Iteration};
 use crate::vector::{SparseVector, largest};
@@ -432,9 +432,14 @@ impl<const D: usize> Driver<D> {
         // Along a path the tangent of large strains may be that of nothing that stands.
         let follows = increment.control.is_some() && self.has_large_strains();
         let mut blends = STIFFENED.iter().filter(|_| follows);
-        let (step, factor, contact) = loop {
+        let mut following = self.following(accuracy);
+        let mut reached = increment.iterate.d_u.clone();
+        missing.add_to(&mut reached, 1.0);
+        let mut kinematics = Cow::Borrowed(balance.kinematics.as_slice());
+        let mut found: Option<(Answer<D>, SparseVector)> = None;
+        let (answer, contact) = loop {
             let mut linearised = Linearised {
-                kinematics: &balance.kinematics,
+                kinematics: &kinematics,
                 loading: &increment.end,
                 missing: &missing,
                 guess: increment.solution.as_ref(),
@@ -452,6 +457,10 @@ impl<const D: usize> Driver<D> {
             let answer = match self.answer(system, &mut linearised, load, &mut increment.counts) {
                 Ok(answer) => answer,
                 Err(error) => {
+                    if let Some(found) = found {
+                        // Where that led to there is no contact problem that can be solved.
+                        break found;
+                    }
                     let (now, given) = (&mut increment.iterate, (&*increment.end, &missing));
                     let mut stiffens = |part| self.blend(system, now, given, part).is_ok();
                     if blends.any(|&part| stiffens(part)) {
@@ -460,14 +469,29 @@ impl<const D: usize> Driver<D> {
                     return Err(error);
                 }
             };
-            let contact = self.contact_forces(&balance.kinematics, &answer.solution.force);
-            increment.solution = Some(answer.solution);
+            let mut contact = self.contact_forces(&kinematics, &answer.solution.force);
+            let mut settled = true;
+            if let Some(following) = &mut following {
+                let ways = (increment.iterate.d_u.as_slice(), reached.as_slice());
+                let given = (&answer, &contact);
+                let followed = self.pair_along(system, &increment.end, following, ways, given)?;
+                contact = followed.contact;
+                settled = followed.next.is_none();
+                if let Some(next) = followed.next {
+                    kinematics = Cow::Owned(next);
+                }
+            }
+            increment.solution = Some(answer.solution.clone());
             let (iterate, prescribed) = (&increment.iterate, system.prescribed());
-            if self.settles(&mut unsymmetric, iterate, &answer.step, prescribed) {
-                break (answer.step, answer.growth, contact);
+            settled &= self.settles(&mut unsymmetric, iterate, &answer.step, prescribed);
+            if settled {
+                break (answer, contact);
             }
             increment.counts.linear += 1;
+            found = following.is_some().then_some((answer, contact));
         };
+        let (step, factor) = (answer.step, answer.growth);
+        increment.solution = Some(answer.solution);
         let last = increment
             .chord
             .may_serve(balance.accepted, system.steps_per_factorisation());
