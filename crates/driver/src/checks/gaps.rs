@@ -76,9 +76,21 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// The node of either surface of a pair that is deepest within the other body, how deep, and how many
-    /// are within.
+    /// [`Driver::overlap_of`] with what displacements there are; `None` on a tool.
     fn overlap(&self, contact: usize) -> Option<(usize, f64, usize)> {
+        let nodes = 0..self.mesh.nodes().len();
+        let positions: Vec<[f64; D]> = nodes.map(|a| self.position(a).into()).collect();
+        self.contacts[contact].pairing?;
+        self.overlap_of(contact, &positions)
+    }
+
+    /// The node of either surface of a pair that is deepest within the other body with the nodes at these
+    /// positions, how deep, and how many are within.
+    pub(crate) fn overlap_of(
+        &self,
+        contact: usize,
+        positions: &[[f64; D]],
+    ) -> Option<(usize, f64, usize)> {
         let (surface, opposite) = self.contact_name(contact);
         let (Ok(surface), Ok(opposite)) = (
             self.mesh.facet_group(surface),
@@ -86,17 +98,8 @@ impl<const D: usize> Driver<D> {
         ) else {
             return None;
         };
-        if self
-            .points
-            .iter()
-            .any(|p| p.contact == contact && p.tool.is_some())
-        {
-            return None;
-        }
-        let nodes = 0..self.mesh.nodes().len();
-        let positions: Vec<[f64; D]> = nodes.map(|a| self.position(a).into()).collect();
         let sides = [(surface, opposite), (opposite, surface)];
-        let overlaps = sides.map(|s| self.mesh.overlap(&positions, s));
+        let overlaps = sides.map(|s| self.mesh.overlap(positions, s));
         let deepest = overlaps.into_iter().flatten();
         deepest.max_by(|a, b| a.1.total_cmp(&b.1))
     }

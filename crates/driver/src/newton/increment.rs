@@ -121,6 +121,7 @@ impl<const D: usize> Driver<D> {
             other => other?,
         };
         self.check_passage(&candidate.d_u, end)?;
+        self.check_bodies(&candidate.d_u)?;
         self.check_snap(system, (start, end), &candidate, watch)?;
         self.commit(start, end, candidate)
     }
