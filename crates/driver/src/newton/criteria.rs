@@ -83,13 +83,17 @@ impl<const D: usize> Driver<D> {
         solution: &ContactSolution<D>,
         scale: f64,
     ) -> bool {
-        let stiffness = system.shift();
+        let rounding = self.law_rounding(system);
+        let tolerance = self.settings.tolerance * scale + slack(solution) + rounding;
+        solution.exact && self.law_residual(system, kinematics, solution) <= tolerance
+    }
+
+    /// What rounding of positions makes of [`Driver::law_residual`] \[N\].
+    pub(crate) fn law_rounding(&self, system: &System) -> f64 {
         // Below this the difference of two positions is rounding.
         let (low, high) = self.mesh.bounds();
         let reach = largest(low.iter().chain(&high).copied());
-        let rounding = 16.0 * f64::EPSILON * reach * stiffness;
-        let tolerance = self.settings.tolerance * scale + slack(solution) + rounding;
-        solution.exact && self.law_residual(system, kinematics, solution) <= tolerance
+        16.0 * f64::EPSILON * reach * system.shift()
     }
 
     /// By how much gaps and slips do not obey the law with the forces of a solution \[N\].

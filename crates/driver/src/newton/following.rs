@@ -14,6 +14,9 @@ use std::collections::BTreeSet;
 /// Times that surfaces are paired at most before a step is taken as it is.
 const LIMIT: usize = 20;
 
+/// Steps in a row that leave more than the best, after which that is taken.
+const WORSE: usize = 4;
+
 /// Part of the imbalance at which an increment is accepted that a step may leave.
 const EXACT: f64 = 0.1;
 
@@ -23,7 +26,7 @@ const EXACT: f64 = 0.1;
 /// out of balance is of the bodies alone: Newton's method is as fast as with a tool. Weights and normals are not
 /// differentiated for that, but evaluated at d_u + v again and again, extrapolated by Anderson's method, with the factor
 /// at hand; as long as no status changes that is the method of generalised minimal residuals for what the tangent lacks.
-pub(crate) struct Following {
+pub(crate) struct Following<const D: usize> {
     anderson: Anderson,
     /// Degrees of freedom of the surfaces.
     dofs: Vec<usize>,
@@ -33,20 +36,29 @@ pub(crate) struct Following {
     enough: f64,
     /// Steps done.
     steps: usize,
+    /// Steps since the best.
+    worse: usize,
+    /// What the best step leaves \[N\].
+    left: f64,
+    /// The best step, with the contact forces of where it leads \[N\].
+    pub(crate) best: Option<(Answer<D>, SparseVector)>,
 }
 
-/// Where a step has led.
-pub(crate) struct Followed<const D: usize> {
-    /// Contact forces there \[N\].
-    pub(crate) contact: SparseVector,
-    /// The contact points that the next step is to be found with; `None` if this one will do.
-    pub(crate) next: Option<Vec<Kinematics<D>>>,
+impl<const D: usize> Following<D> {
+    /// Forgets the best step.
+    pub(crate) fn forget(&mut self) {
+        self.best = None;
+    }
 }
 
 impl<const D: usize> Driver<D> {
     /// What a step has to follow that is to leave no more than `expected` in an increment that is accepted at
     /// `target` \[N\]: nothing where no surfaces of two bodies are large strains' to move.
-    pub(crate) fn following(&self, (expected, target): (f64, f64)) -> Option<Following> {
+    pub(crate) fn following(
+        &self,
+        system: &System,
+        (expected, target): (f64, f64),
+    ) -> Option<Following<D>> {
         self.repairs().then(|| {
             let paired = self.contacts.iter().filter(|c| c.pairing.is_some());
             let groups = paired.flat_map(|c| [&c.surface, &c.opposite]);
@@ -59,34 +71,28 @@ impl<const D: usize> Driver<D> {
                 anderson: Anderson::default(),
                 tried: DVector::zeros(dofs.len()),
                 dofs,
-                enough: expected.max(EXACT * target),
+                enough: expected.max(EXACT * target) + self.law_rounding(system),
                 steps: 0,
+                worse: 0,
+                left: f64::INFINITY,
+                best: None,
             }
         })
     }
 
-    /// Goes to where a step from the displacement increments `d_u` leads, whose linearised increment begins at
-    /// `reached`, with all that is prescribed.
+    /// Takes note of a step from the displacement increments `d_u` and pairs the surfaces where the next one is to be
+    /// found: the contact points there, in a linearised increment that begins at `reached`, with all that is
+    /// prescribed; `None` where the best step will do, or none is better.
     ///
     /// # Errors
     /// [`Driver::pair_at`].
     pub(crate) fn pair_along(
         &mut self,
-        system: &System,
-        end: &Loading<D>,
-        following: &mut Following,
+        (system, end): (&System, &Loading<D>),
+        following: &mut Following<D>,
         (d_u, reached): (&[f64], &[f64]),
-        (answer, contact): (&Answer<D>, &SparseVector),
-    ) -> Result<Followed<D>, ModelError> {
-        let at = |v: &DVector<f64>| {
-            let mut at = d_u.to_vec();
-            following
-                .dofs
-                .iter()
-                .zip(v.iter())
-                .for_each(|(&dof, v)| at[dof] += v);
-            at
-        };
+        (answer, contact): (Answer<D>, &SparseVector),
+    ) -> Result<Option<Vec<Kinematics<D>>>, ModelError> {
         let dofs = following.dofs.iter().map(|&dof| answer.step[dof]);
         let image = DVector::from_iterator(following.dofs.len(), dofs);
         let there: Vec<f64> = d_u.iter().zip(&answer.step).map(|(u, v)| u + v).collect();
@@ -97,19 +103,22 @@ impl<const D: usize> Driver<D> {
         let left = largest(changed.iter().map(|(_, f)| f));
         let left = left.max(self.law_residual(system, &kinematics, &answer.solution));
         following.steps += 1;
-        let settled = left <= following.enough;
-        if settled || !left.is_finite() || following.steps >= LIMIT {
-            return Ok(Followed {
-                contact: forces,
-                next: None,
-            });
+        following.worse += 1;
+        if left < following.left || following.best.is_none() {
+            following.worse = 0;
+            following.left = left;
+            following.best = Some((answer, forces));
+        }
+        let ends = following.steps >= LIMIT || following.worse >= WORSE;
+        if left <= following.enough || !left.is_finite() || ends {
+            return Ok(None);
         }
         let next = following.anderson.next(&following.tried, image);
-        self.pair_at(end, &at(&next))?;
+        let mut there = d_u.to_vec();
+        let pairs = following.dofs.iter().zip(next.iter());
+        pairs.for_each(|(&dof, v)| there[dof] += v);
+        self.pair_at(end, &there)?;
         following.tried = next;
-        Ok(Followed {
-            contact: forces,
-            next: Some(self.kinematics(system, end, reached)),
-        })
+        Ok(Some(self.kinematics(system, end, reached)))
     }
 }

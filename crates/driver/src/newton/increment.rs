@@ -14,7 +14,7 @@ use crate::newton::control::Control;
 use crate::newton::criteria::slack;
 use crate::newton::iterate::Iterate;
 use crate::newton::line_search::NewtonStep;
-use crate::newton::linearised::{Answer, Linearised};
+use crate::newton::linearised::Linearised;
 use crate::newton::tangent::STIFFENED;
 use crate::report::{IncrementReport, Iteration};
 use crate::vector::{SparseVector, largest};
@@ -433,11 +433,10 @@ impl<const D: usize> Driver<D> {
         // Along a path the tangent of large strains may be that of nothing that stands.
         let follows = increment.control.is_some() && self.has_large_strains();
         let mut blends = STIFFENED.iter().filter(|_| follows);
-        let mut following = self.following(accuracy);
+        let mut following = self.following(system, accuracy);
         let mut reached = increment.iterate.d_u.clone();
         missing.add_to(&mut reached, 1.0);
         let mut kinematics = Cow::Borrowed(balance.kinematics.as_slice());
-        let mut found: Option<(Answer<D>, SparseVector)> = None;
         let (answer, contact) = loop {
             let mut linearised = Linearised {
                 kinematics: &kinematics,
@@ -458,9 +457,8 @@ impl<const D: usize> Driver<D> {
             let answer = match self.answer(system, &mut linearised, load, &mut increment.counts) {
                 Ok(answer) => answer,
                 Err(error) => {
-                    if let Some(found) = found {
-                        // Where that led to there is no contact problem that can be solved.
-                        break found;
+                    if let Some(best) = following.as_mut().and_then(|f| f.best.take()) {
+                        break best;
                     }
                     let (now, given) = (&mut increment.iterate, (&*increment.end, &missing));
                     let mut stiffens = |part| self.blend(system, now, given, part).is_ok();
@@ -470,26 +468,33 @@ impl<const D: usize> Driver<D> {
                     return Err(error);
                 }
             };
-            let mut contact = self.contact_forces(&kinematics, &answer.solution.force);
-            let mut settled = true;
-            if let Some(following) = &mut following {
-                let ways = (increment.iterate.d_u.as_slice(), reached.as_slice());
-                let given = (&answer, &contact);
-                let followed = self.pair_along(system, &increment.end, following, ways, given)?;
-                contact = followed.contact;
-                settled = followed.next.is_none();
-                if let Some(next) = followed.next {
-                    kinematics = Cow::Owned(next);
-                }
-            }
+            let contact = self.contact_forces(&kinematics, &answer.solution.force);
             increment.solution = Some(answer.solution.clone());
             let (iterate, prescribed) = (&increment.iterate, system.prescribed());
-            settled &= self.settles(&mut unsymmetric, iterate, &answer.step, prescribed);
-            if settled {
-                break (answer, contact);
+            let settled = self.settles(&mut unsymmetric, iterate, &answer.step, prescribed);
+            let Some(following) = &mut following else {
+                if settled {
+                    break (answer, contact);
+                }
+                increment.counts.linear += 1;
+                continue;
+            };
+            let ways = (iterate.d_u.as_slice(), reached.as_slice());
+            if !settled {
+                // The best under other forces.
+                following.forget();
+            }
+            let given = (answer, &contact);
+            match self.pair_along((system, &increment.end), following, ways, given)? {
+                Some(next) => kinematics = Cow::Owned(next),
+                None if settled => {
+                    if let Some(best) = following.best.take() {
+                        break best;
+                    }
+                }
+                None => {}
             }
             increment.counts.linear += 1;
-            found = following.is_some().then_some((answer, contact));
         };
         let (step, factor) = (answer.step, answer.growth);
         increment.solution = Some(answer.solution);
