@@ -15,7 +15,7 @@ const FARTHEST: f64 = 10.0;
 
 /// What an increment may be off by, over the residual of its contact solution: that weighs
 /// displacements with a somewhat smaller α.
-const CONTACT_SLACK: f64 = 10.0;
+pub(crate) const CONTACT_SLACK: f64 = 10.0;
 
 /// What an increment may be off by for its contact solution \[N\]. One that is not exact excuses
 /// nothing.

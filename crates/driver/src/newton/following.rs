@@ -5,6 +5,7 @@ use crate::error::ModelError;
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::model::points::Kinematics;
+use crate::newton::criteria::CONTACT_SLACK;
 use crate::newton::linearised::Answer;
 use crate::vector::{SparseVector, largest};
 use moreau_contact::Anderson;
@@ -102,6 +103,10 @@ impl<const D: usize> Driver<D> {
         let changed = forces.with(contact, |a, b| a - b);
         let left = largest(changed.iter().map(|(_, f)| f));
         let left = left.max(self.law_residual(system, &kinematics, &answer.solution));
+        // What the contact solution itself keeps.
+        let enough = following
+            .enough
+            .max(CONTACT_SLACK * answer.solution.residual);
         following.steps += 1;
         following.worse += 1;
         if left < following.left || following.best.is_none() {
@@ -110,7 +115,7 @@ impl<const D: usize> Driver<D> {
             following.best = Some((answer, forces));
         }
         let ends = following.steps >= LIMIT || following.worse >= WORSE;
-        if left <= following.enough || !left.is_finite() || ends {
+        if left <= enough || !left.is_finite() || ends {
             return Ok(None);
         }
         let next = following.anderson.next(&following.tried, image);

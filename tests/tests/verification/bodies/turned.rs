@@ -62,40 +62,7 @@ fn turned<H: Blocks<D>, const D: usize>(stack: &Stack<H, D>) -> Fallible {
     let squeeze = stack
         .held("squeeze")
         .displace("upper.top", Axis::Y, -CLOSED);
-    for k in 1..=4 {
-        let squeeze =
-            stack
-                .held("squeeze")
-                .displace("upper.top", Axis::Y, -CLOSED * 0.25 * f64::from(k));
-        driver.run(&squeeze, 1, |driver, report| {
-            println!(
-                "{what} {friction} {k}: {} {:?} neg {} op {} {} {}",
-                report.newton_iterations,
-                report
-                    .residuals
-                    .iter()
-                    .map(|r| format!("{r:.0e}"))
-                    .collect::<Vec<_>>(),
-                report.negative_eigenvalues,
-                report.open,
-                report.stick,
-                report.slip,
-                friction = stack.friction
-            );
-            for c in driver.contacts() {
-                println!(
-                    "   {} {:?} {:.12} {:.3e} {:.3e} {:?}",
-                    c.node,
-                    c.kind,
-                    c.t[0] / c.area,
-                    c.u[0],
-                    c.u[1],
-                    c.status
-                );
-            }
-        })?;
-    }
-    let _ = squeeze;
+    driver.run(&squeeze, 4, |_, _| {})?;
     let pressure = state(&driver, &SMatrix::identity(), &what);
     let nodes = driver.mesh().nodes().to_vec();
     let at = |driver: &Driver<D>, a: usize| SVector::from(nodes[a]) + driver.displacement(a);
@@ -110,21 +77,7 @@ fn turned<H: Blocks<D>, const D: usize>(stack: &Stack<H, D>) -> Fallible {
             let displacement = turn * straight[a] - SVector::from(nodes[a]);
             (0..D).for_each(|i| _ = end.displacement.insert(D * a + i, displacement[i]));
         }
-        let report = driver.advance(&end)?;
-        println!(
-            "{what} {friction} {k}: {} {:?} neg {} op {} {} {}",
-            report.newton_iterations,
-            report
-                .residuals
-                .iter()
-                .map(|r| format!("{r:.0e}"))
-                .collect::<Vec<_>>(),
-            report.negative_eigenvalues,
-            report.open,
-            report.stick,
-            report.slip,
-            friction = stack.friction
-        );
+        driver.advance(&end)?;
         close(&what, state(&driver, &turn, &what), pressure, 1e-9);
         for a in 0..nodes.len() {
             let off = (at(&driver, a) - turn * straight[a]).norm();
