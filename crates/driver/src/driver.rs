@@ -3,8 +3,8 @@
 use crate::assembly::block::{Block, PointField, PointState};
 use crate::assembly::cell_law::{Motion, Stiffness};
 use crate::error::{IncrementError, ModelError};
-use crate::interface::footing::Footing;
 use crate::linear::system::{Contacts, System};
+use crate::model::footing::Footing;
 use crate::model::load::Loading;
 use crate::model::points::{ContactPoint, Tool, tool_index, turned};
 use crate::model::{Analysis, Contact, Measure, Model};

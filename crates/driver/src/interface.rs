@@ -2,7 +2,7 @@
 //! them; not its solution.
 
 pub(crate) mod condensation;
-pub(crate) mod footing;
 pub(crate) mod kinematics;
+pub(crate) mod pairing;
 pub(crate) mod redistribution;
 pub(crate) mod tied;

@@ -162,6 +162,11 @@ impl<const D: usize> RelativeMotionRow<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use moreau_mesh::{
+        CellKind, Hypothesis, Mesh, Pairing, PlaneStrain, Solid, block2, block3, uniform,
+    };
+    use nalgebra::{Rotation3, SMatrix, Vector3};
+    use proptest::prelude::*;
 
     #[test]
     fn what_moves_together_does_not_slip() {
@@ -188,12 +193,14 @@ mod tests {
             opposite: vec![(2, 0.5), (3, 0.5)],
             area: 3.0,
             plane: plane(1.0, 0.1),
+            slipped: None,
         };
         let held = RelativeMotionRow {
             own: vec![(1, 1.0)],
             opposite: vec![(2, 1.0)],
             area: 2.0,
             plane: plane(1.0, 0.5),
+            slipped: None,
         };
         motion_row.take_over(&held, 0.5);
         assert_eq!(motion_row.area, 4.0);
@@ -201,5 +208,167 @@ mod tests {
         assert_eq!(motion_row.opposite, [(2, 0.625), (3, 0.375)]);
         let (normal, gap) = motion_row.plane(&SVector::zeros()).expect("a surface");
         assert_eq!((normal[1], gap), (1.0, 0.2));
+    }
+
+    /// Rows of two blocks that are curved where they touch, in the plane or in space, at the places that a motion
+    /// takes them to.
+    fn rows<const D: usize>(
+        mesh: &Mesh<D>,
+        hypothesis: &impl Hypothesis<D>,
+        positions: &[[f64; D]],
+    ) -> Vec<RelativeMotionRow<D>> {
+        let surfaces =
+            ["upper.bottom", "lower.top"].map(|name| mesh.facet_group(name).expect("there"));
+        let surfaces = (surfaces[0], surfaces[1]);
+        let rows = mesh.mortar_rows(positions, surfaces, Pairing::Mortar, hypothesis);
+        rows.into_iter()
+            .map(|row| RelativeMotionRow::on_surface(row, positions))
+            .collect()
+    }
+
+    fn plane() -> Mesh<2> {
+        let block = |name: &str, y: [f64; 2], cells: usize| {
+            block2(
+                name,
+                CellKind::Quad8,
+                &uniform(0.0, 6.0, cells),
+                &uniform(y[0], y[1], 1),
+            )
+        };
+        block("upper", [0.0, 2.0], 5)
+            .and_then(|upper| upper.joined(block("lower", [-2.0, 0.0], 4)?))
+            .expect("valid")
+    }
+
+    fn space() -> Mesh<3> {
+        let block = |name: &str, y: [f64; 2], cells: usize| {
+            let lines = uniform(0.0, 6.0, cells);
+            block3(
+                name,
+                CellKind::Hex8,
+                &lines,
+                &uniform(y[0], y[1], 1),
+                &lines,
+            )
+        };
+        block("upper", [0.0, 2.0], 4)
+            .and_then(|upper| upper.joined(block("lower", [-2.0, 0.0], 3)?))
+            .expect("valid")
+    }
+
+    /// The nodes, with what is done to those of the upper block.
+    fn lifted<const D: usize>(
+        mesh: &Mesh<D>,
+        mut place: impl FnMut([f64; D], bool) -> [f64; D],
+    ) -> Vec<[f64; D]> {
+        let upper = mesh.node_group("upper").expect("there");
+        let nodes = mesh.nodes().iter().enumerate();
+        nodes
+            .map(|(a, x)| place(*x, upper.binary_search(&a).is_ok()))
+            .collect()
+    }
+
+    /// Bent by a part of a millimetre, above less than below.
+    fn bent<const D: usize>(mut x: [f64; D], bow: f64, above: bool) -> [f64; D] {
+        let along = (0..D).filter(|i| *i != 1).map(|i| (0.7 * x[i]).sin());
+        x[1] += if above { 0.9 * bow } else { bow } * along.sum::<f64>();
+        x
+    }
+
+    /// A rotation and a translation.
+    fn moved<const D: usize>(x: &[f64; D], angle: f64, by: f64) -> [f64; D] {
+        let axis = if D == 2 {
+            Vector3::z()
+        } else {
+            Vector3::new(0.3, -1.0, 0.5)
+        };
+        let all = Rotation3::new(axis.normalize() * angle).into_inner();
+        let turn = SMatrix::<f64, D, D>::from_fn(|i, j| all[(i, j)]);
+        (turn * SVector::from(*x) + SVector::repeat(by)).into()
+    }
+
+    /// The moment of unit forces along the normal and along the first tangent that a row leaves \[mm\], beside that of
+    /// its gap.
+    fn moment<const D: usize>(row: &RelativeMotionRow<D>, positions: &[[f64; D]]) -> f64 {
+        let (normal, gap) = row.plane(&SVector::zeros()).expect("a surface");
+        let apart = row.relative(|a| SVector::from(positions[a]));
+        (apart - normal * gap).norm()
+    }
+
+    fn check<const D: usize>(
+        mesh: &Mesh<D>,
+        hypothesis: &impl Hypothesis<D>,
+        (bow, angle, by): (f64, f64, f64),
+    ) -> Result<(), TestCaseError> {
+        let x = lifted(mesh, |x, above| bent(x, bow, above));
+        let y: Vec<[f64; D]> = x.iter().map(|x| moved(x, angle, by)).collect();
+        let increments = x
+            .iter()
+            .zip(&y)
+            .flat_map(|(x, y)| (0..D).map(move |i| y[i] - x[i]));
+        let d_u: Vec<f64> = increments.collect();
+        let (mut before, mut after) = (rows(mesh, hypothesis, &x), rows(mesh, hypothesis, &y));
+        let raw = before.iter().map(|row| moment(row, &x)).fold(0.0, f64::max);
+        before.iter_mut().for_each(|row| row.settle(&x));
+        prop_assert!(before.len() > D);
+        let size = 6.0 + by.abs();
+        for (first, row) in before.iter().zip(&mut after) {
+            row.settle(&y);
+            row.slide(first, &y, &d_u);
+            let gaps = [first, row].map(|row| row.plane(&SVector::zeros()).expect("a surface").1);
+            prop_assert!((gaps[0] - gaps[1]).abs() <= 1e-12 * size, "{:?}", gaps);
+            let slipped = row.slipped.expect("an increment").norm();
+            prop_assert!(slipped <= 1e-12 * size, "slip {slipped:e}");
+            for (what, row, at) in [("before", first, &x), ("after", row, &y)] {
+                let left = moment(row, at);
+                prop_assert!(left <= 1e-13 * size, "{what}: {left:e}");
+                let sums = [&row.own, &row.opposite].map(|w| w.iter().map(|w| w.1).sum::<f64>());
+                prop_assert!((sums[0] - 1.0).abs() + (sums[1] - 1.0).abs() <= 1e-13);
+            }
+        }
+        // Without being settled they would leave one.
+        prop_assert!(raw > 1e-7 * bow * bow);
+        Ok(())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(16))]
+
+        #[test]
+        fn a_common_motion_is_no_slip_and_forces_leave_no_moment(
+            bow in 0.05..0.4f64, angle in -3.0..3.0f64, by in -5.0..5.0f64
+        ) {
+            check(&plane(), &PlaneStrain::default(), (bow, angle, by))?;
+            check(&space(), &Solid, (bow, angle, by))?;
+        }
+
+        /// Flat surfaces: the slip is the way, however far and across however many edges, and turned with both.
+        #[test]
+        fn the_slip_is_the_way_along_the_surface(
+            way in -2.5..2.5f64, angle in -3.0..3.0f64, apart in -0.1..0.1f64
+        ) {
+            let mesh = plane();
+            let x = mesh.nodes();
+            let y = lifted(&mesh, |x, above| {
+                let slid = if above { [x[0] + way, x[1] + apart] } else { x };
+                moved(&slid, angle, 0.0)
+            });
+            let d_u: Vec<f64> = x.iter().zip(&y).flat_map(|(x, y)| [y[0] - x[0], y[1] - x[1]]).collect();
+            let mut before = rows(&mesh, &PlaneStrain::default(), x);
+            before.iter_mut().for_each(|row| row.settle(x));
+            let along = SVector::from(moved(&[way, 0.0], angle, 0.0));
+            for mut row in rows(&mesh, &PlaneStrain::default(), &y) {
+                row.settle(&y);
+                // The same point, where it is wholly on the other surface at both times.
+                let whole = |row: &RelativeMotionRow<2>| row.own.len() == 1;
+                let first = before.iter().find(|first| first.own == row.own);
+                let Some(first) = first.filter(|first| whole(first) && whole(&row)) else { continue };
+                row.slide(first, &y, &d_u);
+                let off: SVector<f64, 2> = row.slipped.expect("an increment") - along;
+                prop_assert!(off.norm() <= 1e-12, "{off}");
+                let gap = row.plane(&SVector::zeros()).expect("a surface").1;
+                prop_assert!((gap - apart).abs() <= 1e-12);
+            }
+        }
     }
 }

@@ -14,7 +14,7 @@ use crate::newton::control::Control;
 use crate::newton::criteria::slack;
 use crate::newton::iterate::Iterate;
 use crate::newton::line_search::NewtonStep;
-use crate::newton::linearised::Linearised;
+use crate::newton::linearised::{Answer, Linearised};
 use crate::newton::tangent::STIFFENED;
 use crate::report::{IncrementReport, Iteration};
 use crate::vector::{SparseVector, largest};
@@ -427,75 +427,13 @@ impl<const D: usize> Driver<D> {
         let exact = !flows || increment.control.is_some();
         let enough = if exact { 0.0 } else { expected };
         let accuracy = (expected, balance.accepted);
-        let mut unsymmetric = self.unsymmetric(system, &increment.iterate, imbalance, accuracy);
         let missing = std::mem::take(&mut increment.missing);
-        let load = increment.iterate.assembly.load(&[&increment.end.force]);
-        // Along a path the tangent of large strains may be that of nothing that stands.
-        let follows = increment.control.is_some() && self.has_large_strains();
-        let mut blends = STIFFENED.iter().filter(|_| follows);
-        let mut following = self.following(system, accuracy);
-        let mut reached = increment.iterate.d_u.clone();
-        missing.add_to(&mut reached, 1.0);
-        let mut kinematics = Cow::Borrowed(balance.kinematics.as_slice());
-        let (answer, contact) = loop {
-            let mut linearised = Linearised {
-                kinematics: &kinematics,
-                loading: &increment.end,
-                missing: &missing,
-                guess: increment.solution.as_ref(),
-                border: increment
-                    .control
-                    .as_ref()
-                    .map(|c| (c.load, c.compliance, c.missing(&increment.iterate.d_u))),
-                enough,
-                held: &mut increment.held,
-            };
-            let load = match &unsymmetric {
-                None => load.clone(),
-                Some(u) => u.load(&load),
-            };
-            let answer = match self.answer(system, &mut linearised, load, &mut increment.counts) {
-                Ok(answer) => answer,
-                Err(error) => {
-                    if let Some(best) = following.as_mut().and_then(|f| f.best.take()) {
-                        break best;
-                    }
-                    let (now, given) = (&mut increment.iterate, (&*increment.end, &missing));
-                    let mut stiffens = |part| self.blend(system, now, given, part).is_ok();
-                    if blends.any(|&part| stiffens(part)) {
-                        continue;
-                    }
-                    return Err(error);
-                }
-            };
-            let contact = self.contact_forces(&kinematics, &answer.solution.force);
-            increment.solution = Some(answer.solution.clone());
-            let (iterate, prescribed) = (&increment.iterate, system.prescribed());
-            let settled = self.settles(&mut unsymmetric, iterate, &answer.step, prescribed);
-            let Some(following) = &mut following else {
-                if settled {
-                    break (answer, contact);
-                }
-                increment.counts.linear += 1;
-                continue;
-            };
-            let ways = (iterate.d_u.as_slice(), reached.as_slice());
-            if !settled {
-                // The best under other forces.
-                following.forget();
-            }
-            let given = (answer, &contact);
-            match self.pair_along((system, &increment.end), following, ways, given)? {
-                Some(next) => kinematics = Cow::Owned(next),
-                None if settled => {
-                    if let Some(best) = following.best.take() {
-                        break best;
-                    }
-                }
-                None => {}
-            }
-            increment.counts.linear += 1;
-        };
+        let (answer, contact) = self.solve_step(
+            system,
+            increment,
+            (&balance, &missing),
+            (enough, imbalance, accuracy),
+        )?;
         let (step, factor) = (answer.step, answer.growth);
         increment.solution = Some(answer.solution);
         let last = increment
@@ -516,6 +454,85 @@ impl<const D: usize> Driver<D> {
             tangent: !(elastic || self.is_symmetric() && last),
             allowed: self.allowed(&increment.counts.residuals),
         })
+    }
+
+    /// Solves the linearised increment that makes up for what is missing: again where the factorised tangent lacks
+    /// something, or surfaces move with the step. Returns its answer with the contact forces at its end.
+    fn solve_step(
+        &mut self,
+        system: &mut System,
+        increment: &mut Increment<'_, '_, D>,
+        (balance, missing): (&Balance<D>, &SparseVector),
+        (enough, imbalance, accuracy): (f64, f64, (f64, f64)),
+    ) -> Result<(Answer<D>, SparseVector), IncrementError> {
+        let mut unsymmetric = self.unsymmetric(system, &increment.iterate, imbalance, accuracy);
+        let load = increment.iterate.assembly.load(&[&increment.end.force]);
+        // Along a path the tangent of large strains may be that of nothing that stands.
+        let follows = increment.control.is_some() && self.has_large_strains();
+        let mut blends = STIFFENED.iter().filter(|_| follows);
+        let mut following = self.following(system, accuracy);
+        let mut reached = increment.iterate.d_u.clone();
+        missing.add_to(&mut reached, 1.0);
+        let mut kinematics = Cow::Borrowed(balance.kinematics.as_slice());
+        loop {
+            let mut linearised = Linearised {
+                kinematics: &kinematics,
+                loading: &increment.end,
+                missing,
+                guess: increment.solution.as_ref(),
+                border: increment
+                    .control
+                    .as_ref()
+                    .map(|c| (c.load, c.compliance, c.missing(&increment.iterate.d_u))),
+                enough,
+                held: &mut increment.held,
+            };
+            let load = match &unsymmetric {
+                None => load.clone(),
+                Some(u) => u.load(&load),
+            };
+            let answer = match self.answer(system, &mut linearised, load, &mut increment.counts) {
+                Ok(answer) => answer,
+                Err(error) => {
+                    if let Some(best) = following.as_mut().and_then(|f| f.best.take()) {
+                        return Ok(best);
+                    }
+                    let (now, given) = (&mut increment.iterate, (&*increment.end, missing));
+                    let mut stiffens = |part| self.blend(system, now, given, part).is_ok();
+                    if blends.any(|&part| stiffens(part)) {
+                        continue;
+                    }
+                    return Err(error);
+                }
+            };
+            let contact = self.contact_forces(&kinematics, &answer.solution.force);
+            increment.solution = Some(answer.solution.clone());
+            let (iterate, prescribed) = (&increment.iterate, system.prescribed());
+            let settled = self.settles(&mut unsymmetric, iterate, &answer.step, prescribed);
+            let Some(following) = &mut following else {
+                if settled {
+                    return Ok((answer, contact));
+                }
+                increment.counts.linear += 1;
+                continue;
+            };
+            let ways = (iterate.d_u.as_slice(), reached.as_slice());
+            if !settled {
+                // The best under other forces.
+                following.forget();
+            }
+            let given = (answer, &contact);
+            match self.pair_along((system, &increment.end), following, ways, given)? {
+                Some(next) => kinematics = Cow::Owned(next),
+                None if settled => {
+                    if let Some(best) = following.best.take() {
+                        return Ok(best);
+                    }
+                }
+                None => {}
+            }
+            increment.counts.linear += 1;
+        }
     }
 
     /// Takes the tangent at the iterate, unless the factor of an earlier one serves.
