@@ -382,7 +382,8 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     /// `surface` is the non-mortar side, whose nodes are the contact points. It should be the finer
     /// one, or that of the softer body.
     ///
-    /// Sliding is small within an increment: the surfaces are paired anew at the start of each.
+    /// The surfaces are paired where they are at the start of each increment, and sliding is small within it; under
+    /// large strains they are paired where they are at its end, and slide as far as they like.
     ///
     /// # Errors
     /// An unknown group; [`ModelError::SharedContactNode`] for a node of `surface` that is one of

@@ -80,8 +80,8 @@ impl<const D: usize> Driver<D> {
         Ok(())
     }
 
-    /// Bodies must not be deeper within each other, at the end of an increment of large strains and on the straight way
-    /// there, than half a facet: surfaces are not paired that are a facet behind each other. Those that were so
+    /// No node of a surface must be deeper within the other body than half a facet, at the end of an increment of large
+    /// strains and on the straight way there: what is a facet behind a surface is not paired with it. Nodes that were so
     /// deep before stay what they are.
     ///
     /// # Errors
@@ -100,7 +100,7 @@ impl<const D: usize> Driver<D> {
         for contact in (0..self.contacts.len()).filter(|&k| self.contacts[k].pairing.is_some()) {
             let (facet, moved) = self.facet_and_motion(contact, d_u);
             let depth = |part: f64| {
-                let found = self.overlap_of(contact, &positions(part));
+                let found = self.mesh.overlap(&positions(part), self.surfaces(contact));
                 found.map_or((0, 0.0), |(node, depth, _)| (node, depth))
             };
             let looks = (moved / facet).ceil().clamp(1.0, MOST_LOOKS);
@@ -123,10 +123,9 @@ impl<const D: usize> Driver<D> {
 
     /// The mean length of a facet of both surfaces of a pair, and the largest motion of their nodes \[mm\].
     fn facet_and_motion(&self, contact: usize, d_u: &[f64]) -> (f64, f64) {
-        let names = self.contact_name(contact);
-        let groups = [names.0, names.1].map(|name| self.mesh.facet_group(name).unwrap_or(&[]));
+        let (surface, opposite) = self.surfaces(contact);
         let (mut sum, mut count, mut moved) = (0.0, 0.0f64, 0.0f64);
-        for &facet in groups.into_iter().flatten() {
+        for &facet in surface.iter().chain(opposite) {
             let nodes: Vec<usize> = self.mesh.facet_nodes(facet).collect();
             let ends = [nodes[0], nodes[1]].map(|a| self.position(a));
             sum += (ends[1] - ends[0]).norm();
