@@ -16,11 +16,11 @@ fn block(name: &str, x: [f64; 2], y: [f64; 2], cells: [usize; 2]) -> Mesh<2> {
     block2(name, CellKind::Quad8, &x, &y).expect("valid")
 }
 
-fn pair(mesh: Mesh<2>) -> Result<Model<2, PlaneStrain>, ModelError> {
+fn pair(mesh: Mesh<2>, law: VonMises) -> Result<Model<2, PlaneStrain>, ModelError> {
     let rule = CellKind::Quad8.integration();
     Model::with_large_strains(mesh, PlaneStrain::default())
-        .material("lower", steel(), rule)?
-        .material("upper", steel(), rule)?
+        .material("lower", law.clone(), rule)?
+        .material("upper", law, rule)?
         .contact(
             "upper.bottom",
             "lower.top",
@@ -37,7 +37,7 @@ fn squeezed() -> Result<Driver<2>, ModelError> {
     pin.expect("not empty");
     let plane = |y: f64| Plane::new([0.0, y], [0.0, -y.signum()]).expect("valid");
     let smooth = || Coulomb::new(0.0).expect("valid");
-    let model = pair(mesh)?
+    let model = pair(mesh, steel())?
         .tool("top", plane(10.0))?
         .reference([0.0, 0.0])?
         .contact("upper.top", "top", smooth())?
@@ -90,19 +90,21 @@ fn platens_that_turn_take_both_bodies_with_them() -> Result<(), IncrementError> 
 /// end for contact to be found: increments are halved until it is.
 #[test]
 fn no_body_is_taken_into_another() -> Result<(), IncrementError> {
-    let lower = block("lower", [-10.0, 10.0], [-2.0, 0.0], [40, 4]);
-    let upper = block("upper", [12.0, 15.0], [1.0, 2.5], [12, 4]);
-    let model = pair(lower.joined(upper).expect("valid"))?;
+    let lower = block("lower", [-4.0, 4.0], [-2.0, 0.0], [32, 2]);
+    let upper = block("upper", [6.0, 8.0], [1.0, 2.0], [20, 2]);
+    let elastic = VonMises::new(1e4, 0.3, 1e9).expect("valid");
+    let model = pair(lower.joined(upper).expect("valid"), elastic)?;
     let mut driver = Driver::new(model, Settings::default())?;
     let step = Step::new("press")
         .fix("lower.bottom", &[Axis::X, Axis::Y])
-        .displace("upper.top", Axis::X, -12.0)
-        .displace("upper.top", Axis::Y, -1.4);
+        .displace("upper.top", Axis::X, -7.0)
+        .displace("upper.top", Axis::Y, -1.15);
     let reports = driver.run(&step, 1, |_, _| {})?;
     assert!(reports.len() > 1);
+    assert!(reports[0].open == driver.contacts().len());
     let force = driver.contact_force("upper.bottom")?;
-    assert!(force[1] > 1000.0, "{force}");
-    let gaps = driver.least_gaps();
-    assert!(gaps[0].met && gaps[0].gap > -1e-6, "{gaps:?}");
+    assert!(force[1] > 500.0, "{force}");
+    let least = driver.least_gaps()[0].gap;
+    assert!(least > -0.05, "{least}");
     Ok(())
 }
