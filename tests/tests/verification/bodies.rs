@@ -5,6 +5,7 @@
 mod between;
 mod curved;
 mod dragged;
+mod folded;
 mod grip;
 mod held;
 mod patches;

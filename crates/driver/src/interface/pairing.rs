@@ -2,9 +2,11 @@
 
 use crate::driver::Driver;
 use crate::error::ModelError;
+use crate::model::Contact;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::ContactPoint;
+use moreau_mesh::Facet;
 use nalgebra::SVector;
 use std::collections::BTreeMap;
 
@@ -19,6 +21,7 @@ impl<const D: usize> Driver<D> {
     pub(crate) fn pair(&mut self, loading: &Loading<D>) -> Result<(), ModelError> {
         let rest = vec![0.0; self.state.displacement.len()];
         self.footing.first.clear();
+        self.footing.folds = self.folds()?;
         self.pair_at(loading, &rest)?;
         if self.repairs() {
             self.footing.first.clone_from(&self.footing.rows);
@@ -44,10 +47,13 @@ impl<const D: usize> Driver<D> {
                 let Some(pairing) = contact.pairing else {
                     continue;
                 };
-                let surfaces = (
-                    self.mesh.facet_group(&contact.surface)?,
-                    self.mesh.facet_group(&contact.opposite)?,
-                );
+                let surfaces = match self.footing.folds.get(&k) {
+                    Some((surface, opposite)) => (surface.as_slice(), opposite.as_slice()),
+                    None => (
+                        self.mesh.facet_group(&contact.surface)?,
+                        self.mesh.facet_group(&contact.opposite)?,
+                    ),
+                };
                 let mortar_rows = self
                     .measure
                     .mortar_rows(&self.mesh, &positions, surfaces, pairing);
@@ -77,5 +83,19 @@ impl<const D: usize> Driver<D> {
         self.footing.redistributed = redistributed;
         self.footing.at = d_u.to_vec();
         Ok(())
+    }
+
+    /// The facets of both sides of the surfaces that meet themselves, at the committed positions.
+    fn folds(&self) -> Result<BTreeMap<usize, (Vec<Facet>, Vec<Facet>)>, ModelError> {
+        let of_itself = |c: &Contact| c.pairing.is_some() && c.surface == c.opposite;
+        let all = self.contacts.iter().enumerate();
+        let mut folds = BTreeMap::new();
+        for (k, contact) in all.filter(|(_, c)| of_itself(c)) {
+            let nodes = 0..self.mesh.nodes().len();
+            let positions: Vec<[f64; D]> = nodes.map(|a| self.position(a).into()).collect();
+            let surface = self.mesh.facet_group(&contact.surface)?;
+            folds.insert(k, self.mesh.fold(&positions, surface));
+        }
+        Ok(folds)
     }
 }

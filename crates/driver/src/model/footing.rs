@@ -2,7 +2,9 @@
 //! paired; not how.
 
 use crate::model::motion_row::RelativeMotionRow;
+use moreau_mesh::Facet;
 use nalgebra::SVector;
+use std::collections::BTreeMap;
 
 /// Where the contact points stand in the increment at hand: between two bodies at its start under small strains,
 /// at the iterate under large ones.
@@ -15,6 +17,8 @@ pub(crate) struct Footing<const D: usize> {
     pub(crate) at: Vec<f64>,
     /// The rows at the start of the increment, where they are others.
     pub(crate) first: Vec<RelativeMotionRow<D>>,
+    /// The facets of both sides, by contact, where a surface meets itself: those of the start of the increment.
+    pub(crate) folds: BTreeMap<usize, (Vec<Facet>, Vec<Facet>)>,
 }
 
 impl<const D: usize> Footing<D> {
