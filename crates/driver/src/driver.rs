@@ -4,8 +4,9 @@ use crate::assembly::block::{Block, PointField, PointState};
 use crate::assembly::cell_law::{Motion, Stiffness};
 use crate::error::{IncrementError, ModelError};
 use crate::linear::system::{Contacts, System};
+use crate::model::footing::Footing;
 use crate::model::load::Loading;
-use crate::model::points::{ContactPoint, RelativeMotionRow, Tool, tool_index, turned};
+use crate::model::points::{ContactPoint, Tool, tool_index, turned};
 use crate::model::{Analysis, Contact, Measure, Model};
 use crate::report::{ContactRecord, Energies, IncrementReport, Iteration};
 use crate::settings::{Nesting, Seam, Settings};
@@ -15,7 +16,6 @@ use moreau_contact::ContactSolution;
 use moreau_laws::{Local, Status};
 use moreau_mesh::Mesh;
 use nalgebra::{SVector, Vector3};
-use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 /// The state of a model between increments: one value, replaced when an increment is committed.
@@ -50,14 +50,12 @@ pub struct Driver<const D: usize> {
     pub(crate) tools: Vec<Tool<D>>,
     pub(crate) points: Vec<ContactPoint<D>>,
     /// Where the contact points stand in the increment at hand.
-    pub(crate) motion_rows: Vec<RelativeMotionRow<D>>,
-    /// Contact points whose multipliers their neighbours have in the increment at hand.
-    pub(crate) redistributed: Vec<usize>,
+    pub(crate) footing: Footing<D>,
     pub(crate) settings: Settings<D>,
     pub(crate) state: State<D>,
     pub(crate) system: Option<System>,
     pub(crate) measure: Box<dyn Measure<D>>,
-    contacts: Vec<Contact>,
+    pub(crate) contacts: Vec<Contact>,
     materials: Vec<usize>,
 }
 
@@ -106,8 +104,7 @@ impl<const D: usize> Driver<D> {
             tools: model.tools,
             contacts: model.contacts,
             points: model.points,
-            motion_rows: Vec::new(),
-            redistributed: Vec::new(),
+            footing: Footing::default(),
             settings,
             state,
             system: None,
@@ -144,49 +141,6 @@ impl<const D: usize> Driver<D> {
     pub(crate) fn motion<'a>(&'a self, d_u: &'a [f64]) -> Motion<'a> {
         let from = &self.state.displacement;
         Motion { from, by: d_u }
-    }
-
-    /// Finds what the contact points stand on, at the committed positions, under the displacement
-    /// conditions of a loading.
-    pub(crate) fn pair(&mut self, loading: &Loading<D>) -> Result<(), ModelError> {
-        let on_tool = |p: &ContactPoint<D>| match p.tool {
-            Some(tool) => RelativeMotionRow::on_tool(p, self.tool_node(tool)),
-            None => RelativeMotionRow::default(),
-        };
-        let mut motion_rows: Vec<RelativeMotionRow<D>> = self.points.iter().map(on_tool).collect();
-        let mut redistributed = Vec::new();
-        if self.contacts.iter().any(|c| c.pairing.is_some()) {
-            let nodes = self.mesh.nodes();
-            let position = |a: usize| self.position(a).into();
-            let positions: Vec<[f64; D]> = (0..nodes.len()).map(position).collect();
-            for (k, contact) in self.contacts.iter().enumerate() {
-                let Some(pairing) = contact.pairing else {
-                    continue;
-                };
-                let surfaces = (
-                    self.mesh.facet_group(&contact.surface)?,
-                    self.mesh.facet_group(&contact.opposite)?,
-                );
-                let mortar_rows = self
-                    .measure
-                    .mortar_rows(&self.mesh, &positions, surfaces, pairing);
-                let index = |p: &ContactPoint<D>| p.contact == k;
-                let own = (0..self.points.len()).filter(|&i| index(&self.points[i]));
-                let at: BTreeMap<usize, usize> = own.map(|i| (self.points[i].node, i)).collect();
-                for mortar_row in mortar_rows {
-                    if let Some(&point) = at.get(&mortar_row.node) {
-                        motion_rows[point] = RelativeMotionRow::on_surface(mortar_row, &positions);
-                    }
-                }
-                let met = at.into_values().filter(|&i| motion_rows[i].area > 0.0);
-                let met: Vec<usize> = met.collect();
-                self.redistribute_multipliers(&mut motion_rows, (k, surfaces.0), loading);
-                redistributed.extend(met.into_iter().filter(|&i| motion_rows[i].area <= 0.0));
-            }
-        }
-        self.motion_rows = motion_rows;
-        self.redistributed = redistributed;
-        Ok(())
     }
 
     /// The node that stands for a tool.
@@ -268,7 +222,7 @@ impl<const D: usize> Driver<D> {
     /// Contact points, as indices of [`Driver::contacts`], that displacement conditions left no
     /// multiplier of their own in the last increment: what they transmit is with their neighbours.
     pub fn redistributed(&self) -> &[usize] {
-        &self.redistributed
+        &self.footing.redistributed
     }
 
     /// Energies since the virgin state.
@@ -406,9 +360,14 @@ impl<const D: usize> Driver<D> {
     pub fn contact_force(&self, group: &str) -> Result<SVector<f64, D>, ModelError> {
         let mut sum = SVector::zeros();
         for node in self.mesh.node_group(group)? {
-            sum += SVector::from(self.state.contact.at_node::<D>(node));
+            sum += self.nodal_contact_force(node);
         }
         Ok(sum)
+    }
+
+    /// Contact force on a node \[N\].
+    pub fn nodal_contact_force(&self, node: usize) -> SVector<f64, D> {
+        SVector::from(self.state.contact.at_node::<D>(node))
     }
 
     /// Applies one increment, up to the loading `end`: commits it, or fails and changes nothing.
@@ -475,7 +434,7 @@ impl<const D: usize> Driver<D> {
 
     /// The nodes that each contact point between bodies couples.
     fn paired(&self) -> Vec<Vec<usize>> {
-        let points = self.points.iter().zip(&self.motion_rows);
+        let points = self.points.iter().zip(&self.footing.rows);
         let paired = points.filter(|(p, _)| p.tool.is_none());
         paired.map(|(_, motion_row)| motion_row.nodes()).collect()
     }

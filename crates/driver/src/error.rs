@@ -277,6 +277,23 @@ pub enum IncrementError {
         /// How deep it was in the tool \[mm\].
         depth: f64,
     },
+    /// A body went into another one where no contact was found: the increment is too large.
+    #[error(
+        "in one increment {surface:?} and {opposite:?} went {depth:.3e} mm into each other at node {node} at \
+         {position:?}: the increment is too large for contact to follow"
+    )]
+    Within {
+        /// The surface.
+        surface: String,
+        /// The surface opposite.
+        opposite: String,
+        /// Node that is deepest.
+        node: usize,
+        /// Its position in the undeformed body \[mm\].
+        position: Vec<f64>,
+        /// How deep \[mm\].
+        depth: f64,
+    },
     /// Loads that grow have left a stable equilibrium for another one, across unstable ones.
     #[error(
         "the body snaps: it moves by {moved:.3e} mm at once, through equilibria that are unstable: the load has \
@@ -391,6 +408,7 @@ fn collapse_hint(
     if matches!(
         cause,
         IncrementError::Passage { .. }
+            | IncrementError::Within { .. }
             | IncrementError::NotFinite { .. }
             | IncrementError::Snap { .. }
     ) {

@@ -3,5 +3,6 @@
 
 pub(crate) mod condensation;
 pub(crate) mod kinematics;
+pub(crate) mod pairing;
 pub(crate) mod redistribution;
 pub(crate) mod tied;

@@ -1,6 +1,8 @@
 //! A model: mesh, materials, tools and contacts; not its loads, which are steps.
 
+pub(crate) mod footing;
 pub(crate) mod load;
+pub(crate) mod motion_row;
 pub(crate) mod points;
 
 use crate::assembly::block::{Block, SolidBlock};
@@ -380,7 +382,10 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     /// `surface` is the non-mortar side, whose nodes are the contact points. It should be the finer
     /// one, or that of the softer body.
     ///
-    /// Sliding is small within an increment: the surfaces are paired anew at the start of each.
+    /// The surfaces are paired where they are at the start of each increment, and sliding is small within it; under
+    /// large strains they are paired where they are at its end, and slide as far as they like. There a surface may also
+    /// be opposite to itself, as that of a part that folds: which of its facets are the non-mortar side follows
+    /// from which face each other at the start of the increment ([`Mesh::fold`]).
     ///
     /// # Errors
     /// An unknown group; [`ModelError::SharedContactNode`] for a node of `surface` that is one of
@@ -395,7 +400,9 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         let own = self.mesh.node_group(surface)?;
         self.mesh.facet_group(opposite)?;
         let other = self.mesh.node_group(opposite)?;
-        if let Some(&node) = own.iter().find(|a| other.binary_search(a).is_ok()) {
+        let itself = self.large && surface == opposite && pairing == Pairing::Mortar;
+        let shared = own.iter().find(|a| other.binary_search(a).is_ok());
+        if let Some(&node) = shared.filter(|_| !itself) {
             return Err(ModelError::SharedSurfaceNode {
                 surface: surface.into(),
                 opposite: opposite.into(),

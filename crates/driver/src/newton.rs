@@ -5,6 +5,7 @@ pub(crate) mod chord;
 pub(crate) mod commit;
 pub(crate) mod control;
 pub(crate) mod criteria;
+pub(crate) mod following;
 pub(crate) mod increment;
 pub(crate) mod iterate;
 pub(crate) mod line_search;

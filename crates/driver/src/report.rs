@@ -80,8 +80,9 @@ pub struct IncrementReport {
     pub contact_iterations: usize,
     /// Sparse factorisations.
     pub factorisations: usize,
-    /// Iterations of conjugate gradients and, where the tangent is not symmetric, steps beyond the first of each
-    /// Newton iteration; none where the stiffness itself is factorised.
+    /// Iterations of conjugate gradients and, where the tangent is not symmetric or surfaces of two bodies move under
+    /// large strains, steps beyond the first of each Newton iteration; else none where the stiffness itself is
+    /// factorised.
     pub linear_iterations: usize,
     /// Solves with a factor for contacts that are tied in it, see [`Seam`](crate::Seam).
     pub contact_solves: usize,

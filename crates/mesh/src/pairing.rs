@@ -6,6 +6,7 @@
 //! 79 (2009); A. Popp, M. Gitterle, M. W. Gee and W. A. Wall, *ibid.* 83 (2010).
 
 mod face;
+mod fold;
 mod mortar;
 mod overlap;
 mod patches;
@@ -107,11 +108,12 @@ impl<const D: usize> Sides<'_, D> {
         face.nodes.iter().map(|a| self.normals[a]).collect()
     }
 
-    /// Facets that may be met within a distance of points along their normals, ascending.
+    /// Facets that may be met within a distance of points along their normals, ascending: none of those that have one
+    /// of these nodes, as neighbours have where a surface meets itself.
     fn candidates(
         &self,
-        points: &[[f64; D]],
-        normals: &[[f64; D]],
+        nodes: &[usize],
+        (points, normals): (&[[f64; D]], &[[f64; D]]),
         depth: f64,
         far: f64,
     ) -> Vec<usize> {
@@ -119,7 +121,9 @@ impl<const D: usize> Sides<'_, D> {
             .iter()
             .zip(normals)
             .flat_map(|(x, n)| [-depth, far].map(|s| std::array::from_fn(|i| x[i] + s * n[i])));
-        self.tree.within(&face::hull(ends, 0.1 * depth))
+        let mut found = self.tree.within(&face::hull(ends, 0.1 * depth));
+        found.retain(|&k| !self.other[k].nodes.iter().any(|a| nodes.contains(a)));
+        found
     }
 
     /// The point of the other surface opposite to that of every node along its normal.
@@ -154,7 +158,7 @@ impl<const D: usize> Sides<'_, D> {
             let place = |i: usize| own.iter().map(|(a, w)| w * position[a][i]).sum();
             let (x, n): ([f64; D], _) = (std::array::from_fn(place), self.normals[&node]);
             let mut nearest: Option<(f64, usize, Values)> = None;
-            for k in self.candidates(&[x], &[n], size, self.reach) {
+            for k in self.candidates(&[node], (&[x], &[n]), size, self.reach) {
                 let other = &self.other[k];
                 let Some(eta) = other.hit(&x, &n) else {
                     continue;

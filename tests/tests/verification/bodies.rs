@@ -4,10 +4,13 @@
 
 mod between;
 mod curved;
+mod dragged;
+mod folded;
 mod grip;
 mod held;
 mod patches;
 mod stack;
+mod turned;
 
 use crate::close;
 use moreau::driver::{Axis, Driver, Model, ModelError, Settings, Step};

@@ -2,6 +2,7 @@
 //! not what contact makes of them.
 
 use crate::driver::Driver;
+use moreau_mesh::Facet;
 use nalgebra::SVector;
 
 /// The least gap of a contact.
@@ -37,7 +38,7 @@ impl<const D: usize> Driver<D> {
     }
 
     fn least_gap(&self, contact: usize) -> Option<LeastGap<D>> {
-        let pairs = self.points.iter().zip(&self.motion_rows);
+        let pairs = self.points.iter().zip(&self.footing.rows);
         let own = pairs.filter(|(p, _)| p.contact == contact);
         let gaps = own.filter_map(|(p, motion_row)| {
             let gap = match p.tool {
@@ -77,27 +78,22 @@ impl<const D: usize> Driver<D> {
     }
 
     /// The node of either surface of a pair that is deepest within the other body, how deep, and how many
-    /// are within.
+    /// are within; `None` on a tool.
     fn overlap(&self, contact: usize) -> Option<(usize, f64, usize)> {
-        let (surface, opposite) = self.contact_name(contact);
-        let (Ok(surface), Ok(opposite)) = (
-            self.mesh.facet_group(surface),
-            self.mesh.facet_group(opposite),
-        ) else {
-            return None;
-        };
-        if self
-            .points
-            .iter()
-            .any(|p| p.contact == contact && p.tool.is_some())
-        {
-            return None;
-        }
+        self.contacts[contact].pairing?;
         let nodes = 0..self.mesh.nodes().len();
         let positions: Vec<[f64; D]> = nodes.map(|a| self.position(a).into()).collect();
+        let (surface, opposite) = self.surfaces(contact);
         let sides = [(surface, opposite), (opposite, surface)];
         let overlaps = sides.map(|s| self.mesh.overlap(&positions, s));
         let deepest = overlaps.into_iter().flatten();
         deepest.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The facets of the surface of a contact and of the surface opposite, of which a tool has none.
+    pub(crate) fn surfaces(&self, contact: usize) -> (&[Facet], &[Facet]) {
+        let (surface, opposite) = self.contact_name(contact);
+        let facets = |name| self.mesh.facet_group(name).unwrap_or(&[]);
+        (facets(surface), facets(opposite))
     }
 }

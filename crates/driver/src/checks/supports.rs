@@ -8,7 +8,8 @@ use crate::checks::rigid::{NOTHING, RigidModes, Rows, Stopper, null_space};
 use crate::driver::Driver;
 use crate::error::ModelError;
 use crate::model::load::{Axis, Condition, Loading, Step};
-use crate::model::points::{ContactPoint, RelativeMotionRow, turned};
+use crate::model::motion_row::RelativeMotionRow;
+use crate::model::points::{ContactPoint, turned};
 use moreau_laws::Status;
 use nalgebra::SVector;
 
@@ -185,7 +186,7 @@ impl<const D: usize> Driver<D> {
             let source = (Stopper::Displacement, group, dof % D);
             rows.add(source, &modes.row(&[(dof / D, 1.0)], &axis));
         }
-        for (c, (point, motion_row)) in self.points.iter().zip(&self.motion_rows).enumerate() {
+        for (c, (point, motion_row)) in self.points.iter().zip(&self.footing.rows).enumerate() {
             let Some(normal) = self.normal_at(point, motion_row) else {
                 continue;
             };

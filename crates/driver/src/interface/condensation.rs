@@ -3,7 +3,8 @@
 
 use crate::linear::suspension::Suspended;
 use crate::linear::system::System;
-use crate::model::points::{ContactPoint, Kinematics, RelativeMotionRow};
+use crate::model::motion_row::RelativeMotionRow;
+use crate::model::points::{ContactPoint, Kinematics};
 use moreau_algebra::DenseCholesky;
 use moreau_contact::{CondensedProblem, ContactError};
 use moreau_laws::{Local, Status};

@@ -3,7 +3,8 @@
 use crate::driver::Driver;
 use crate::linear::system::System;
 use crate::model::load::Loading;
-use crate::model::points::{ContactPoint, Kinematics, RelativeMotionRow, Turn, turned};
+use crate::model::motion_row::RelativeMotionRow;
+use crate::model::points::{ContactPoint, Kinematics, Turn, turned};
 use crate::vector::SparseVector;
 use moreau_laws::Local;
 use nalgebra::{SMatrix, SVector};
@@ -45,7 +46,8 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// Frames, gaps and slips of the contact points.
+    /// Frames, gaps and slips of the contact points after displacement increments. Between two bodies they are
+    /// linear in these, from where the surfaces were paired.
     pub(crate) fn kinematics(
         &self,
         system: &System,
@@ -58,8 +60,12 @@ impl<const D: usize> Driver<D> {
             let free = motion_row.free(p.node, |dof| system.is_free(dof));
             let slip = motion_row.relative(moved);
             let Some(tool) = p.tool else {
-                let kinematics = match motion_row.plane(&slip) {
-                    Some((n, gap)) => Kinematics::new(p, &n, gap - p.offset, &slip, free),
+                let since = motion_row.relative(|a| moved(a) - self.footing.moved(a));
+                let kinematics = match motion_row.plane(&since) {
+                    Some((n, gap)) => {
+                        let slip = motion_row.slipped.map_or(since, |before| before + since);
+                        Kinematics::new(p, &n, gap - p.offset, &slip, free)
+                    }
                     // Opposite to nothing: as far away as anything can be.
                     None => Kinematics::apart(p.law, size),
                 };
@@ -99,7 +105,7 @@ impl<const D: usize> Driver<D> {
             kinematics.at_corner = true;
             kinematics
         };
-        let mut all: Vec<_> = self.points.iter().zip(&self.motion_rows).map(at).collect();
+        let mut all: Vec<_> = self.points.iter().zip(&self.footing.rows).map(at).collect();
         self.stop_once(|dof| system.is_free(dof), &mut all);
         all
     }
@@ -117,7 +123,7 @@ impl<const D: usize> Driver<D> {
         t: &[Local<D>],
     ) -> SparseVector {
         let mut forces = SparseVector::default();
-        for ((motion_row, k), t) in self.motion_rows.iter().zip(kinematics).zip(t) {
+        for ((motion_row, k), t) in self.footing.rows.iter().zip(kinematics).zip(t) {
             let f = k.force(t);
             for (a, w) in motion_row.weights() {
                 for i in 0..D {

@@ -12,7 +12,8 @@
 use crate::driver::Driver;
 use crate::interface::condensation::{Elimination, row};
 use crate::model::load::Loading;
-use crate::model::points::{Kinematics, RelativeMotionRow};
+use crate::model::motion_row::RelativeMotionRow;
+use crate::model::points::Kinematics;
 use moreau_mesh::Facet;
 use nalgebra::SVector;
 use std::collections::{BTreeMap, BTreeSet};

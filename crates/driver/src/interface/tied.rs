@@ -6,7 +6,8 @@ use crate::error::Inaccurate;
 use crate::interface::condensation::{Elimination, row};
 use crate::linear::suspension::STIFFER;
 use crate::linear::system::System;
-use crate::model::points::{Kinematics, RelativeMotionRow};
+use crate::model::motion_row::RelativeMotionRow;
+use crate::model::points::Kinematics;
 use crate::settings::{Nesting, Seam};
 use crate::vector::SparseVector;
 use crate::vector::largest;
@@ -60,7 +61,7 @@ fn are_near(a: &Rows, b: &Rows) -> bool {
 fn rows<const D: usize>(driver: &Driver<D>, system: &System, kinematics: &[Kinematics<D>]) -> Rows {
     let unknown = |dof: usize| system.unknown(dof).map(|p| p as usize);
     let mut rows = Vec::with_capacity(D * kinematics.len());
-    for (motion_row, k) in driver.motion_rows.iter().zip(kinematics) {
+    for (motion_row, k) in driver.footing.rows.iter().zip(kinematics) {
         for j in 0..D {
             rows.push(match k.active[j] {
                 true => {
@@ -173,8 +174,8 @@ impl<'a, const D: usize> Tied<'a, D> {
         if border.is_some() || !system.holds_ties() || !are_near(tied_rows, &rows) {
             *factor = TiedFactor::default();
         }
-        let mut stiffness = Vec::with_capacity(driver.motion_rows.len());
-        for motion_row in &driver.motion_rows {
+        let mut stiffness = Vec::with_capacity(driver.footing.rows.len());
+        for motion_row in &driver.footing.rows {
             let own = (motion_row.own.iter()).flat_map(|&(a, _)| (0..D).map(move |i| D * a + i));
             let own = own.filter_map(|dof| system.unknown(dof));
             let largest = own.map(|p| system.diagonal(p)).fold(0.0, f64::max);
@@ -452,10 +453,14 @@ impl<const D: usize> Driver<D> {
     /// The nodes that the contacts couple, where contacts may be tied in the factor.
     pub(crate) fn coupled(&self, seam: Seam) -> Option<Vec<Vec<usize>>> {
         let method = self.settings.contact.springs();
-        let may =
-            self.settings.nesting == Nesting::Inside && seam != Seam::Condensed && method.is_some();
+        // Which nodes are coupled must not change within an increment.
+        let may = !self.repairs()
+            && self.settings.nesting == Nesting::Inside
+            && seam != Seam::Condensed
+            && method.is_some();
         may.then(|| {
-            self.motion_rows
+            self.footing
+                .rows
                 .iter()
                 .map(RelativeMotionRow::nodes)
                 .collect()

@@ -3,9 +3,8 @@
 use crate::error::ModelError;
 use moreau_contact::{Obstacle, frame};
 use moreau_laws::{Friction, Local};
-use moreau_mesh::{MortarRow, NodeKind, nearest};
+use moreau_mesh::{NodeKind, nearest};
 use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
-use std::collections::BTreeMap;
 
 /// A rigid tool.
 pub(crate) struct Tool<const D: usize> {
@@ -111,99 +110,6 @@ impl<const D: usize> ContactPoint<D> {
             weighted += w * (distance - here);
         }
         here + weighted - self.offset
-    }
-}
-
-/// Whose displacements make the relative displacement of a contact point during an increment:
-/// Σ own·v − Σ opposite·v. Forces go back with the same weights.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct RelativeMotionRow<const D: usize> {
-    /// The node, and those that share its multiplier at the edge of an overlap or its shape function
-    /// in a changed basis.
-    pub(crate) own: Vec<(usize, f64)>,
-    /// Nodes of the surface opposite, or that of the tool.
-    pub(crate) opposite: Vec<(usize, f64)>,
-    /// Share of the surface in contact \[mm²\].
-    pub(crate) area: f64,
-    /// Normal and gap at the start of the increment, where they are those of a surface.
-    plane: Option<(SVector<f64, D>, f64)>,
-}
-
-impl<const D: usize> RelativeMotionRow<D> {
-    /// On a tool, a body of the one node `tool`.
-    pub(crate) fn on_tool(point: &ContactPoint<D>, tool: usize) -> Self {
-        Self {
-            own: point.own.clone(),
-            opposite: vec![(tool, 1.0)],
-            area: point.area,
-            ..Self::default()
-        }
-    }
-
-    /// On a surface, with nodes at the given positions.
-    pub(crate) fn on_surface(mortar_row: MortarRow<D>, positions: &[[f64; D]]) -> Self {
-        let mut motion_row = Self {
-            own: mortar_row.own,
-            opposite: mortar_row.opposite,
-            area: mortar_row.area,
-            plane: None,
-        };
-        let normal = SVector::from(mortar_row.normal);
-        let apart = motion_row.relative(|a| SVector::from(positions[a]));
-        motion_row.plane = Some((normal, normal.dot(&apart)));
-        motion_row
-    }
-
-    /// Σ own·v − Σ opposite·v.
-    pub(crate) fn relative(&self, v: impl Fn(usize) -> SVector<f64, D>) -> SVector<f64, D> {
-        self.weights().map(|(a, w)| v(a) * w).sum()
-    }
-
-    /// Adds a part of the multiplier of another point to its own: rows and gaps become means by
-    /// area.
-    pub(crate) fn take_over(&mut self, other: &Self, part: f64) {
-        let (own, given) = (self.area, part * other.area);
-        let area = own + given;
-        let mean = |a: &[(usize, f64)], b: &[(usize, f64)]| -> Vec<(usize, f64)> {
-            let mut sum: BTreeMap<usize, f64> = BTreeMap::new();
-            for (weights, share) in [(a, own), (b, given)] {
-                for &(node, weight) in weights {
-                    *sum.entry(node).or_insert(0.0) += share / area * weight;
-                }
-            }
-            sum.into_iter().collect()
-        };
-        self.own = mean(&self.own, &other.own);
-        self.opposite = mean(&self.opposite, &other.opposite);
-        self.area = area;
-        if let (Some((n, gap)), Some((m, beside))) = (&mut self.plane, other.plane) {
-            *n = (*n * own + m * given).normalize();
-            *gap = (*gap * own + beside * given) / area;
-        }
-    }
-
-    /// Nodes with their weights, negative on the opposite side.
-    pub(crate) fn weights(&self) -> impl Iterator<Item = (usize, f64)> {
-        let opposite = self.opposite.iter().map(|&(b, w)| (b, -w));
-        self.own.iter().copied().chain(opposite)
-    }
-
-    /// The nodes on both sides.
-    pub(crate) fn nodes(&self) -> Vec<usize> {
-        self.weights().map(|(a, _)| a).collect()
-    }
-
-    /// Normal and gap after a relative displacement; `None` on a tool and opposite to nothing.
-    pub(crate) fn plane(&self, slip: &SVector<f64, D>) -> Option<(SVector<f64, D>, f64)> {
-        let (normal, gap) = self.plane?;
-        Some((normal, gap + normal.dot(slip)))
-    }
-
-    /// Directions in which the relative displacement is free: those of the own node, and those in
-    /// which no node opposite is held.
-    pub(crate) fn free(&self, node: usize, is_free: impl Fn(usize) -> bool) -> [bool; D] {
-        let opposite = |i: usize| self.opposite.iter().all(|&(b, _)| is_free(D * b + i));
-        std::array::from_fn(|i| is_free(D * node + i) || (!self.opposite.is_empty() && opposite(i)))
     }
 }
 
@@ -475,45 +381,5 @@ mod tests {
             );
             assert_eq!(k.active, [true, true, false]);
         }
-    }
-
-    #[test]
-    fn what_moves_together_does_not_slip() {
-        let motion_row = RelativeMotionRow::<2> {
-            own: vec![(0, 0.75), (1, 0.25)],
-            opposite: vec![(2, 1.5), (3, -0.5)],
-            ..RelativeMotionRow::default()
-        };
-        let same = motion_row.relative(|_| SVector::<f64, 2>::new(0.5, 0.1));
-        assert!(same.norm() < 1e-15, "carried along: {same}");
-        // A direction is free if the own node is, or all of those opposite are.
-        assert_eq!(motion_row.free(0, |dof| dof != 0), [true, true]);
-        assert_eq!(
-            motion_row.free(0, |dof| dof != 0 && dof != 4),
-            [false, true]
-        );
-    }
-
-    #[test]
-    fn what_is_taken_over_is_a_mean_by_area() {
-        let plane = |y: f64, gap| Some((SVector::<f64, 2>::new(0.0, y), gap));
-        let mut motion_row = RelativeMotionRow {
-            own: vec![(0, 1.0)],
-            opposite: vec![(2, 0.5), (3, 0.5)],
-            area: 3.0,
-            plane: plane(1.0, 0.1),
-        };
-        let held = RelativeMotionRow {
-            own: vec![(1, 1.0)],
-            opposite: vec![(2, 1.0)],
-            area: 2.0,
-            plane: plane(1.0, 0.5),
-        };
-        motion_row.take_over(&held, 0.5);
-        assert_eq!(motion_row.area, 4.0);
-        assert_eq!(motion_row.own, [(0, 0.75), (1, 0.25)]);
-        assert_eq!(motion_row.opposite, [(2, 0.625), (3, 0.375)]);
-        let (normal, gap) = motion_row.plane(&SVector::zeros()).expect("a surface");
-        assert_eq!((normal[1], gap), (1.0, 0.2));
     }
 }

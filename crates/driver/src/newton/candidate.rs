@@ -13,7 +13,7 @@ pub(crate) struct Counts {
     pub(crate) last_contact: usize,
     pub(crate) shortened: usize,
     pub(crate) factorisations: usize,
-    /// Iterations of conjugate gradients, and steps for what a symmetric tangent lacks.
+    /// Iterations of conjugate gradients, and steps for what a symmetric tangent lacks or for surfaces that move.
     pub(crate) linear: usize,
     /// [`IncrementReport::contact_solves`].
     pub(crate) contact_solves: usize,

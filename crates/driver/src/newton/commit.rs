@@ -4,7 +4,8 @@
 use crate::driver::{Driver, State};
 use crate::error::IncrementError;
 use crate::model::load::Loading;
-use crate::model::points::{ContactPoint, Kinematics, RelativeMotionRow, turned};
+use crate::model::motion_row::RelativeMotionRow;
+use crate::model::points::{ContactPoint, Kinematics, turned};
 use crate::newton::candidate::{Candidate, Counts};
 use crate::report::{ContactRecord, Energies, IncrementReport};
 use crate::vector::SparseVector;
@@ -105,7 +106,7 @@ impl<const D: usize> Driver<D> {
             u,
             t,
             force: kinematics.force(&t),
-            area: self.motion_rows[i].area,
+            area: self.footing.rows[i].area,
             status,
             held,
             spring: solution.irreversible[i] - solution.displacement[i],
@@ -286,7 +287,7 @@ impl<const D: usize> Driver<D> {
     ) -> f64 {
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
         let large = self.has_large_strains();
-        let points = self.points.iter().zip(&self.motion_rows).zip(kinematics);
+        let points = self.points.iter().zip(&self.footing.rows).zip(kinematics);
         let points = points.zip(self.state.contacts.iter().zip(contacts));
         let work = points.map(|(((p, motion_row), k), (before, now))| {
             let (n, parted) = (k.axes.column(0).into_owned(), motion_row.relative(moved));

@@ -96,6 +96,7 @@ impl<const D: usize> Driver<D> {
         self.system = Some(system);
         let candidate = outcome?;
         self.check_passage(&candidate.d_u, &start)?;
+        self.check_bodies(&candidate.d_u)?;
         (control.factor <= 1.0)
             .then(|| self.commit(&start, &control.loading(&start), candidate))
             .transpose()

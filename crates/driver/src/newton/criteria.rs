@@ -15,7 +15,7 @@ const FARTHEST: f64 = 10.0;
 
 /// What an increment may be off by, over the residual of its contact solution: that weighs
 /// displacements with a somewhat smaller α.
-const CONTACT_SLACK: f64 = 10.0;
+pub(crate) const CONTACT_SLACK: f64 = 10.0;
 
 /// What an increment may be off by for its contact solution \[N\]. One that is not exact excuses
 /// nothing.
@@ -83,13 +83,27 @@ impl<const D: usize> Driver<D> {
         solution: &ContactSolution<D>,
         scale: f64,
     ) -> bool {
-        let stiffness = system.shift();
+        let rounding = self.law_rounding(system);
+        let tolerance = self.settings.tolerance * scale + slack(solution) + rounding;
+        solution.exact && self.law_residual(system, kinematics, solution) <= tolerance
+    }
+
+    /// What rounding of positions makes of [`Driver::law_residual`] \[N\].
+    pub(crate) fn law_rounding(&self, system: &System) -> f64 {
         // Below this the difference of two positions is rounding.
         let (low, high) = self.mesh.bounds();
         let reach = largest(low.iter().chain(&high).copied());
-        let rounding = 16.0 * f64::EPSILON * reach * stiffness;
-        let tolerance = self.settings.tolerance * scale + slack(solution) + rounding;
-        let holds = |i: usize| {
+        16.0 * f64::EPSILON * reach * system.shift()
+    }
+
+    /// By how much gaps and slips do not obey the law with the forces of a solution \[N\].
+    pub(crate) fn law_residual(
+        &self,
+        system: &System,
+        kinematics: &[Kinematics<D>],
+        solution: &ContactSolution<D>,
+    ) -> f64 {
+        let of = |i: usize| {
             let elastic = solution.irreversible[i] - solution.displacement[i];
             let mut u = kinematics[i].u + elastic;
             let mut t = solution.force[i];
@@ -99,9 +113,9 @@ impl<const D: usize> Driver<D> {
                 }
             }
             // α of the size of the structure's stiffness, as in the contact problem.
-            kinematics[i].law.natural_map(&u, &t, stiffness).norm() <= tolerance
+            kinematics[i].law.natural_map(&u, &t, system.shift()).norm()
         };
-        solution.exact && (0..kinematics.len()).all(holds)
+        largest((0..kinematics.len()).map(of))
     }
 
     /// The error of an increment that iterations have not brought into balance.

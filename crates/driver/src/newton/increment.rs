@@ -14,7 +14,7 @@ use crate::newton::control::Control;
 use crate::newton::criteria::slack;
 use crate::newton::iterate::Iterate;
 use crate::newton::line_search::NewtonStep;
-use crate::newton::linearised::Linearised;
+use crate::newton::linearised::{Answer, Linearised};
 use crate::newton::tangent::STIFFENED;
 use crate::report::{IncrementReport, Iteration};
 use crate::vector::{SparseVector, largest};
@@ -121,6 +121,7 @@ impl<const D: usize> Driver<D> {
             other => other?,
         };
         self.check_passage(&candidate.d_u, end)?;
+        self.check_bodies(&candidate.d_u)?;
         self.check_snap(system, (start, end), &candidate, watch)?;
         self.commit(start, end, candidate)
     }
@@ -168,6 +169,9 @@ impl<const D: usize> Driver<D> {
         // What is committed is the last that was evaluated.
         let none = SparseVector::default();
         self.assemble(system, end, (&candidate.d_u, &none), Stiffness::None);
+        if self.repairs() {
+            self.pair_at(end, &candidate.d_u)?;
+        }
         Ok(())
     }
 
@@ -198,6 +202,9 @@ impl<const D: usize> Driver<D> {
             };
             let mut increment = self.begin_increment(system, (start, &here), d_u, None);
             if let Some(last) = &last {
+                if self.repairs() {
+                    self.pair_at(&here, &last.d_u)?;
+                }
                 increment.iterate.contact =
                     self.contact_forces(&last.kinematics, &last.solution.force);
                 increment.solution = Some(last.solution.clone());
@@ -267,7 +274,7 @@ impl<const D: usize> Driver<D> {
         watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<Candidate<D>, IncrementError> {
         loop {
-            let balance = self.balance_of(system, &mut increment);
+            let balance = self.balance_of(system, &mut increment)?;
             self.tell(&increment, &balance, watch)?;
             if let Some(solution) = self.accepted(system, &mut increment, &balance) {
                 increment.count(system);
@@ -287,9 +294,19 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Where the iterate stands, with the normals of where it is.
-    fn balance_of(&self, system: &System, increment: &mut Increment<'_, '_, D>) -> Balance<D> {
+    ///
+    /// # Errors
+    /// [`Driver::pair_at`].
+    fn balance_of(
+        &mut self,
+        system: &System,
+        increment: &mut Increment<'_, '_, D>,
+    ) -> Result<Balance<D>, IncrementError> {
         let arrived = increment.has_arrived();
         let (iterate, end) = (&mut increment.iterate, &*increment.end);
+        if self.repairs() {
+            self.pair_at(end, &iterate.d_u)?;
+        }
         let kinematics = if arrived {
             self.kinematics(system, end, &iterate.d_u)
         } else {
@@ -311,13 +328,13 @@ impl<const D: usize> Driver<D> {
         }
         // Forces of an iterative contact solver are out of balance by what it left.
         let left = increment.solution.as_ref().map_or(0.0, slack);
-        Balance {
+        Ok(Balance {
             accepted: self.accepted_residual(system, scale, &iterate.d_u) + left,
             kinematics,
             residual,
             largest,
             scale,
-        }
+        })
     }
 
     fn tell(
@@ -410,48 +427,15 @@ impl<const D: usize> Driver<D> {
         let exact = !flows || increment.control.is_some();
         let enough = if exact { 0.0 } else { expected };
         let accuracy = (expected, balance.accepted);
-        let mut unsymmetric = self.unsymmetric(system, &increment.iterate, imbalance, accuracy);
         let missing = std::mem::take(&mut increment.missing);
-        let load = increment.iterate.assembly.load(&[&increment.end.force]);
-        // Along a path the tangent of large strains may be that of nothing that stands.
-        let follows = increment.control.is_some() && self.has_large_strains();
-        let mut blends = STIFFENED.iter().filter(|_| follows);
-        let (step, factor, contact) = loop {
-            let mut linearised = Linearised {
-                kinematics: &balance.kinematics,
-                loading: &increment.end,
-                missing: &missing,
-                guess: increment.solution.as_ref(),
-                border: increment
-                    .control
-                    .as_ref()
-                    .map(|c| (c.load, c.compliance, c.missing(&increment.iterate.d_u))),
-                enough,
-                held: &mut increment.held,
-            };
-            let load = match &unsymmetric {
-                None => load.clone(),
-                Some(u) => u.load(&load),
-            };
-            let answer = match self.answer(system, &mut linearised, load, &mut increment.counts) {
-                Ok(answer) => answer,
-                Err(error) => {
-                    let (now, given) = (&mut increment.iterate, (&*increment.end, &missing));
-                    let mut stiffens = |part| self.blend(system, now, given, part).is_ok();
-                    if blends.any(|&part| stiffens(part)) {
-                        continue;
-                    }
-                    return Err(error);
-                }
-            };
-            let contact = self.contact_forces(&balance.kinematics, &answer.solution.force);
-            increment.solution = Some(answer.solution);
-            let (iterate, prescribed) = (&increment.iterate, system.prescribed());
-            if self.settles(&mut unsymmetric, iterate, &answer.step, prescribed) {
-                break (answer.step, answer.growth, contact);
-            }
-            increment.counts.linear += 1;
-        };
+        let (answer, contact) = self.solve_step(
+            system,
+            increment,
+            (&balance, &missing),
+            (enough, imbalance, accuracy),
+        )?;
+        let (step, factor) = (answer.step, answer.growth);
+        increment.solution = Some(answer.solution);
         let last = increment
             .chord
             .may_serve(balance.accepted, system.steps_per_factorisation());
@@ -470,6 +454,85 @@ impl<const D: usize> Driver<D> {
             tangent: !(elastic || self.is_symmetric() && last),
             allowed: self.allowed(&increment.counts.residuals),
         })
+    }
+
+    /// Solves the linearised increment that makes up for what is missing: again where the factorised tangent lacks
+    /// something, or surfaces move with the step. Returns its answer with the contact forces at its end.
+    fn solve_step(
+        &mut self,
+        system: &mut System,
+        increment: &mut Increment<'_, '_, D>,
+        (balance, missing): (&Balance<D>, &SparseVector),
+        (enough, imbalance, accuracy): (f64, f64, (f64, f64)),
+    ) -> Result<(Answer<D>, SparseVector), IncrementError> {
+        let mut unsymmetric = self.unsymmetric(system, &increment.iterate, imbalance, accuracy);
+        let load = increment.iterate.assembly.load(&[&increment.end.force]);
+        // Along a path the tangent of large strains may be that of nothing that stands.
+        let follows = increment.control.is_some() && self.has_large_strains();
+        let mut blends = STIFFENED.iter().filter(|_| follows);
+        let mut following = self.following(system, accuracy);
+        let mut reached = increment.iterate.d_u.clone();
+        missing.add_to(&mut reached, 1.0);
+        let mut kinematics = Cow::Borrowed(balance.kinematics.as_slice());
+        loop {
+            let mut linearised = Linearised {
+                kinematics: &kinematics,
+                loading: &increment.end,
+                missing,
+                guess: increment.solution.as_ref(),
+                border: increment
+                    .control
+                    .as_ref()
+                    .map(|c| (c.load, c.compliance, c.missing(&increment.iterate.d_u))),
+                enough,
+                held: &mut increment.held,
+            };
+            let load = match &unsymmetric {
+                None => load.clone(),
+                Some(u) => u.load(&load),
+            };
+            let answer = match self.answer(system, &mut linearised, load, &mut increment.counts) {
+                Ok(answer) => answer,
+                Err(error) => {
+                    if let Some(best) = following.as_mut().and_then(|f| f.best.take()) {
+                        return Ok(best);
+                    }
+                    let (now, given) = (&mut increment.iterate, (&*increment.end, missing));
+                    let mut stiffens = |part| self.blend(system, now, given, part).is_ok();
+                    if blends.any(|&part| stiffens(part)) {
+                        continue;
+                    }
+                    return Err(error);
+                }
+            };
+            let contact = self.contact_forces(&kinematics, &answer.solution.force);
+            increment.solution = Some(answer.solution.clone());
+            let (iterate, prescribed) = (&increment.iterate, system.prescribed());
+            let settled = self.settles(&mut unsymmetric, iterate, &answer.step, prescribed);
+            let Some(following) = &mut following else {
+                if settled {
+                    return Ok((answer, contact));
+                }
+                increment.counts.linear += 1;
+                continue;
+            };
+            let ways = (iterate.d_u.as_slice(), reached.as_slice());
+            if !settled {
+                // The best under other forces.
+                following.forget();
+            }
+            let given = (answer, &contact);
+            match self.pair_along((system, &increment.end), following, ways, given)? {
+                Some(next) => kinematics = Cow::Owned(next),
+                None if settled => {
+                    if let Some(best) = following.best.take() {
+                        return Ok(best);
+                    }
+                }
+                None => {}
+            }
+            increment.counts.linear += 1;
+        }
     }
 
     /// Takes the tangent at the iterate, unless the factor of an earlier one serves.

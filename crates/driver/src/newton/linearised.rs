@@ -164,7 +164,7 @@ impl<const D: usize> Driver<D> {
         let iteration = counts.newton;
         let contact = |source: ContactError| IncrementError::Contact { iteration, source };
         let clock = Instant::now();
-        let points = (self.points.as_slice(), self.motion_rows.as_slice());
+        let points = (self.points.as_slice(), self.footing.rows.as_slice());
         let seam = (std::mem::take(&mut condensed.stiffness), &condensed.load);
         let previous = self.previous_forces(kinematics);
         let force = match guess {

@@ -150,7 +150,7 @@ impl<const D: usize> Driver<D> {
         let given = (end, &increment.missing);
         self.factorise(system, &mut increment.iterate, given, false)?;
         let condensed = system.condense(vec![0.0; increment.iterate.d_u.len()]);
-        let points = (self.points.as_slice(), self.motion_rows.as_slice());
+        let points = (self.points.as_slice(), self.footing.rows.as_slice());
         let seam = (condensed.stiffness, &condensed.load);
         let forces = (force.clone(), force.as_slice());
         let condensation =

@@ -52,7 +52,7 @@ impl<const D: usize> Driver<D> {
         system: &mut System,
         (kinematics, force): (&[Kinematics<D>], &[Local<D>]),
     ) {
-        for ((motion_row, k), t) in self.motion_rows.iter().zip(kinematics).zip(force) {
+        for ((motion_row, k), t) in self.footing.rows.iter().zip(kinematics).zip(force) {
             if k.curvature.amax() == 0.0 || t.norm() == 0.0 {
                 continue;
             }

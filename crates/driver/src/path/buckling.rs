@@ -53,9 +53,9 @@ impl<const D: usize> Driver<D> {
     /// K is that of the elastic bodies: flow lowers it, and makes the structure buckle earlier.
     pub fn buckling(&mut self) -> Option<Buckling<D>> {
         let loading = self.state.loading.clone();
-        let kept = (self.motion_rows.clone(), self.redistributed.clone());
+        let kept = self.footing.clone();
         let found = self.instability_under(&loading);
-        (self.motion_rows, self.redistributed) = kept;
+        self.footing = kept;
         found
     }
 
@@ -108,7 +108,7 @@ impl<const D: usize> Driver<D> {
         }
         system.factorise(true).ok()?;
         let condensed = system.condense(rest.clone());
-        let points = (self.points.as_slice(), self.motion_rows.as_slice());
+        let points = (self.points.as_slice(), self.footing.rows.as_slice());
         let seam = (condensed.stiffness, &condensed.load);
         let forces = self.previous_forces(&kinematics);
         let forces = (forces.clone(), forces.as_slice());

@@ -310,7 +310,10 @@ impl<const D: usize> Driver<D> {
                     }
                     ramp.cuts += 1;
                     // How far contact can follow is known, and shorter increments get there.
-                    let follows = matches!(cause, IncrementError::Passage { .. });
+                    let follows = matches!(
+                        cause,
+                        IncrementError::Passage { .. } | IncrementError::Within { .. }
+                    );
                     let cuts = if follows {
                         MOST_CUTS
                     } else {

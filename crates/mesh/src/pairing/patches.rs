@@ -9,6 +9,7 @@ use super::mortar::{NEAR, Overlap, SLIVER, Sample};
 use super::polygon::{self, Polygon};
 use crate::Rule;
 use crate::geometry::{dot, interpolate};
+use std::collections::BTreeSet;
 
 /// Degree of the polynomials that are integrated exactly between linear faces: N_a N_b.
 const LINEAR: usize = 5;
@@ -44,6 +45,14 @@ impl<const D: usize> Sides<'_, D> {
         }
     }
 
+    /// The faces of the other surface that cover a part of a face.
+    pub(super) fn faced_in_space(&self, face: &Face<D>) -> BTreeSet<usize> {
+        let middle = face.middle();
+        let view = View::new(face.at(middle), &face.outward(middle));
+        let patches = self.patches(face, &view);
+        patches.iter().map(|patch| patch.other).collect()
+    }
+
     /// The overlap of a face with the other surface, nearest first where that is folded.
     fn patches(&self, face: &Face<D>, view: &View<D>) -> Vec<Patch> {
         let own = seen(face, view, false);
@@ -54,7 +63,7 @@ impl<const D: usize> Sides<'_, D> {
         let mut far = depth;
         loop {
             let mut parts: Vec<(f64, Patch)> = Vec::new();
-            for other in self.candidates(&face.x, &normals, depth, far) {
+            for other in self.candidates(&face.nodes, (&face.x, &normals), depth, far) {
                 for polygon in seen(&self.other[other], view, true) {
                     for part in own.iter().map(|own| own.within(&polygon)) {
                         if part.area() > least

@@ -6,6 +6,7 @@ use super::face::{self, Face, cross, difference, root};
 use super::mortar::{NEAR, Overlap, SLIVER, Sample};
 use crate::gauss;
 use crate::geometry::interpolate;
+use std::collections::BTreeSet;
 
 /// A part of an edge that an edge of the other surface covers, in reference coordinates.
 struct Segment {
@@ -33,12 +34,18 @@ impl<const D: usize> Sides<'_, D> {
         }
     }
 
+    /// The edges of the other surface that cover a part of an edge.
+    pub(super) fn faced_in_plane(&self, edge: &Face<D>) -> BTreeSet<usize> {
+        let segments = self.segments(edge, &self.normals_of(edge));
+        segments.iter().map(|s| s.other).collect()
+    }
+
     /// The overlap of an edge with the other surface, nearest first where that is folded.
     fn segments(&self, edge: &Face<D>, normals: &[[f64; D]]) -> Vec<Segment> {
         let depth = edge.size();
         let mut far = depth;
         loop {
-            let candidates = self.candidates(&edge.x, normals, depth, far);
+            let candidates = self.candidates(&edge.nodes, (&edge.x, normals), depth, far);
             let mut parts: Vec<(f64, Segment)> = candidates
                 .into_iter()
                 .filter_map(|k| self.part(edge, normals, k))

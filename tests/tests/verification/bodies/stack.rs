@@ -58,6 +58,8 @@ pub(super) struct Stack<H, const D: usize> {
     pub(super) young: [f64; 2],
     /// Of both, if they yield.
     pub(super) yield_stress: Option<f64>,
+    /// Hardening modulus of both where they yield, under large strains.
+    pub(super) large: Option<f64>,
     pub(super) friction: f64,
     pub(super) pairing: Pairing,
     /// Whether the lower block is the non-mortar side.
@@ -85,6 +87,7 @@ impl<H: Blocks<D>, const D: usize> Stack<H, D> {
             maps: [|x| x; 2],
             young: [E; 2],
             yield_stress: None,
+            large: None,
             friction: 0.0,
             pairing: Pairing::Mortar,
             swapped: false,
@@ -129,12 +132,22 @@ impl<H: Blocks<D>, const D: usize> Stack<H, D> {
 
     pub(super) fn driver(&self, mesh: Mesh<D>, settings: Settings<D>) -> Fallible<Driver<D>> {
         let [own, other] = self.surfaces();
-        let mut model = Model::new(mesh, self.hypothesis);
+        let mut model = match self.large {
+            None => Model::new(mesh, self.hypothesis),
+            Some(_) => Model::with_large_strains(mesh, self.hypothesis),
+        };
         for (k, name) in ["upper", "lower"].into_iter().enumerate() {
             let (young, rule) = (self.young[k], self.kinds[k].integration());
             model = match self.yield_stress {
                 None => model.material(name, Elastic::new(young, NU)?, rule)?,
-                Some(s) => model.material(name, VonMises::new(young, NU, s)?, rule)?,
+                Some(s) => {
+                    let law = VonMises::new(young, NU, s)?;
+                    let law = match self.large {
+                        None => law,
+                        Some(hardening) => law.with_isotropic(hardening)?,
+                    };
+                    model.material(name, law, rule)?
+                }
             };
         }
         let model = model.pair(own, other, Coulomb::new(self.friction)?, self.pairing)?;

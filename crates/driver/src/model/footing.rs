@@ -1,0 +1,29 @@
+//! What the contact points stand on: which displacements make their relative displacements, and where the surfaces were
+//! paired; not how.
+
+use crate::model::motion_row::RelativeMotionRow;
+use moreau_mesh::Facet;
+use nalgebra::SVector;
+use std::collections::BTreeMap;
+
+/// Where the contact points stand in the increment at hand: between two bodies at its start under small strains,
+/// at the iterate under large ones.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Footing<const D: usize> {
+    pub(crate) rows: Vec<RelativeMotionRow<D>>,
+    /// Contact points whose multipliers their neighbours have.
+    pub(crate) redistributed: Vec<usize>,
+    /// Displacement increments at which the surfaces were paired, at every degree of freedom \[mm\].
+    pub(crate) at: Vec<f64>,
+    /// The rows at the start of the increment, where they are others.
+    pub(crate) first: Vec<RelativeMotionRow<D>>,
+    /// The facets of both sides, by contact, where a surface meets itself: those of the start of the increment.
+    pub(crate) folds: BTreeMap<usize, (Vec<Facet>, Vec<Facet>)>,
+}
+
+impl<const D: usize> Footing<D> {
+    /// Displacement increment of a node at which the surfaces were paired.
+    pub(crate) fn moved(&self, node: usize) -> SVector<f64, D> {
+        SVector::from_column_slice(&self.at[D * node..D * node + D])
+    }
+}
