@@ -19,6 +19,7 @@ use crate::geometry::{diagonal, dot};
 use crate::mesh::{Facet, Mesh, NodeKind};
 use crate::sample::facet_samples;
 use face::{Face, Values, unit};
+pub use fold::Fold;
 use std::collections::BTreeMap;
 use tree::Tree;
 

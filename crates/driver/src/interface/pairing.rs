@@ -6,7 +6,7 @@ use crate::model::Contact;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::ContactPoint;
-use moreau_mesh::Facet;
+use moreau_mesh::Fold;
 use nalgebra::SVector;
 use std::collections::BTreeMap;
 
@@ -48,7 +48,7 @@ impl<const D: usize> Driver<D> {
                     continue;
                 };
                 let surfaces = match self.footing.folds.get(&k) {
-                    Some((surface, opposite)) => (surface.as_slice(), opposite.as_slice()),
+                    Some(Fold { non_mortar, mortar }) => (non_mortar.as_slice(), mortar.as_slice()),
                     None => (
                         self.mesh.facet_group(&contact.surface)?,
                         self.mesh.facet_group(&contact.opposite)?,
@@ -85,8 +85,8 @@ impl<const D: usize> Driver<D> {
         Ok(())
     }
 
-    /// The facets of both sides of the surfaces that meet themselves, at the committed positions.
-    fn folds(&self) -> Result<BTreeMap<usize, (Vec<Facet>, Vec<Facet>)>, ModelError> {
+    /// The two sides of the surfaces that may meet themselves, at the committed positions.
+    fn folds(&self) -> Result<BTreeMap<usize, Fold>, ModelError> {
         let of_itself = |c: &Contact| c.pairing.is_some() && c.surface == c.opposite;
         let all = self.contacts.iter().enumerate();
         let mut folds = BTreeMap::new();

@@ -2,7 +2,7 @@
 //! paired; not how.
 
 use crate::model::motion_row::RelativeMotionRow;
-use moreau_mesh::Facet;
+use moreau_mesh::Fold;
 use nalgebra::SVector;
 use std::collections::BTreeMap;
 
@@ -17,8 +17,8 @@ pub(crate) struct Footing<const D: usize> {
     pub(crate) at: Vec<f64>,
     /// The rows at the start of the increment, where they are others.
     pub(crate) first: Vec<RelativeMotionRow<D>>,
-    /// The facets of both sides, by contact, where a surface meets itself: those of the start of the increment.
-    pub(crate) folds: BTreeMap<usize, (Vec<Facet>, Vec<Facet>)>,
+    /// The two sides at the start of the increment of each contact of a surface with itself.
+    pub(crate) folds: BTreeMap<usize, Fold>,
 }
 
 impl<const D: usize> Footing<D> {

@@ -23,12 +23,20 @@ impl Side {
     }
 }
 
+/// A surface that may touch itself, parted into its two sides.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Fold {
+    /// Facets of the non-mortar side.
+    pub non_mortar: Vec<Facet>,
+    /// Facets of the mortar side.
+    pub mortar: Vec<Facet>,
+}
+
 impl<const D: usize> Mesh<D> {
-    /// The facets of a surface that face others of it, with the nodes at the given positions \[mm\]: those of the
-    /// non-mortar and those of the mortar side. Facets opposite to each other are on different sides, those that share a
+    /// The two sides of a surface whose facets face each other with the nodes at the given positions \[mm\]. Facets opposite to each other are on different sides, those that share a
     /// node on the same one as far as that leaves them; the first that faces any is on the non-mortar side, and one that
     /// nothing faces is on the side of the nearest that something does.
-    pub fn fold(&self, positions: &[[f64; D]], surface: &[Facet]) -> (Vec<Facet>, Vec<Facet>) {
+    pub fn fold(&self, positions: &[[f64; D]], surface: &[Facet]) -> Fold {
         let face = |&f: &Facet| {
             let (kind, nodes) = (self.facet_kind(f), self.facet_nodes(f));
             Face::new(kind, nodes, positions, Change::default())
@@ -88,7 +96,10 @@ impl<const D: usize> Mesh<D> {
             let own = all.filter(|(_, side)| **side == Some(which));
             own.map(|(facet, _)| *facet).collect()
         };
-        (on(Side::NonMortar), on(Side::Mortar))
+        Fold {
+            non_mortar: on(Side::NonMortar),
+            mortar: on(Side::Mortar),
+        }
     }
 }
 
