@@ -54,6 +54,8 @@ pub struct Driver<const D: usize> {
     pub(crate) settings: Settings<D>,
     pub(crate) state: State<D>,
     pub(crate) system: Option<System>,
+    /// Whether the last equilibrium was unstable.
+    pub(crate) unstable: bool,
     pub(crate) measure: Box<dyn Measure<D>>,
     pub(crate) contacts: Vec<Contact>,
     materials: Vec<usize>,
@@ -108,6 +110,7 @@ impl<const D: usize> Driver<D> {
             settings,
             state,
             system: None,
+            unstable: false,
         };
         driver.start();
         driver.pair(&Loading::default())?;

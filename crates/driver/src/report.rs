@@ -113,6 +113,10 @@ pub struct IncrementReport {
     /// Negative eigenvalues of the last tangent under large strains, with what may touch held where it is: the
     /// equilibrium is unstable, and since it was not a limit point or a bifurcation has been passed.
     pub negative_eigenvalues: usize,
+    /// How the body gives way, by `D·node + axis`, of size 1 at the node that moves most: in the first of the increments
+    /// with negative eigenvalues the eigenvector of that nearest to zero, and at a limit of the load the direction of the
+    /// path. `None` in all others.
+    pub mode: Option<Vec<f64>>,
     /// The load factor at a limit that has been passed in this increment, along the path of equilibria: loads that
     /// rose fall.
     pub limit: Option<f64>,

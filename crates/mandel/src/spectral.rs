@@ -32,8 +32,9 @@ impl Spectrum {
                 }
                 diagonal = false;
                 let theta = (a[(q, q)] - a[(p, p)]) / (2.0 * shear);
-                let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-                let c = 1.0 / t.hypot(1.0);
+                // Far below where squares overflow: shears that are rounding are left.
+                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+                let c = 1.0 / (t * t + 1.0).sqrt();
                 let s = t * c;
                 a[(p, p)] -= t * shear;
                 a[(q, q)] += t * shear;

@@ -1,6 +1,7 @@
 //! A mesh of nodes, cells and named groups, valid by construction; it has no unknowns, no state
 //! and no file format.
 
+mod arc;
 mod groups;
 mod integrals;
 mod positive;

@@ -268,6 +268,13 @@ impl Simulation {
         either!(&self.course, course => grids::points(course.driver()))
     }
 
+    /// The body with the [`mode`](crate::driver::IncrementReport::mode) in which it gives way, as a field of that name;
+    /// `None` for one of another number of components.
+    pub fn mode(&self, motion: &[f64]) -> Option<Grid> {
+        (motion.len() == self.nodes().len())
+            .then(|| either!(&self.course, course => grids::mode(course.driver(), motion)))
+    }
+
     /// The last candidate of an increment that did not converge: the body with its displacement there, and the forces
     /// that nothing balances.
     pub fn failed(&self) -> Option<Grid> {

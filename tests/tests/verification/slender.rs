@@ -97,7 +97,8 @@ fn a_cantilever_bends_as_the_elastica() -> Fallible {
     Ok(())
 }
 
-/// A straight column goes on as a straight one: that it need not is told at Euler's load.
+/// A straight column goes on as a straight one: that it need not is told at Euler's load, with the curve in which it
+/// would bend, 1 − cos(πx/2L).
 #[test]
 fn a_straight_column_is_unstable_from_eulers_load_on() -> Fallible {
     let (length, height) = (100.0f64, 2.0f64);
@@ -107,10 +108,19 @@ fn a_straight_column_is_unstable_from_eulers_load_on() -> Fallible {
         .fix("strip.left", &[Axis::X, Axis::Y])
         .traction("strip.right", [-1.1 * euler / height, 0.0]);
     let mut critical = None;
-    driver.run(&step, 110, |_, report| {
+    driver.run(&step, 110, |driver, report| {
         if report.negative_eigenvalues > 0 && critical.is_none() {
             assert_eq!(report.negative_eigenvalues, 1);
             critical = Some((report.increment as f64 - 0.5) / 100.0 * euler);
+            let mode = report.mode.as_ref().expect("a mode");
+            let tip = driver.mesh().node_group("tip").expect("a group")[0];
+            for (x, v) in driver.mesh().nodes().iter().zip(mode.chunks_exact(2)) {
+                let curve = 1.0 - (0.5 * PI * x[0] / length).cos();
+                let off = v[1] / mode[2 * tip + 1] - curve;
+                assert!(off.abs() < 5e-3, "{x:?}: {off:.1e}");
+            }
+        } else {
+            assert_eq!(report.mode, None);
         }
     })?;
     close("critical load", critical.ok_or("stable")?, euler, 2e-2);

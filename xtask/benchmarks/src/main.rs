@@ -23,7 +23,7 @@ enum Task {
     Bench(bench::Args),
     /// Run all contact solvers over a folder of discrete frictional contact problems
     ContactBench(contact_bench::Args),
-    /// Time the punched block by other systems that are installed, beside ours
+    /// Time the punched block and forming by other systems that are installed, beside ours
     Peers(peers::Args),
 }
 

@@ -209,6 +209,7 @@ impl<const D: usize> Driver<D> {
             certificate,
             criticality: counts.criticality,
             negative_eigenvalues: counts.negative,
+            mode: None,
             limit: None,
             free_motions: match counts.undetermined {
                 true => self.free_motions(),

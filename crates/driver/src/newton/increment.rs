@@ -123,7 +123,14 @@ impl<const D: usize> Driver<D> {
         self.check_passage(&candidate.d_u, end)?;
         self.check_bodies(&candidate.d_u)?;
         self.check_snap(system, (start, end), &candidate, watch)?;
-        self.commit(start, end, candidate)
+        let unstable = candidate.counts.negative > 0;
+        let mode = match unstable && !self.unstable {
+            true => self.unstable_mode(system),
+            false => None,
+        };
+        let report = self.commit(start, end, candidate)?;
+        self.unstable = unstable;
+        Ok(IncrementReport { mode, ..report })
     }
 
     /// Whether loads that grow, under large strains, have left the body near where it was: an equilibrium

@@ -243,7 +243,7 @@ fn largest_of(diagonal: &[f64], beside: &[f64]) -> Option<(DVector<f64>, f64)> {
 }
 
 /// Forces in no order on the first of some degrees of freedom, always the same.
-fn noise(dofs: usize, first: usize) -> Vec<f64> {
+pub(super) fn noise(dofs: usize, first: usize) -> Vec<f64> {
     let mut bits = 0x9e37_79b9_7f4a_7c15u64;
     let mut next = || {
         // Xorshift of G. Marsaglia, J. Stat. Softw. 8 (2003).

@@ -418,6 +418,9 @@ impl<const D: usize> Driver<D> {
                         && let [Some(last), Some(first)] = ramp.yielded
                     {
                         report.limit = Yielded::peak(first, last, before);
+                        if report.limit.is_some() {
+                            report.mode = self.path_mode();
+                        }
                     }
                     path.last = report.fraction - before;
                     path.peak = path.peak.max(report.fraction);

@@ -5,7 +5,7 @@ use super::files::{Mark, Stream, replace_file, write_file};
 use super::vtu::{Collection, LIST};
 use super::{RUN, Resumable, RunError, Watch, log};
 use crate::deck::Vtu;
-use crate::driver::{IncrementError, Numbers};
+use crate::driver::{IncrementError, IncrementReport, Numbers};
 use crate::simulation::{Converged, Outcome, Simulation, StepError};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -220,7 +220,7 @@ impl<'a> Run<'a> {
             });
             match (outcome, broken) {
                 (Ok(Some(increment)), _) => {
-                    self.record()?;
+                    self.record(&increment.report)?;
                     self.tell(&increment, first, watch)?;
                 }
                 (Err(StepError::Increment(IncrementError::Interrupted)), Some(error)) => {
@@ -251,7 +251,7 @@ impl<'a> Run<'a> {
     }
 
     /// Writes a converged increment. Its row of the history is in the file then, and memory does not grow.
-    fn record(&mut self) -> Result<(), RunError> {
+    fn record(&mut self, report: &IncrementReport) -> Result<(), RunError> {
         let (simulation, out) = (&mut self.simulation, &mut self.out);
         let history = simulation.history();
         out.history.line(&history.line(history.rows() - 1))?;
@@ -261,6 +261,10 @@ impl<'a> Run<'a> {
         simulation.forget_history();
         let deck = simulation.deck();
         let parts = (deck.vtu == Vtu::All, deck.points == Vtu::All);
-        out.collection.add(simulation, parts)
+        out.collection.add(simulation, parts)?;
+        match &report.mode {
+            Some(mode) if deck.vtu != Vtu::None => out.collection.add_mode(simulation, mode),
+            _ => Ok(()),
+        }
     }
 }

@@ -3,7 +3,7 @@
 
 use super::RunError;
 use super::files::{Mark, Stream, read_text, write_file};
-use crate::simulation::{Array, Simulation};
+use crate::simulation::{Array, Grid, Simulation};
 use crate::vtu::{attribute, point_data};
 use std::path::{Path, PathBuf};
 
@@ -70,6 +70,25 @@ impl Collection {
         if at_points {
             files.push((2, "points", simulation.points()));
         }
+        self.list(simulation, files)
+    }
+
+    /// Writes the motion in which the body of a simulation gives way, and lists it.
+    pub(super) fn add_mode(
+        &mut self,
+        simulation: &Simulation,
+        mode: &[f64],
+    ) -> Result<(), RunError> {
+        let grid = simulation.mode(mode).map(|grid| (4, "mode", grid));
+        self.list(simulation, grid.into_iter().collect())
+    }
+
+    /// Writes parts of a simulation as it is, and lists them.
+    fn list(
+        &mut self,
+        simulation: &Simulation,
+        files: Vec<(usize, &str, Grid)>,
+    ) -> Result<(), RunError> {
         if files.is_empty() {
             return Ok(());
         }
@@ -99,7 +118,7 @@ impl Collection {
 /// Whether a name is that of a file that a collection may write.
 pub(super) fn is_ours(name: &str) -> bool {
     let number = |kind: &str| name.strip_prefix(kind)?.strip_suffix(".vtu");
-    let numbered = ["body_", "contact_", "points_", "tools_"]
+    let numbered = ["body_", "contact_", "points_", "tools_", "mode_"]
         .into_iter()
         .find_map(number);
     let digits = |n: &str| n.len() >= 5 && n.bytes().all(|b| b.is_ascii_digit());

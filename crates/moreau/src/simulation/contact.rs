@@ -62,5 +62,21 @@ pub(super) fn table<const D: usize>(driver: &Driver<D>, units: Units, stage: usi
     columns.extend(vector(["p_n", "p_1", "p_2"], s, &|_, t| t.traction.into()));
     columns.push(text("status", &|k| status_name(touches[k].status)));
     columns.extend(vector(["x_now", "y_now", "z_now"], l, &|c, _| now(c)));
+    if D == 2 {
+        columns.push(column("s", l, Values::Numbers(arcs(driver))));
+    }
     Table::new(columns)
+}
+
+/// Arc length along its surface at every contact point, in the undeformed body.
+fn arcs<const D: usize>(driver: &Driver<D>) -> Vec<f64> {
+    let (mesh, records) = (driver.mesh(), driver.contacts());
+    let on = |own: &[ContactRecord<D>]| {
+        let surface = driver.contact_name(own[0].contact).0;
+        let arc = mesh.arc_length(mesh.facet_group(surface).unwrap_or_default());
+        let at = |c: &ContactRecord<D>| arc.get(&c.node).copied().unwrap_or(f64::NAN);
+        own.iter().map(at).collect::<Vec<_>>()
+    };
+    let contacts = records.chunk_by(|a, b| a.contact == b.contact);
+    contacts.flat_map(on).collect()
 }

@@ -20,15 +20,27 @@ pub(super) fn failed<const D: usize>(
     residual: &[f64],
 ) -> Grid {
     let (mut grid, nodes) = body(driver);
-    let vector = |name: &str, values: &[f64]| Array {
+    grid.point_data[0] = vector::<D>("displacement", &nodes, displacement);
+    let residual = vector::<D>("out_of_balance", &nodes, residual);
+    grid.point_data.push(residual);
+    grid
+}
+
+/// The body with the motion in which it gives way.
+pub(super) fn mode<const D: usize>(driver: &Driver<D>, motion: &[f64]) -> Grid {
+    let (mut grid, nodes) = body(driver);
+    grid.cell_data.clear();
+    grid.point_data.truncate(1);
+    grid.point_data.push(vector::<D>("mode", &nodes, motion));
+    grid
+}
+
+/// A vector at the nodes of all points, from those at all nodes.
+fn vector<const D: usize>(name: &str, nodes: &[usize], values: &[f64]) -> Array {
+    let of = |node: &usize| three(&values[D * node..][..D]);
+    Array {
         name: name.to_owned(),
         components: 3,
-        values: nodes
-            .iter()
-            .flat_map(|n| three(&values[D * n..][..D]))
-            .collect(),
-    };
-    grid.point_data[0] = vector("displacement", displacement);
-    grid.point_data.push(vector("out_of_balance", residual));
-    grid
+        values: nodes.iter().flat_map(of).collect(),
+    }
 }

@@ -56,11 +56,11 @@ fn columns(
     chart.to_svg().ok()
 }
 
-/// A contact surface and the coordinate along which it is drawn.
+/// A contact surface and the arc length along which it is drawn.
 pub(crate) struct ContactLine {
     /// The surface.
     pub(crate) name: String,
-    /// Coordinate of its points, increasing.
+    /// Arc length at its points, increasing.
     pub(crate) at: Vec<f64>,
     /// Pressure and shear there.
     pub(crate) tractions: [Vec<f64>; 2],
@@ -69,21 +69,11 @@ pub(crate) struct ContactLine {
 /// Names of the tractions of a [`ContactLine`].
 pub(crate) const TRACTIONS: [&str; 2] = ["pressure", "shear"];
 
-/// The coordinate along which contact surfaces extend, 0 or 1.
-pub(crate) fn contact_axis(contacts: &Table) -> usize {
-    let extent = |name: &str| {
-        let values = contacts.numbers(name);
-        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-        values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
-    };
-    usize::from(extent("y") > extent("x"))
-}
-
-/// Tractions along the surfaces in one increment of a table, by a coordinate.
-pub(crate) fn contact_lines(contacts: &Table, increment: usize, axis: usize) -> Vec<ContactLine> {
+/// Tractions along the surfaces in one increment of a table, over the arc length.
+pub(crate) fn contact_lines(contacts: &Table, increment: usize) -> Vec<ContactLine> {
     let wanted = increment as f64;
     let (rows, surfaces) = (contacts.numbers("increment"), contacts.texts("contact"));
-    let place = contacts.numbers(["x", "y"][axis]);
+    let place = contacts.numbers("s");
     let values = ["p_n", "p_1"].map(|name| contacts.numbers(name));
     let own: Vec<usize> = (0..rows.len()).filter(|&k| rows[k] == wanted).collect();
     let line = |own: &[usize]| {
@@ -102,20 +92,19 @@ pub(crate) fn contact_lines(contacts: &Table, increment: usize, axis: usize) -> 
         .collect()
 }
 
-/// Labels of the coordinate and of the tractions.
-pub(crate) fn contact_labels(axis: usize, units: Units) -> [String; 2] {
+/// Labels of the arc length and of the tractions.
+pub(crate) fn contact_labels(units: Units) -> [String; 2] {
     [
-        format!("{} [{}]", ["x", "y"][axis], units.length()),
+        format!("along the surface [{}]", units.length()),
         format!("traction [{}]", units.stress()),
     ]
 }
 
 /// Pressure and shear along the contact surfaces in one increment.
 pub(crate) fn tractions(contacts: &Table, increment: usize, deck: &Deck) -> Option<String> {
-    let axis = contact_axis(contacts);
-    let [label, traction] = contact_labels(axis, deck.units);
+    let [label, traction] = contact_labels(deck.units);
     let mut chart = Chart::new(&deck.title, label, traction);
-    for line in contact_lines(contacts, increment, axis) {
+    for line in contact_lines(contacts, increment) {
         for (name, values) in TRACTIONS.iter().zip(&line.tractions) {
             let points: Vec<[f64; 2]> = line.at.iter().zip(values).map(|(&x, &v)| [x, v]).collect();
             let name = format!("{}, {name}", line.name);

@@ -184,13 +184,15 @@ impl Warnings {
             self.note(Kind::Corner, numbers, at, when);
         }
         if report.negative_eigenvalues > 0 && self.worst[Kind::Unstable as usize].is_none() {
-            let numbers = vec![report.negative_eigenvalues as f64];
-            self.note(Kind::Unstable, numbers, (0, Vec::new()), when);
+            let (at, direction) = most_moved(driver, report.mode.as_deref());
+            let numbers = [vec![report.negative_eigenvalues as f64], direction].concat();
+            self.note(Kind::Unstable, numbers, at, when);
         }
         if let Some(limit) = report.limit
             && self.worst[Kind::Limit as usize].is_none()
         {
-            self.note(Kind::Limit, vec![limit], (0, Vec::new()), when);
+            let (at, direction) = most_moved(driver, report.mode.as_deref());
+            self.note(Kind::Limit, [vec![limit], direction].concat(), at, when);
         }
         if !report.free_motions.is_empty() {
             let numbers = vec![report.free_motions.len() as f64];
@@ -339,17 +341,19 @@ impl Worst {
             Kind::Unstable => format!(
                 "the equilibrium is unstable from increment {when} on: with what may touch held, its tangent has {} \
                  negative there, so that a limit point or a bifurcation has been passed, and what follows is one path \
-                 among several; take the load there as critical, or follow another path from a slightly crooked part",
+                 among several{}; take the load there as critical, or follow another path from a slightly crooked part",
                 match self.number(0) as usize {
                     1 => "an eigenvalue that is".to_owned(),
                     n => format!("{n} eigenvalues that are"),
-                }
+                },
+                self.giving_way(&at)
             ),
             Kind::Limit => format!(
                 "the load passes its limit in increment {when}, at {} of the step: what follows is the path of \
                  equilibria under loads that fall and rise again, which a body under its full load leaves at once, \
-                 snapping to where that load is balanced again",
-                shown(self.number(0), 6)
+                 snapping to where that load is balanced again{}",
+                shown(self.number(0), 6),
+                self.giving_way(&at)
             ),
             Kind::Distorted => format!(
                 "cells are distorted: cell {index} at {at} has a quality of {} in increment {when}, where 1 is \
@@ -420,6 +424,18 @@ impl Worst {
         )
     }
 
+    /// How the body gives way, if that is known.
+    fn giving_way(&self, at: &str) -> String {
+        match self.numbers.get(1..).unwrap_or_default() {
+            [] => String::new(),
+            direction => format!(
+                "; it gives way with node {} at {at} moving most, along {}, as \"mode\" in the VTU files shows",
+                self.index,
+                place(direction, 2)
+            ),
+        }
+    }
+
     fn buckling(&self, deck: &Deck) -> String {
         let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
         let step = deck.steps.get(when).map_or("", |s| s.name.value.as_str());
@@ -438,5 +454,21 @@ impl Worst {
              most, along {direction}; {what}: load less, or hold it against that motion",
             shown(factor, 3)
         )
+    }
+}
+
+/// The node that a mode moves most, with its position, and the direction; no direction without a mode.
+fn most_moved<const D: usize>(
+    driver: &Driver<D>,
+    mode: Option<&[f64]>,
+) -> ((usize, Vec<f64>), Vec<f64>) {
+    let nodes = mode.unwrap_or_default().chunks_exact(D).enumerate();
+    let size = |v: &[f64]| v.iter().fold(0.0, |l: f64, x| l.hypot(*x));
+    match nodes.max_by(|a, b| size(a.1).total_cmp(&size(b.1))) {
+        Some((node, direction)) => {
+            let position = driver.mesh().nodes()[node].to_vec();
+            ((node, position), direction.to_vec())
+        }
+        None => ((0, Vec::new()), Vec::new()),
     }
 }

@@ -85,6 +85,39 @@ fn cells_turned_inside_out_are_told() {
     assert_eq!(warnings.iter().filter(told).count(), 1, "{warnings:#?}");
 }
 
+/// A cantilever of 1 mm by 40 mm pushed along its axis: straight on, it is unstable from Euler's load on, which is
+/// 27.0 N per mm with ν = 0. Its tip would go sideways, and that is a file.
+#[test]
+fn a_column_that_may_buckle_under_large_strains_is_told() {
+    let deck = r#"
+units = "mm-N-MPa"
+analysis = "plane-strain"
+strain = "finite"
+mesh.block = [{ name = "b", element = "quad8", x = [0, 1], y = [0, 40], cells = [1, 16] }]
+material = [{ on = "b", young = 210000.0, poisson = 0.0 }]
+output = { vtu = "last" }
+[[step]]
+name = "squeeze"
+increments = 4
+fix = [{ on = "b.bottom", u = ["x", "y"] }]
+load = [{ on = "b.top", traction = [0, -30.0] }]
+"#;
+    let euler = std::f64::consts::PI.powi(2) * 210_000.0 / 12.0 / 6400.0;
+    assert!(euler > 22.5 && euler < 30.0, "{euler}");
+    let told: &[&str] = &[
+        "unstable from increment 4 on",
+        "one path among several; it gives way with node",
+        "at [",
+        "40] moving most, along [",
+    ];
+    tells("unstable", deck, &[told]);
+    let (_, _, _, results) = run("unstable", deck, &[]);
+    let mode = std::fs::read(results.join("mode_00004.vtu")).expect("a mode");
+    assert!(String::from_utf8_lossy(&mode).contains("Name=\"mode\""));
+    let list = std::fs::read_to_string(results.join("result.pvd")).expect("a list");
+    assert_eq!(list.matches("mode_00004.vtu").count(), 1);
+}
+
 /// A column of 1 mm by 40 mm under a plate: 17 times the stresses of Euler for clamped ends, at the end of the
 /// step; then none, when the plate has gone.
 #[test]

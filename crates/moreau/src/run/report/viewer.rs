@@ -10,8 +10,8 @@ use crate::run::files::contact_table;
 use crate::run::vtu::{bodies, read_point_data};
 use crate::simulation::grids;
 use crate::simulation::pictures::{
-    ContactLine, TRACTIONS, contact_axis, contact_labels, contact_lines, field, fields, label,
-    usual_field, usual_magnification,
+    ContactLine, TRACTIONS, contact_labels, contact_lines, field, fields, label, usual_field,
+    usual_magnification,
 };
 use crate::simulation::status_name;
 use crate::vtu::Array;
@@ -147,8 +147,7 @@ fn contact_line(
     increments: &[usize],
 ) -> Result<serde_json::Value, RunError> {
     let table = contact_table(directory, increments)?;
-    let axis = contact_axis(&table);
-    let frame = |&increment: &usize| contact_lines(&table, increment, axis);
+    let frame = |&increment: &usize| contact_lines(&table, increment);
     let frames: Vec<Vec<ContactLine>> = increments.iter().map(frame).collect();
     // The points of a surface are the same in all frames.
     let Some(first) = frames.first().filter(|lines| !lines.is_empty()) else {
@@ -158,7 +157,7 @@ fn contact_line(
     let values = |line: &ContactLine| line.tractions.each_ref().map(|v| packed(v));
     let values = |lines: &Vec<ContactLine>| lines.iter().map(values).collect::<Vec<_>>();
     Ok(json!({
-        "labels": contact_labels(axis, deck.units),
+        "labels": contact_labels(deck.units),
         "tractions": TRACTIONS,
         "surfaces": first.iter().map(surface).collect::<Vec<_>>(),
         "frames": frames.iter().map(values).collect::<Vec<_>>(),
