@@ -304,7 +304,8 @@ impl Simulation {
         magnification: Option<f64>,
     ) -> Vec<(&'static str, String)> {
         let (deck, history) = (&self.deck, self.history());
-        let mut list = vec![("history", pictures::over_time(history, deck))];
+        let forces = pictures::over_time(history, deck).and_then(|chart| chart.to_svg().ok());
+        let mut list = vec![("history", forces)];
         if let (Some(mesh), Some(row)) = (self.plane(), history.rows().checked_sub(1)) {
             let increment = self.increments();
             let tractions = pictures::tractions(&self.contacts(), increment, deck);

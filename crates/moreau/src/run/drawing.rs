@@ -67,7 +67,8 @@ pub(super) fn pictures_of(
         }
         Ok(())
     };
-    write("history.svg".into(), pictures::over_time(&history, deck))?;
+    let forces = pictures::over_time(&history, deck).and_then(|chart| chart.to_svg().ok());
+    write("history.svg".into(), forces)?;
     if let Some(mesh) = simulation.plane() {
         let contacts = contact_table(directory, &[number])?;
         let at = drawing.increment.map_or(String::new(), |n| format!("-{n}"));

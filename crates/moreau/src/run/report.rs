@@ -29,21 +29,29 @@ pub(super) fn report<const D: usize>(
     let run = read_text(&directory.join("run.json"))?;
     let run: serde_json::Value = serde_json::from_str(&run).unwrap_or_default();
     let text = |key: &str| run[key].as_str().unwrap_or_default().to_owned();
-    let summary: Vec<[String; 2]> = summary(&run, deck);
+    let name = directory.canonicalize().ok();
+    let name = name.as_deref().and_then(Path::file_name);
+    let forces = over_time(&history, deck);
     let page = context! {
         title => if deck.title.is_empty() { "moreau" } else { &deck.title },
         status => text("status"),
         error => text("error"),
         suggestion => run["diagnosis"]["suggestion"].as_str().unwrap_or_default(),
-        summary => summary,
+        name => name.unwrap_or_default().to_string_lossy(),
+        version => text("version"),
+        finished => run["finished"].as_u64(),
+        results => results(&run, deck),
+        energies => energies(&history, deck),
+        exactness => exactness(&run, deck),
+        effort => effort(&run),
         expectations => expectations(&run),
         warnings => list(&run["warnings"]),
         certificate => certificate(&history, deck),
         deck => resolved,
-        history => over_time(&history, deck),
+        history => forces.as_ref().and_then(|chart| chart.to_svg().ok()),
         contact => if D == 2 { tractions(&contacts, increment, deck) } else { None },
         // No name in it may end the script.
-        data => viewer(driver, deck, directory, (increment, last))?.to_string().replace("</", "<\\/"),
+        data => viewer(driver, deck, directory, forces.as_ref(), (increment, last))?.to_string().replace("</", "<\\/"),
     };
     let mut environment = Environment::new();
     let html = environment
@@ -62,27 +70,84 @@ fn list(value: &serde_json::Value) -> Vec<String> {
         .collect()
 }
 
-fn summary(run: &serde_json::Value, deck: &Deck) -> Vec<[String; 2]> {
+/// Rows of a table: what, and how much.
+type Rows = Vec<[String; 2]>;
+
+/// What was computed: loads at collapse, forces, displacements.
+fn results(run: &serde_json::Value, deck: &Deck) -> Rows {
+    let units = deck.units;
+    let collapse = &run["collapse"];
+    let mut rows: Rows = [
+        ("load factor at collapse", "load_factor"),
+        ("its kinematic bound", "upper_bound"),
+    ]
+    .into_iter()
+    .filter_map(|(name, key)| Some([name.to_owned(), shown(collapse[key].as_f64()?, 6)]))
+    .collect();
+    for (name, value) in run["values"].as_object().into_iter().flatten() {
+        let unit = match name.starts_with("force.") {
+            true => units.force(),
+            false => units.length(),
+        };
+        let value = value.as_f64().unwrap_or(f64::NAN);
+        rows.push([format!("{name} [{unit}]"), shown(value, 9)]);
+    }
+    rows
+}
+
+/// Where the work has gone by the end.
+fn energies(history: &Table, deck: &Deck) -> Rows {
+    let columns = [
+        ("external work", "external_work"),
+        ("stored in the bodies", "elastic_energy"),
+        ("dissipated by plastic flow", "plastic_dissipation"),
+        ("dissipated by friction", "friction_dissipation"),
+        ("in springs of penalty or compliance", "penalty_energy"),
+    ];
+    let unit = deck.units.energy();
+    let last = |(name, column): (&str, &str)| {
+        let value = history.numbers(column).pop()?;
+        (value != 0.0).then(|| [format!("{name} [{unit}]"), shown(value, 6)])
+    };
+    let mut rows: Rows = columns.into_iter().filter_map(last).collect();
+    let value = |column: &str| history.numbers(column).pop().unwrap_or(0.0);
+    let found: f64 = columns[1..].iter().map(|c| value(c.1)).sum();
+    if !rows.is_empty() {
+        let lacks = value(columns[0].1) - found;
+        rows.push([format!("not found again [{unit}]"), shown(lacks, 3)]);
+    }
+    rows
+}
+
+/// How exactly the law of contact holds.
+fn exactness(run: &serde_json::Value, deck: &Deck) -> Rows {
+    let units = deck.units;
+    let rows = [
+        ("largest bipotential gap", "bipotential_gap", units.energy()),
+        ("the same, over the work", "relative_gap", "–"),
+        ("largest penetration", "penetration", units.length()),
+        (
+            "largest force outside the cone",
+            "excess_force",
+            units.force(),
+        ),
+    ];
+    let row = |(name, key, unit): (&str, &str, &str)| {
+        let value = run["certificate"][key].as_f64();
+        let value = value.map_or("–".to_owned(), |v| shown(v, 3));
+        [format!("{name} [{unit}]"), value]
+    };
+    rows.map(row).into()
+}
+
+/// What it took.
+fn effort(run: &serde_json::Value) -> Rows {
     let number = |v: &serde_json::Value| match v {
         serde_json::Value::Null => "–".to_owned(),
         v if v.is_f64() => format!("{:.4}", v.as_f64().unwrap_or(f64::NAN)),
         v => v.to_string(),
     };
-    let small = |key: &str| {
-        let value = run["certificate"][key].as_f64();
-        value.map_or("–".to_owned(), |v| shown(v, 3))
-    };
-    let units = deck.units;
-    let collapse = &run["collapse"];
-    let collapse = [
-        ("load factor at collapse", "load_factor"),
-        ("its kinematic bound", "upper_bound"),
-    ]
-    .map(|(name, key)| (name, &collapse[key]))
-    .into_iter()
-    .filter(|(_, v)| v.is_number())
-    .map(|(name, v)| [name.to_owned(), number(v)]);
-    let mut rows: Vec<[String; 2]> = [
+    [
         ("increments", "increments"),
         ("Newton iterations", "newton_iterations"),
         ("contact iterations", "contact_iterations"),
@@ -96,29 +161,7 @@ fn summary(run: &serde_json::Value, deck: &Deck) -> Vec<[String; 2]> {
         ("peak memory [MB]", "peak_memory_mb"),
     ]
     .map(|(name, key)| [name.to_owned(), number(&run[key])])
-    .to_vec();
-    rows.splice(0..0, collapse);
-    for (name, key, unit) in [
-        ("largest bipotential gap", "bipotential_gap", units.energy()),
-        ("the same, over the work", "relative_gap", "–"),
-        ("largest penetration", "penetration", units.length()),
-        (
-            "largest force outside the cone",
-            "excess_force",
-            units.force(),
-        ),
-    ] {
-        rows.push([format!("{name} [{unit}]"), small(key)]);
-    }
-    for (name, value) in run["values"].as_object().into_iter().flatten() {
-        let unit = match name.starts_with("force.") {
-            true => units.force(),
-            false => units.length(),
-        };
-        let value = value.as_f64().unwrap_or(f64::NAN);
-        rows.push([format!("{name} [{unit}]"), shown(value, 9)]);
-    }
-    rows
+    .into()
 }
 
 fn expectations(run: &serde_json::Value) -> Vec<Value> {

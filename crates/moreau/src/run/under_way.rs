@@ -9,7 +9,7 @@ use crate::driver::{IncrementError, IncrementReport, Numbers};
 use crate::simulation::{Converged, Outcome, Simulation, StepError};
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 /// A run under way.
 pub(super) struct Run<'a> {
@@ -187,7 +187,11 @@ impl<'a> Run<'a> {
             out.collection.add(simulation, parts)?;
         }
         out.flush()?;
-        let outcome = self.outcome();
+        let now = SystemTime::now().duration_since(UNIX_EPOCH);
+        let outcome = Outcome {
+            finished: now.ok().map(|now| now.as_secs()),
+            ..self.outcome()
+        };
         replace_file(&self.directory.join(RUN), outcome.json().as_bytes())?;
         let simulation = &self.simulation;
         if simulation.increments() > 0 {

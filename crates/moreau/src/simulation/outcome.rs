@@ -202,6 +202,8 @@ pub struct Outcome {
     pub status: RunStatus,
     /// Time that the increments took, or in a directory all, results written included.
     pub seconds: f64,
+    /// When it ended, in seconds since 1970-01-01 UTC; `None` in memory.
+    pub finished: Option<u64>,
     /// Converged increments.
     pub increments: usize,
     /// Newton iterations of the converged increments.
@@ -295,6 +297,7 @@ pub(super) fn conclude<const D: usize>(
         units: deck.units,
         status,
         seconds,
+        finished: None,
         increments: driver.increments(),
         newton_iterations: tally.newton,
         contact_iterations: tally.contact,
@@ -345,6 +348,8 @@ impl Outcome {
             })
         };
         let value = serde_json::json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "finished": self.finished,
             "title": self.title,
             "units": self.units.name(),
             "status": self.status.name(),

@@ -12,7 +12,7 @@ use tools::outlines;
 
 /// What happens over time: the forces; where there are none, as under loads alone that nothing but
 /// symmetry holds, the mean displacements. Nothing if there is nothing to draw.
-pub(crate) fn over_time(history: &Table, deck: &Deck) -> Option<String> {
+pub(crate) fn over_time(history: &Table, deck: &Deck) -> Option<Chart> {
     let force = format!("force [{}]", deck.units.force());
     let displacement = format!("mean displacement [{}]", deck.units.length());
     // Sums of forces are known no better than each is balanced.
@@ -31,7 +31,7 @@ fn columns(
     history: &Table,
     deck: &Deck,
     (kind, label, noise): (&str, String, f64),
-) -> Option<String> {
+) -> Option<Chart> {
     let time = history.numbers("time");
     let mut chart = Chart::new(&deck.title, "steps [–]", label);
     let names = history.columns().iter();
@@ -53,7 +53,7 @@ fn columns(
             chart = chart.with(name.trim_start_matches(kind), style, points);
         }
     }
-    chart.to_svg().ok()
+    (!chart.series.is_empty()).then_some(chart)
 }
 
 /// A contact surface and the arc length along which it is drawn.
@@ -200,10 +200,11 @@ fn displacement(arrays: &[Array]) -> Option<Vec<[f64; 2]>> {
     array.values.chunks(array.components).map(plane).collect()
 }
 
-/// How many times displacements are drawn so that they are seen but not out of shape; large ones as they are.
+/// How many times displacements are drawn so that they are seen but not out of shape; never smaller than they are,
+/// and large ones as they are.
 pub(crate) fn usual_magnification(deck: &Deck, size: f64, largest: f64) -> f64 {
     match largest > 0.0 && largest.is_finite() && deck.finite.is_none() {
-        true => round(0.05 * size / largest),
+        true => round(0.05 * size / largest).max(1.0),
         false => 1.0,
     }
 }

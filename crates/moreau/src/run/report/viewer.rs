@@ -5,6 +5,7 @@ use crate::deck::Deck;
 use crate::driver::{Driver, points_by_material};
 use crate::laws::Status;
 use crate::mesh::{Facet, Mesh};
+use crate::plot::{Chart, Series};
 use crate::run::RunError;
 use crate::run::files::contact_table;
 use crate::run::vtu::{bodies, read_point_data};
@@ -28,6 +29,7 @@ pub(super) fn viewer<const D: usize>(
     driver: &Driver<D>,
     deck: &Deck,
     directory: &Path,
+    history: Option<&Chart>,
     (end, last): (usize, Option<&[Array]>),
 ) -> Result<serde_json::Value, RunError> {
     let all = bodies(directory);
@@ -39,7 +41,7 @@ pub(super) fn viewer<const D: usize>(
     let mut frames = Vec::new();
     let mut largest = 0.0f64;
     let mut names: Vec<String> = Vec::new();
-    let mut add = |label: String, arrays: &[Array]| {
+    let mut add = |label: String, time: Option<f64>, arrays: &[Array]| {
         let fits = |a: &Array| a.values.len() == a.components * points.len();
         if !arrays.iter().all(fits) {
             return;
@@ -62,7 +64,7 @@ pub(super) fn viewer<const D: usize>(
                 names.push(name.clone());
             }
         }
-        frames.push(json!({ "label": label, "values": values }));
+        frames.push(json!({ "label": label, "time": time, "values": values }));
     };
     let count = all.len();
     let mut increments = Vec::new();
@@ -71,12 +73,16 @@ pub(super) fn viewer<const D: usize>(
         if (count - 1 - k).is_multiple_of(stride) {
             let arrays = read_point_data(&path)?;
             increments.push(number);
-            add(format!("increment {number}, time {time:.4}"), &arrays);
+            add(
+                format!("increment {number}, time {time:.4}"),
+                Some(time),
+                &arrays,
+            );
         }
     }
     if let (0, Some(arrays)) = (count, last) {
         increments.push(end);
-        add("end".into(), arrays);
+        add("end".into(), None, arrays);
     }
     let labels: Map<String, serde_json::Value> = names
         .iter()
@@ -95,11 +101,24 @@ pub(super) fn viewer<const D: usize>(
         "length": deck.units.length(),
         "frames": frames,
         "tools": tools(driver, deck, directory, &increments),
+        "history": history.map(chart),
         "contact": match D {
             2 => contact_line(deck, directory, &increments)?,
             _ => contact_surface(mesh, deck, directory, (&points, &cells), &increments)?,
         },
     }))
+}
+
+/// The labels and the series of a chart.
+fn chart(chart: &Chart) -> serde_json::Value {
+    let series = |s: &Series| {
+        let axis = |k: usize| packed(&s.points.iter().map(|p| p[k]).collect::<Vec<_>>());
+        json!({ "name": s.name, "at": axis(0), "values": axis(1) })
+    };
+    json!({
+        "labels": [chart.x.label, chart.y.label],
+        "series": chart.series.iter().map(series).collect::<Vec<_>>(),
+    })
 }
 
 /// The surfaces of the tools where they were at first, and how far their points have gone in every frame; null without
