@@ -138,7 +138,7 @@ used = resource.getrusage(resource.RUSAGE_CHILDREN)
 print(json.dumps({
     "system": "CalculiX",
     "unknowns": 2 * (3 * nx * ny + 2 * (nx + ny) + 1),
-    "load": float(totals[-1][1]) * (180.0 if round_ else 1.0),
+    "load": abs(float(totals[-1][1])) * (180.0 if round_ else 1.0),
     "iterations": sum(int(step[3]) for step in steps),
     "seconds": used.ru_utime + used.ru_stime,
 }))
