@@ -5,12 +5,14 @@
 
 mod bench;
 mod check;
+mod converge;
 mod convert;
 mod plot;
 mod progress;
 mod run;
 mod signals;
 
+use crate::deck::Given;
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -58,12 +60,16 @@ enum Command {
     Check {
         /// The deck.
         deck: PathBuf,
+        #[command(flatten)]
+        parameters: Parameters,
     },
     /// Runs a deck and writes its results. Ctrl-C ends it within a second, and `resume` goes on from the last
     /// increment.
     Run {
         /// The deck.
         deck: PathBuf,
+        #[command(flatten)]
+        parameters: Parameters,
         /// Directory of the results, instead of the deck's.
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
@@ -91,6 +97,14 @@ enum Command {
         #[arg(long)]
         force: bool,
     },
+    /// Runs a deck on meshes and with increments that are two and four times as fine: the orders that its results
+    /// converge with, and what they tend to.
+    Converge {
+        /// The deck.
+        deck: PathBuf,
+        #[command(flatten)]
+        parameters: Parameters,
+    },
     /// Converts a mesh file: .msh or .inp to .vtu or .msh.
     Convert(convert::Convert),
     /// Prints the JSON schema of decks, for editors.
@@ -112,6 +126,33 @@ enum Command {
         #[arg(long)]
         png: bool,
     },
+}
+
+/// Parameters of a deck.
+#[derive(Debug, clap::Args)]
+struct Parameters {
+    /// Value of a parameter, instead of the deck's; may be given again.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = parameter)]
+    set: Vec<(String, f64)>,
+}
+
+impl Parameters {
+    fn given(self) -> Given {
+        Given {
+            parameters: self.set.into_iter().collect(),
+            ..Given::default()
+        }
+    }
+}
+
+/// A parameter and its value.
+fn parameter(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
+    let value: f64 = value
+        .trim()
+        .parse()
+        .map_err(|_| format!("\"{value}\" is no number"))?;
+    Ok((name.trim().to_owned(), value))
 }
 
 /// How a run goes on.
@@ -146,13 +187,14 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         }
     };
     match arguments.command {
-        Command::Check { deck } => check::check(&deck),
+        Command::Check { deck, parameters } => check::check(&deck, &parameters.given()),
         Command::Run {
             deck,
+            parameters,
             out,
             force,
             manner,
-        } => run::run(&deck, out, force, &manner),
+        } => run::run(&deck, &parameters.given(), (out, force), &manner),
         Command::Resume { directory, manner } => run::resume(&directory, &manner),
         Command::Bench { deck, out, force } => bench::bench(&deck, out, force),
         Command::Plot {
@@ -169,6 +211,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
             };
             plot::plot(&directory, &drawing, png)
         }
+        Command::Converge { deck, parameters } => converge::converge(&deck, &parameters.given()),
         Command::Convert(convert) => convert.run(),
         Command::Schema => {
             say!("{}", crate::deck::SCHEMA.trim_end());

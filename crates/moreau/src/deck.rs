@@ -38,6 +38,7 @@ mod columns;
 mod echo;
 mod entries;
 mod finding;
+mod formula;
 mod grammar;
 mod reader;
 mod units;
@@ -58,6 +59,15 @@ use std::path::{Path, PathBuf, absolute};
 /// Mesh files that are not on disk: their contents, by the paths that decks give.
 pub type Meshes = BTreeMap<PathBuf, Vec<u8>>;
 
+/// What a deck is given beside its text.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Given {
+    /// Mesh files that are not on disk.
+    pub meshes: Meshes,
+    /// Values of parameters, in place of those of the deck.
+    pub parameters: BTreeMap<String, f64>,
+}
+
 /// JSON schema of decks, for editors: `docs/deck.schema.json`.
 pub const SCHEMA: &str = include_str!("../../../docs/deck.schema.json");
 
@@ -69,12 +79,13 @@ pub fn open(text: &str) -> (Deck, Option<Problem>, Findings) {
 
 /// As [`open`], with the paths in the deck relative to a folder: that of the deck's file.
 pub fn open_in(text: &str, folder: &Path) -> (Deck, Option<Problem>, Findings) {
-    open_with(text, folder, &Meshes::new())
+    open_with(text, folder, &Given::default())
 }
 
-/// As [`open_in`], with mesh files that are not on disk.
-pub fn open_with(text: &str, folder: &Path, meshes: &Meshes) -> (Deck, Option<Problem>, Findings) {
-    let (mut deck, mut findings) = grammar::read(text, folder);
+/// As [`open_in`], with what is given beside the text.
+pub fn open_with(text: &str, folder: &Path, given: &Given) -> (Deck, Option<Problem>, Findings) {
+    let (mut deck, mut findings) = grammar::read(text, folder, &given.parameters);
+    let meshes = &given.meshes;
     let given = deck.mesh_file.as_ref().and_then(|file| {
         let wanted = absolute(&file.value).ok()?;
         let is_wanted = |path: &Path| absolute(folder.join(path)).is_ok_and(|at| at == wanted);

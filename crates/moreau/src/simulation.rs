@@ -48,7 +48,7 @@ pub use saved::RestoreError;
 pub(crate) use course::Course;
 pub(crate) use saved::{sealed, unsealed};
 
-use crate::deck::{Deck, Findings, Meshes, Problem, open_with};
+use crate::deck::{Deck, Findings, Given, Meshes, Problem, open_with};
 use crate::driver::{IncrementError, IncrementReport, Iteration, ModelError, Numbers};
 use crate::laws::Status;
 use crate::mesh::Mesh;
@@ -123,13 +123,18 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// Opens a deck. Paths in it are relative to a folder; `meshes` are the files that are not on disk. `None` if the
-    /// deck has errors.
-    pub fn open(text: &str, folder: &Path, meshes: &Meshes) -> (Option<Self>, Findings) {
-        let (deck, problem, findings) = open_with(text, folder, meshes);
+    /// Opens a deck, with what is given beside its text. Paths in it are relative to a folder. `None` if the deck has
+    /// errors.
+    pub fn open(text: &str, folder: &Path, given: &Given) -> (Option<Self>, Findings) {
+        let (deck, problem, findings) = open_with(text, folder, given);
         // For a step that follows the deck is opened again, from wherever the process is then.
         let at = |path: &PathBuf| absolute(folder.join(path)).unwrap_or_else(|_| path.clone());
-        let kept = || meshes.iter().map(|(path, mesh)| (at(path), mesh.clone()));
+        let kept = || {
+            given
+                .meshes
+                .iter()
+                .map(|(path, mesh)| (at(path), mesh.clone()))
+        };
         let simulation = problem.map(|problem| Self::of(deck, problem, kept().collect()));
         (simulation, findings)
     }
@@ -202,7 +207,11 @@ impl Simulation {
         deck.steps.truncate(begun);
         deck.expectations.clear();
         let text = format!("{}\n[[step]]\n{step}\n", deck.resolved());
-        let (deck, problem, findings) = open_with(&text, Path::new(""), &self.meshes);
+        let given = Given {
+            meshes: self.meshes.clone(),
+            ..Given::default()
+        };
+        let (deck, problem, findings) = open_with(&text, Path::new(""), &given);
         let Some(problem) = problem else {
             return Err(Refusal { text, findings });
         };

@@ -1,6 +1,6 @@
 //! A simulation, and its tables and grids as columns of bytes; no column is named here.
 
-use moreau::deck::{Findings, Meshes, Severity};
+use moreau::deck::{Findings, Given, Severity};
 use moreau::driver::IncrementError;
 use moreau::simulation::{Array, Grid, Simulation as Course, StepError};
 use moreau::table::{Table, Values};
@@ -59,8 +59,11 @@ impl Simulation {
         file: String,
         meshes: BTreeMap<PathBuf, Vec<u8>>,
     ) -> (Option<Self>, Vec<Found>, String) {
-        let meshes: Meshes = meshes;
-        let (course, findings) = py.detach(|| Course::open(&text, &folder, &meshes));
+        let given = Given {
+            meshes,
+            ..Given::default()
+        };
+        let (course, findings) = py.detach(|| Course::open(&text, &folder, &given));
         let course = course.map(|course| Self {
             course: Mutex::new(course),
         });

@@ -1,14 +1,14 @@
 //! `moreau bench`: a deck under every contact algorithm, as a table.
 
 use super::{INPUT_ERROR, NOT_CONVERGED, run, say, tell};
-use crate::deck::{At, Deck, Meshes, Method, Vtu};
+use crate::deck::{At, Deck, Given, Method, Vtu};
 use crate::run::Directory;
 use crate::simulation::{Outcome, RunStatus, Simulation};
 use std::path::{Path, PathBuf};
 
 /// Runs a deck under every algorithm; the exit status is that of the first that fails.
 pub(super) fn bench(path: &Path, out: Option<PathBuf>, force: bool) -> u8 {
-    let Some(simulation) = run::simulation(path) else {
+    let Some(simulation) = run::simulation(path, &Given::default()) else {
         return INPUT_ERROR;
     };
     let deck = simulation.deck().clone();
@@ -36,7 +36,7 @@ pub(super) fn bench(path: &Path, out: Option<PathBuf>, force: bool) -> u8 {
         };
         // The deck as text, so that it is checked as any other.
         let text = deck.resolved();
-        let (simulation, findings) = Simulation::open(&text, Path::new(""), &Meshes::new());
+        let (simulation, findings) = Simulation::open(&text, Path::new(""), &Given::default());
         let Some(simulation) = simulation else {
             tell!("{}", findings.render(&name, &text, false));
             return INPUT_ERROR;

@@ -1,7 +1,9 @@
 //! `moreau check`: what a deck was understood to say; nothing is solved.
 
 use super::{INPUT_ERROR, folder, read, report, say};
-use crate::deck::{Action, Deck, MaterialEntry, Method, Problem, Setup, Shape, SoilEntry, open_in};
+use crate::deck::{
+    Action, Deck, Given, MaterialEntry, Method, Problem, Setup, Shape, SoilEntry, open_with,
+};
 use crate::driver::{Axis, RigidMotion, Stopper};
 use crate::numbers::{place, shown};
 use std::path::Path;
@@ -11,11 +13,11 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 const DIGITS: usize = 7;
 
 /// Checks a deck; the exit status.
-pub(super) fn check(path: &Path) -> u8 {
+pub(super) fn check(path: &Path, given: &Given) -> u8 {
     let Some(text) = read(path) else {
         return INPUT_ERROR;
     };
-    let (deck, problem, findings) = open_in(&text, folder(path));
+    let (deck, problem, findings) = open_with(&text, folder(path), given);
     report(&findings, path, &text);
     match problem {
         None => INPUT_ERROR,

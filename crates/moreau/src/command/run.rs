@@ -4,7 +4,7 @@
 use super::progress::Progress;
 use super::signals::{Signals, interrupted};
 use super::{INPUT_ERROR, Manner, NOT_CONVERGED, UNEXPECTED, folder, read, report, say, tell};
-use crate::deck::Meshes;
+use crate::deck::Given;
 use crate::memory;
 use crate::numbers::shown;
 use crate::run::{Directory, RunError, Watch};
@@ -14,8 +14,13 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// Runs a deck; the exit status.
-pub(super) fn run(path: &Path, out: Option<PathBuf>, force: bool, manner: &Manner) -> u8 {
-    let Some(simulation) = simulation(path) else {
+pub(super) fn run(
+    path: &Path,
+    given: &Given,
+    (out, force): (Option<PathBuf>, bool),
+    manner: &Manner,
+) -> u8 {
+    let Some(simulation) = simulation(path, given) else {
         return INPUT_ERROR;
     };
     let given = simulation.deck().directory.as_ref().map(PathBuf::from);
@@ -64,13 +69,13 @@ pub(super) fn results(directory: &Path) -> Option<Simulation> {
         );
         return None;
     }
-    simulation(&path)
+    simulation(&path, &Given::default())
 }
 
 /// The simulation of a deck; findings are printed.
-pub(super) fn simulation(path: &Path) -> Option<Simulation> {
+pub(super) fn simulation(path: &Path, given: &Given) -> Option<Simulation> {
     let text = read(path)?;
-    let (simulation, findings) = Simulation::open(&text, folder(path), &Meshes::new());
+    let (simulation, findings) = Simulation::open(&text, folder(path), given);
     report(&findings, path, &text);
     simulation
 }

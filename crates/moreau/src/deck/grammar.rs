@@ -7,16 +7,18 @@ mod step;
 mod tool;
 
 use super::entries::{Analysis, Deck};
-use super::finding::{At, Class, Findings};
+use super::finding::{At, Class, Findings, did_you_mean};
+use super::formula;
 use super::reader::{self, Log, Table, Value};
 use super::units::Units;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
 use toml::de::DeTable;
 
 /// Reads a deck whose paths are relative to a folder. What was not understood is left out, and
 /// noted.
-pub(super) fn read(text: &str, folder: &Path) -> (Deck, Findings) {
+pub(super) fn read(text: &str, folder: &Path, given: &BTreeMap<String, f64>) -> (Deck, Findings) {
     let (document, errors) = DeTable::parse_recoverable(text);
     let log = Log::default();
     for error in errors {
@@ -27,9 +29,53 @@ pub(super) fn read(text: &str, folder: &Path) -> (Deck, Findings) {
             .about(Class::Syntax);
     }
     let root = Table::new(document.get_ref(), 0..0, "the deck", &log);
+    let parameters = parameters(&root, given);
     let deck = deck(&root, folder);
     root.finish();
+    for name in parameters.iter().filter(|name| !log.uses(&name.value)) {
+        let message = format!("no formula uses the parameter \"{}\"", name.value);
+        log.borrow_mut()
+            .warning(&name.span, message, "as in friction = \"= mu\"");
+    }
     (deck, log.into_inner())
+}
+
+/// Defines the parameters of a deck, in the order of the file; those that are given have other values. Their names.
+fn parameters(root: &Table<'_>, given: &BTreeMap<String, f64>) -> Vec<At<String>> {
+    let log = root.log();
+    let table = root
+        .get("parameters")
+        .and_then(|value| reader::table(value, "parameters", "[parameters]", log));
+    let mut names: Vec<At<String>> = Vec::new();
+    for (name, value) in table.iter().flat_map(Table::entries) {
+        let plain = name.value.starts_with(char::is_alphabetic);
+        if !(plain && name.value.chars().all(formula::is_of_name)) {
+            let message = format!(
+                "the parameter is called \"{}\", expected letters, digits and '_', a letter first",
+                name.value
+            );
+            let mut findings = log.borrow_mut();
+            findings.error(&name.span, message, "no name for formulas");
+            continue;
+        }
+        let other = given.get(&name.value).copied();
+        let value = reader::number(value, &name.value, log).map(|v| v.value);
+        if let Some(value) = other.or(value) {
+            log.define(&name.value, value);
+        }
+        names.push(name);
+    }
+    for unknown in given.keys() {
+        if !names.iter().any(|name| name.value == *unknown) {
+            let near = did_you_mean(unknown, names.iter().map(|n| n.value.as_str()));
+            let message = format!("the deck has no parameter \"{unknown}\"{near}");
+            let mut findings = log.borrow_mut();
+            findings
+                .error(&(0..0), message, "[parameters] names them")
+                .about(Class::Names);
+        }
+    }
+    names
 }
 
 /// What is wrong at a place where the text is no TOML: in the words of a deck where the mistake is a

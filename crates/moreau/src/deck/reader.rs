@@ -1,7 +1,9 @@
 //! Reading tables and values of a deck, noting what is not as expected; it knows no key.
 
 use super::finding::{At, Class, Findings, did_you_mean, one_of};
-use std::cell::RefCell;
+use super::formula::{self, Mistake};
+use std::cell::{Ref, RefCell, RefMut};
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -9,8 +11,72 @@ use toml::de::{DeTable, DeValue};
 /// A value with its place.
 pub(super) type Value<'a> = &'a Spanned<DeValue<'a>>;
 
-/// Where findings are collected while a deck is read.
-pub(super) type Log = RefCell<Findings>;
+/// Where findings are collected while a deck is read, with the parameters that formulas may use.
+#[derive(Default)]
+pub(super) struct Log {
+    findings: RefCell<Findings>,
+    parameters: RefCell<BTreeMap<String, f64>>,
+    used: RefCell<BTreeSet<String>>,
+}
+
+impl Log {
+    pub(super) fn borrow(&self) -> Ref<'_, Findings> {
+        self.findings.borrow()
+    }
+
+    pub(super) fn borrow_mut(&self) -> RefMut<'_, Findings> {
+        self.findings.borrow_mut()
+    }
+
+    pub(super) fn into_inner(self) -> Findings {
+        self.findings.into_inner()
+    }
+
+    /// Lets formulas from here on use a parameter.
+    pub(super) fn define(&self, name: &str, value: f64) {
+        self.parameters.borrow_mut().insert(name.to_owned(), value);
+    }
+
+    /// Whether a formula used a parameter.
+    pub(super) fn uses(&self, name: &str) -> bool {
+        self.used.borrow().contains(name)
+    }
+
+    fn parameter(&self, name: &str) -> Option<f64> {
+        let value = self.parameters.borrow().get(name).copied()?;
+        self.used.borrow_mut().insert(name.to_owned());
+        Some(value)
+    }
+
+    /// The value of a formula; what is wrong with it is noted.
+    fn formula(&self, text: &str, what: &str, span: &Range<usize>) -> Option<f64> {
+        let value = match formula::value(text, &|name| self.parameter(name)) {
+            Ok(value) if value.is_finite() => return Some(value),
+            other => other,
+        };
+        let parameters = self.parameters.borrow();
+        let (message, label) = match value {
+            Ok(value) => (
+                format!("{what} is the formula \"={text}\", whose value is {value}"),
+                "expected a finite number",
+            ),
+            Err(Mistake::Unknown(name)) => {
+                let near = did_you_mean(&name, parameters.keys().map(String::as_str));
+                (
+                    format!("no parameter is called \"{name}\"{near}"),
+                    "not in [parameters]",
+                )
+            }
+            Err(Mistake::Expected(expected, found)) => (
+                format!("{what} is a formula with {found}, where {expected} was expected"),
+                "numbers, parameters, + - * / and ( )",
+            ),
+        };
+        let mut findings = self.findings.borrow_mut();
+        findings.error(span, message, label).about(Class::Values);
+        None
+    }
+}
 
 /// A table of the deck, of which keys are asked for; those never asked for are unknown.
 pub(super) struct Table<'a> {
@@ -204,11 +270,16 @@ pub(super) fn text(value: Value<'_>, what: &str, log: &Log) -> Option<At<String>
 
 /// A finite number; integers are numbers.
 pub(super) fn number(value: Value<'_>, what: &str, log: &Log) -> Option<At<f64>> {
+    let span = value.span();
     let parsed = match value.get_ref() {
         DeValue::Float(f) => f.as_str().replace('_', "").parse::<f64>().ok(),
         DeValue::Integer(i) => i64::from_str_radix(&i.as_str().replace('_', ""), i.radix())
             .ok()
             .map(|n| n as f64),
+        DeValue::String(text) if text.starts_with('=') => {
+            let value = log.formula(&text[1..], what, &value.span())?;
+            return Some(At::new(value, span));
+        }
         DeValue::String(text)
             if text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) =>
         {
@@ -230,10 +301,15 @@ pub(super) fn integer(
     range: std::ops::RangeInclusive<usize>,
     log: &Log,
 ) -> Option<At<usize>> {
-    let DeValue::Integer(i) = value.get_ref() else {
-        return wrong(value, what, "an integer", log);
+    let parsed = match value.get_ref() {
+        DeValue::Integer(i) => usize::from_str_radix(&i.as_str().replace('_', ""), i.radix()).ok(),
+        DeValue::String(text) if text.starts_with('=') => {
+            let value = log.formula(&text[1..], what, &value.span())?;
+            let whole = value.fract() == 0.0 && (0.0..1e15).contains(&value);
+            whole.then_some(value as usize)
+        }
+        _ => return wrong(value, what, "an integer", log),
     };
-    let parsed = usize::from_str_radix(&i.as_str().replace('_', ""), i.radix()).ok();
     match parsed.filter(|n| range.contains(n)) {
         Some(n) => Some(At::new(n, value.span())),
         None => {

@@ -5,6 +5,7 @@ mod laws;
 mod meshes;
 mod metamorphic;
 mod mutants;
+mod parameters;
 mod refused;
 mod schema;
 mod supports;

@@ -6,7 +6,7 @@ mod moved;
 mod units;
 
 use super::{folder, temporary};
-use moreau::deck::Meshes;
+use moreau::deck::Given;
 use moreau::run::{Directory, Watch, resume, run};
 use moreau::simulation::{Converged, Simulation};
 use std::fs;
@@ -120,7 +120,7 @@ fn history(deck: &Table, beside: &Path, name: &str, pause: bool) -> History {
     let text = deck.to_string();
     let mut watch = Pause(if pause { 1 } else { usize::MAX });
     for go_on in [false, true] {
-        let (simulation, findings) = Simulation::open(&text, beside, &Meshes::new());
+        let (simulation, findings) = Simulation::open(&text, beside, &Given::default());
         let shown = || findings.render(name, &text, false);
         let simulation = simulation.unwrap_or_else(|| panic!("{}", shown()));
         match go_on {

@@ -4,7 +4,7 @@ mod interrupted;
 mod replaced;
 mod saved;
 
-use moreau::deck::Meshes;
+use moreau::deck::{Given, Meshes};
 use moreau::driver::IncrementError;
 use moreau::simulation::{RunStatus, Simulation, StepError};
 use moreau::table::Values;
@@ -19,7 +19,11 @@ fn examples() -> PathBuf {
 }
 
 fn opened(text: &str, meshes: &Meshes) -> Simulation {
-    let (simulation, findings) = Simulation::open(text, &examples(), meshes);
+    let given = Given {
+        meshes: meshes.clone(),
+        ..Given::default()
+    };
+    let (simulation, findings) = Simulation::open(text, &examples(), &given);
     simulation.unwrap_or_else(|| panic!("{}", findings.render("deck", text, false)))
 }
 
@@ -117,7 +121,7 @@ fn a_mesh_file_need_not_be_on_disk() {
     let text = text.replace("increments = 20", "increments = 2");
     let text = text.split("[expect]").next().expect("a deck");
     let given = text.replace("punch-on-gmsh-mesh.msh", "nowhere.msh");
-    let (refused, findings) = Simulation::open(&given, &examples(), &Meshes::new());
+    let (refused, findings) = Simulation::open(&given, &examples(), &Given::default());
     assert!(refused.is_none());
     let shown = findings.render("deck", &given, false);
     assert!(shown.contains("nowhere.msh"), "{shown}");
