@@ -62,6 +62,9 @@ enum Command {
         deck: PathBuf,
         #[command(flatten)]
         parameters: Parameters,
+        /// Draws what every step will do, of a body in the plane: supports, motions, loads, tools, gaps.
+        #[arg(long, value_name = "FILE.svg")]
+        picture: Option<PathBuf>,
     },
     /// Runs a deck and writes its results. Ctrl-C ends it within a second, and `resume` goes on from the last
     /// increment.
@@ -187,7 +190,11 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         }
     };
     match arguments.command {
-        Command::Check { deck, parameters } => check::check(&deck, &parameters.given()),
+        Command::Check {
+            deck,
+            parameters,
+            picture,
+        } => check::check(&deck, &parameters.given(), picture.as_deref()),
         Command::Run {
             deck,
             parameters,

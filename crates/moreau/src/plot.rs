@@ -57,6 +57,6 @@ pub use colour::colours;
 pub use error::PlotError;
 pub use look::Style;
 pub use nodal::nodal_average;
-pub use picture::{Field, MeshPicture};
+pub use picture::{Field, Mark, MeshPicture};
 #[cfg(feature = "png")]
 pub use raster::png;

@@ -1,11 +1,12 @@
 //! `moreau check`: what a deck was understood to say; nothing is solved.
 
-use super::{INPUT_ERROR, folder, read, report, say};
+use super::{INPUT_ERROR, folder, read, report, say, tell};
 use crate::deck::{
     Action, Deck, Given, MaterialEntry, Method, Problem, Setup, Shape, SoilEntry, open_with,
 };
 use crate::driver::{Axis, RigidMotion, Stopper};
 use crate::numbers::{place, shown};
+use crate::simulation::pictures::planned;
 use std::path::Path;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -13,7 +14,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 const DIGITS: usize = 7;
 
 /// Checks a deck; the exit status.
-pub(super) fn check(path: &Path, given: &Given) -> u8 {
+pub(super) fn check(path: &Path, given: &Given, picture: Option<&Path>) -> u8 {
     let Some(text) = read(path) else {
         return INPUT_ERROR;
     };
@@ -29,9 +30,37 @@ pub(super) fn check(path: &Path, given: &Given) -> u8 {
             }
             conditions(&deck);
             say!("no rigid motion is free; the deck can be run");
-            0
+            picture.map_or(0, |file| draw(&deck, &problem, file))
         }
     }
+}
+
+/// Draws every step into a file of its own, the first into the one that is named; the exit status.
+fn draw(deck: &Deck, problem: &Problem, file: &Path) -> u8 {
+    let Problem::Plane(setup) = problem else {
+        tell!("a solid is not drawn before it is run: `report.html` shows it after an increment");
+        return INPUT_ERROR;
+    };
+    for step in 0..deck.steps.len() {
+        let Some(svg) = planned(deck, setup, step) else {
+            continue;
+        };
+        let name = |number: usize| {
+            let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+            let end = file.extension().unwrap_or_default().to_string_lossy();
+            file.with_file_name(format!("{stem}-{number}.{end}"))
+        };
+        let to = match step {
+            0 => file.to_owned(),
+            step => name(step + 1),
+        };
+        if let Err(error) = std::fs::write(&to, svg) {
+            tell!("cannot write {}: {error}", to.display());
+            return INPUT_ERROR;
+        }
+        say!("picture    {}", to.display());
+    }
+    0
 }
 
 fn head(deck: &Deck) {

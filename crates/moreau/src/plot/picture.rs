@@ -1,6 +1,7 @@
 //! Pictures of plane meshes: cells, deformed or not, coloured by a field; not of their history.
 
 mod bands;
+mod marks;
 mod sheet;
 
 use super::PlotError;
@@ -9,6 +10,7 @@ use super::colour::{INK, LEVELS, colour};
 use super::pen::{COARSE, FINE, Pen};
 use crate::mesh::{CellKind, Mesh};
 use bands::{Corner, Table, combine, fill_bands};
+pub use marks::Mark;
 use sheet::{Bar, Sheet, check_length};
 use std::collections::BTreeMap;
 
@@ -43,6 +45,8 @@ pub struct MeshPicture<'a> {
     pub outline: bool,
     /// Polylines drawn besides, of tools for instance \[mm\]; cut off not far from the body.
     pub polylines: Vec<Vec<[f64; 2]>>,
+    /// Marks on top, with room for them around the body.
+    pub marks: Vec<Mark>,
 }
 
 impl<'a> MeshPicture<'a> {
@@ -57,6 +61,7 @@ impl<'a> MeshPicture<'a> {
             field: None,
             outline: false,
             polylines: Vec::new(),
+            marks: Vec::new(),
         }
     }
 
@@ -91,6 +96,12 @@ impl<'a> MeshPicture<'a> {
     /// With a polyline.
     pub fn polyline(mut self, points: Vec<[f64; 2]>) -> Self {
         self.polylines.push(points);
+        self
+    }
+
+    /// With marks.
+    pub fn marks(mut self, marks: Vec<Mark>) -> Self {
+        self.marks.extend(marks);
         self
     }
 
@@ -134,6 +145,7 @@ impl<'a> MeshPicture<'a> {
                 }
             }
         }
+        marks::draw(&mut svg, &sheet, &self.marks);
         if let Some(bar) = &bar {
             sheet.bar(&mut svg, bar);
         }

@@ -1,9 +1,10 @@
 //! The pictures of a simulation, from its tables and grids: forces or displacements over time, tractions along the
 //! contact, the deformed body with a field.
 
+mod conditions;
 mod tools;
 
-use crate::deck::{Deck, Units};
+use crate::deck::{Deck, Setup, Units};
 use crate::mesh::Mesh;
 use crate::plot::{Chart, MeshPicture, Style};
 use crate::table::Table;
@@ -234,6 +235,24 @@ pub(crate) fn deformed(
         .unit(deck.units.length())
         .outline();
     let tools = outlines(deck, (history, row), mesh.size(), magnification);
+    let picture = tools.into_iter().fold(picture, MeshPicture::polyline);
+    picture.to_svg().ok()
+}
+
+/// What a step of a plane deck is to do, before anything is computed: the mesh, the tools where they are at first, supports,
+/// motions, loads and contacts.
+pub(crate) fn planned(deck: &Deck, setup: &Setup<2>, step: usize) -> Option<String> {
+    let entry = deck.steps.get(step)?;
+    let mesh = setup.driver.mesh();
+    let title = match deck.title.as_str() {
+        "" => format!("step {}", entry.name.value),
+        title => format!("{title}: step {}", entry.name.value),
+    };
+    let picture = MeshPicture::new(mesh, title)
+        .unit(deck.units.length())
+        .marks(conditions::marks(deck, setup, entry));
+    let none = Table::new(Vec::new());
+    let tools = outlines(deck, (&none, 0), mesh.size(), 1.0);
     let picture = tools.into_iter().fold(picture, MeshPicture::polyline);
     picture.to_svg().ok()
 }

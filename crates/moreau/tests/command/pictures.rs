@@ -2,6 +2,7 @@
 
 use super::{BALL, moreau, punched, run, text};
 use std::fs;
+use std::path::Path;
 
 /// From files alone: the same pictures, others on demand, and a report that needs no network.
 #[test]
@@ -201,4 +202,46 @@ nearest = [0, 2]
             "{row:?}"
         );
     }
+}
+
+/// Before anything is computed: a picture of every step, with what is held, moved, pressed and touched.
+#[test]
+fn a_deck_is_drawn_before_it_is_run() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("planned");
+    fs::create_dir_all(&folder).expect("a folder");
+    let drawn = |deck: &str| {
+        let deck = format!(
+            "{}/../../docs/examples/{deck}.toml",
+            env!("CARGO_MANIFEST_DIR")
+        );
+        let picture = folder.join("plan.svg");
+        let output = moreau(&[
+            "check",
+            &deck,
+            "--picture",
+            picture.to_str().expect("a path"),
+        ]);
+        (output.status.code(), text(&output.stderr))
+    };
+    assert_eq!(drawn("block-under-driven-roll").0, Some(0));
+    let read = |name: &str| fs::read_to_string(folder.join(name)).expect("a picture");
+    let (first, second) = (read("plan.svg"), read("plan-2.svg"));
+    for (svg, words) in [
+        (
+            &first,
+            [">roll: (0, −1000) N<", ">roll: touches, friction 0.1<"],
+        ),
+        (&second, [">roll: (0, −250) N<", ": step relax<"]),
+    ] {
+        for word in words {
+            assert!(svg.contains(word), "{word} in {svg}");
+        }
+    }
+    assert_eq!(drawn("tube-blown-up").0, Some(0));
+    assert!(read("plan.svg").contains(">pressure 400 MPa<"));
+    let (status, err) = drawn("punch-in-space");
+    assert!(
+        status == Some(1) && err.contains("a solid is not drawn"),
+        "{err}"
+    );
 }

@@ -145,6 +145,10 @@ impl Sheet {
                 }
             }
         }
+        if !picture.marks.is_empty() {
+            low = [0, 1].map(|i| low[i].min(limits[0][i]));
+            high = [0, 1].map(|i| high[i].max(limits[1][i]));
+        }
         let mut span = [high[0] - low[0], high[1] - low[1]];
         let longest = span[0].max(span[1]);
         // A displacement may flatten a body.
@@ -185,6 +189,10 @@ impl Sheet {
             label,
             tick_width,
         }
+    }
+
+    pub(super) fn width(&self) -> f64 {
+        self.width
     }
 
     /// Place on paper.
