@@ -1,5 +1,6 @@
 //! Parameters of a deck and the formulas that use them; what is wrong with either.
 
+use super::schema::{fits, read, schema};
 use super::{DECK, flat, folder};
 use moreau::deck::{Given, open, open_with};
 
@@ -33,6 +34,8 @@ fn a_deck_by_formulas_is_that_of_their_values() {
     assert_eq!((findings.errors(), findings.warnings()), (0, 0));
     assert!(problem.is_some());
     assert_eq!(deck.resolved(), resolved);
+    let root = schema();
+    assert_eq!(fits(&read(&text), &root, &root), Ok(()));
 }
 
 /// Also where others follow from it.

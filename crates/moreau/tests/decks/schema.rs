@@ -158,8 +158,10 @@ fn the_schema_has_the_keys_of_the_reader() {
 
 /// What tells, and asks for nothing.
 const ABOUT: [&str; 4] = ["$schema", "$defs", "title", "description"];
-/// The only pattern: that of names.
+/// The patterns: those of names, of formulas, and of the names of parameters.
 const NAME: &str = "^[^\\s!-,/:-@\\[-^`{-~]+$";
+const FORMULA: &str = "^=";
+const PARAMETER: &str = "^\\p{L}[\\p{L}\\p{N}_]*$";
 
 /// Whether a value is as a part of the schema says: every keyword in it, as draft 2020-12 has them.
 pub(super) fn fits(value: &Value, part: &Value, root: &Value) -> Result<(), String> {
@@ -170,7 +172,7 @@ pub(super) fn fits(value: &Value, part: &Value, root: &Value) -> Result<(), Stri
             Value::Object(_) => of_object(value, (keyword, asked), part, root),
             Value::Array(_) => of_array(value, (keyword, asked), part, root),
             Value::Number(_) => Ok(of_number(value, (keyword, asked))),
-            Value::String(text) if keyword == "pattern" => Ok(is_name(text, asked)),
+            Value::String(text) if keyword == "pattern" => Ok(matches(text, asked)),
             _ => Ok(true),
         };
         if !holds? {
@@ -202,15 +204,8 @@ fn of_any(
             let name = asked.as_str().and_then(|r| r.strip_prefix("#/$defs/"));
             return fits(value, &root["$defs"][name.expect("a reference")], root).map(|()| true);
         }
-        "type" => match asked.as_str().expect("a type") {
-            "object" => value.is_object(),
-            "array" => value.is_array(),
-            "string" => value.is_string(),
-            "number" => value.is_number(),
-            "integer" => value.is_u64() || value.is_i64(),
-            "boolean" => value.is_boolean(),
-            other => panic!("the type {other}"),
-        },
+        "type" if asked.is_array() => list().any(|asked| is_of(value, asked)),
+        "type" => is_of(value, asked),
         "enum" => list().any(equal),
         "const" => equal(asked),
         "allOf" => {
@@ -230,6 +225,18 @@ fn of_any(
         }
         _ => true,
     })
+}
+
+fn is_of(value: &Value, asked: &Value) -> bool {
+    match asked.as_str().expect("a type") {
+        "object" => value.is_object(),
+        "array" => value.is_array(),
+        "string" => value.is_string(),
+        "number" => value.is_number(),
+        "integer" => value.is_u64() || value.is_i64(),
+        "boolean" => value.is_boolean(),
+        other => panic!("the type {other}"),
+    }
 }
 
 fn of_object(
@@ -253,6 +260,10 @@ fn of_object(
         }
         "minProperties" => object.len() as u64 >= count,
         "maxProperties" => object.len() as u64 <= count,
+        "propertyNames" => {
+            let mut names = object.keys();
+            names.all(|name| fits(&Value::from(name.as_str()), asked, root).is_ok())
+        }
         "properties" => {
             for (key, inner) in object {
                 fits(inner, &asked[key], root).map_err(|e| format!("{key}: {e}"))?;
@@ -321,10 +332,17 @@ fn of_number(value: &Value, (keyword, asked): Keyword<'_>) -> bool {
     }
 }
 
-fn is_name(text: &str, pattern: &Value) -> bool {
-    assert_eq!(pattern, NAME, "a pattern that this test does not know");
+fn matches(text: &str, pattern: &Value) -> bool {
     let sign = |c: char| c.is_ascii_punctuation() && !"-_.".contains(c);
-    !text.is_empty() && !text.chars().any(|c| c.is_whitespace() || sign(c))
+    match pattern.as_str().expect("a pattern") {
+        NAME => !text.is_empty() && !text.chars().any(|c| c.is_whitespace() || sign(c)),
+        FORMULA => text.starts_with('='),
+        PARAMETER => {
+            let of_name = |c: char| c.is_alphanumeric() || c == '_';
+            text.starts_with(char::is_alphabetic) && text.chars().all(of_name)
+        }
+        other => panic!("a pattern that this test does not know: {other}"),
+    }
 }
 
 /// A keyword that asks nothing of a value of this kind. One that is not known here would pass unseen.
