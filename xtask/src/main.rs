@@ -1,6 +1,7 @@
 //! The tasks of the workspace, `cargo xtask …`; not the `moreau` command that users run.
 
 mod benchmarks;
+mod docs;
 mod tidy;
 mod verify;
 
@@ -29,6 +30,8 @@ enum Task {
     Verify(verify::Args),
     /// Check the architecture of the workspace from its manifests and sources
     Tidy,
+    /// Write the pages of docs/reference from what they describe
+    Docs(docs::Args),
     /// A benchmark and its arguments
     #[command(external_subcommand)]
     Benchmark(Vec<OsString>),
@@ -38,6 +41,7 @@ fn main() -> ExitCode {
     let done = match Cli::parse().task {
         Task::Verify(args) => verify::run(&args),
         Task::Tidy => tidy::run(),
+        Task::Docs(args) => docs::run(&args),
         Task::Benchmark(arguments) => benchmarks::run(&arguments),
     };
     match done {

@@ -157,7 +157,15 @@ fn the_schema_has_the_keys_of_the_reader() {
 }
 
 /// What tells, and asks for nothing.
-const ABOUT: [&str; 4] = ["$schema", "$defs", "title", "description"];
+const ABOUT: [&str; 7] = [
+    "default",
+    "$schema",
+    "$defs",
+    "title",
+    "description",
+    "examples",
+    "x-equation",
+];
 /// The patterns: those of names, of formulas, and of the names of parameters.
 const NAME: &str = "^[^\\s!-,/:-@\\[-^`{-~]+$";
 const FORMULA: &str = "^=";
@@ -378,9 +386,22 @@ pub(super) fn read(text: &str) -> Value {
     serde_json::to_value(table).expect("json")
 }
 
+/// Every example and default in a part of the schema is as it says itself.
+fn examples_fit(part: &Value, root: &Value) {
+    let given = part["examples"].as_array().into_iter().flatten();
+    for example in given.chain(part.get("default")) {
+        fits(example, part, root).unwrap_or_else(|e| panic!("{example}: {e}"));
+    }
+    let inner = part.as_object().into_iter().flat_map(|o| o.values());
+    for part in inner.chain(part.as_array().into_iter().flatten()) {
+        examples_fit(part, root);
+    }
+}
+
 #[test]
 fn the_examples_fit_the_schema() {
     let root = schema();
+    examples_fit(&root, &root);
     let mut count = 0;
     for entry in std::fs::read_dir(folder("docs/examples")).expect("examples") {
         let path = entry.expect("an entry").path();
