@@ -7,6 +7,7 @@ mod bench;
 mod check;
 mod convert;
 mod plot;
+mod processes;
 mod progress;
 mod run;
 mod signals;
@@ -120,6 +121,10 @@ struct Manner {
     /// Threads, instead of the deck's; 0: all. The results do not depend on it.
     #[arg(long)]
     threads: Option<usize>,
+    /// What solves the linear systems, instead of the embedded engine alone and MUMPS under mpirun.
+    #[cfg(feature = "distributed")]
+    #[arg(long, value_name = "ENGINE")]
+    engine: Option<processes::Solver>,
     /// Fail with status 3 if an expectation of the deck is not met.
     #[arg(long)]
     verify: bool,
@@ -129,6 +134,20 @@ struct Manner {
     /// Every iteration as a line of JSON on stdout, instead of progress and summary.
     #[arg(long)]
     json_log: bool,
+}
+
+impl Manner {
+    /// The processes to run on; why there are none is printed.
+    #[cfg(feature = "distributed")]
+    fn session(&self) -> Result<processes::Session, u8> {
+        processes::Session::begin(self.engine)
+    }
+
+    /// This process alone.
+    #[cfg(not(feature = "distributed"))]
+    fn session(&self) -> Result<processes::Session, u8> {
+        Ok(processes::Session)
+    }
 }
 
 /// Does what the arguments of a command line say, the name of the program first; the exit status.

@@ -52,6 +52,7 @@ pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;
 
 pub(crate) use columns::{Unit, columns};
+use crate::algebra::SharedTeam;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf, absolute};
 
@@ -74,6 +75,16 @@ pub fn open_in(text: &str, folder: &Path) -> (Deck, Option<Problem>, Findings) {
 
 /// As [`open_in`], with mesh files that are not on disk.
 pub fn open_with(text: &str, folder: &Path, meshes: &Meshes) -> (Deck, Option<Problem>, Findings) {
+    open_on(text, folder, meshes, None)
+}
+
+/// As [`open_with`], on the processes of a team, each of which opens the same deck.
+pub fn open_on(
+    text: &str,
+    folder: &Path,
+    meshes: &Meshes,
+    team: Option<&SharedTeam>,
+) -> (Deck, Option<Problem>, Findings) {
     let (mut deck, mut findings) = grammar::read(text, folder);
     let given = deck.mesh_file.as_ref().and_then(|file| {
         let wanted = absolute(&file.value).ok()?;
@@ -81,7 +92,7 @@ pub fn open_with(text: &str, folder: &Path, meshes: &Meshes) -> (Deck, Option<Pr
         let given = meshes.iter().find(|(path, _)| is_wanted(path));
         given.map(|(_, bytes)| bytes.as_slice())
     });
-    let mut problem = build::build(&mut deck, given, &mut findings);
+    let mut problem = build::build(&mut deck, (given, team), &mut findings);
     if let Some(problem) = &problem {
         let columns = match problem {
             Problem::Plane(setup) => columns(setup),

@@ -48,7 +48,8 @@ pub use saved::RestoreError;
 pub(crate) use course::Course;
 pub(crate) use saved::{sealed, unsealed};
 
-use crate::deck::{Deck, Findings, Meshes, Problem, open_with};
+use crate::algebra::SharedTeam;
+use crate::deck::{Deck, Findings, Meshes, Problem, open_on, open_with};
 use crate::driver::{IncrementError, IncrementReport, Iteration, ModelError, Numbers};
 use crate::laws::Status;
 use crate::mesh::Mesh;
@@ -126,7 +127,18 @@ impl Simulation {
     /// Opens a deck. Paths in it are relative to a folder; `meshes` are the files that are not on disk. `None` if the
     /// deck has errors.
     pub fn open(text: &str, folder: &Path, meshes: &Meshes) -> (Option<Self>, Findings) {
-        let (deck, problem, findings) = open_with(text, folder, meshes);
+        Self::open_on(text, folder, meshes, None)
+    }
+
+    /// As [`Simulation::open`], on the processes of a team, each of which opens the same deck: the first goes on as if it
+    /// were alone, the others with [`Simulation::serve`].
+    pub fn open_on(
+        text: &str,
+        folder: &Path,
+        meshes: &Meshes,
+        team: Option<&SharedTeam>,
+    ) -> (Option<Self>, Findings) {
+        let (deck, problem, findings) = open_on(text, folder, meshes, team);
         // For a step that follows the deck is opened again, from wherever the process is then.
         let at = |path: &PathBuf| absolute(folder.join(path)).unwrap_or_else(|_| path.clone());
         let kept = || meshes.iter().map(|(path, mesh)| (at(path), mesh.clone()));
@@ -149,6 +161,11 @@ impl Simulation {
             meshes,
             course,
         }
+    }
+
+    /// Does what the first process of the team asks of this other one, until that has ended.
+    pub fn serve(self) {
+        either!(self.course, course => course.serve());
     }
 
     /// The deck.

@@ -1,6 +1,7 @@
 //! `moreau run` and `moreau resume`: a deck run to its end or to where it stops, and the exit
 //! status that says so.
 
+use super::processes::Session;
 use super::progress::Progress;
 use super::signals::{Signals, interrupted};
 use super::{INPUT_ERROR, Manner, NOT_CONVERGED, UNEXPECTED, folder, read, report, say, tell};
@@ -15,26 +16,57 @@ use std::path::{Path, PathBuf};
 
 /// Runs a deck; the exit status.
 pub(super) fn run(path: &Path, out: Option<PathBuf>, force: bool, manner: &Manner) -> u8 {
-    let Some(simulation) = simulation(path) else {
-        return INPUT_ERROR;
+    let session = match manner.session() {
+        Ok(session) => session,
+        Err(status) => return status,
     };
+    let Some(simulation) = simulation_on(path, &session) else {
+        return without(&session);
+    };
+    if !session.is_first() {
+        return serve(simulation, manner);
+    }
     let given = simulation.deck().directory.as_ref().map(PathBuf::from);
     let directory = out.or(given).unwrap_or_else(|| default_directory(path, ""));
     let Some(to) = taken(Directory::take_for(&directory, path, force)) else {
         return INPUT_ERROR;
     };
-    go(simulation, &to, manner, crate::run::run)
+    go(simulation, &to, (manner, &session), crate::run::run)
 }
 
 /// Continues a run; the exit status.
 pub(super) fn resume(directory: &Path, manner: &Manner) -> u8 {
-    let Some(simulation) = results(directory) else {
-        return INPUT_ERROR;
+    let session = match manner.session() {
+        Ok(session) => session,
+        Err(status) => return status,
     };
+    let Some(simulation) = results_on(directory, &session) else {
+        return without(&session);
+    };
+    if !session.is_first() {
+        return serve(simulation, manner);
+    }
     let Some(at) = taken(Directory::take(directory)) else {
         return INPUT_ERROR;
     };
-    go(simulation, &at, manner, crate::run::resume)
+    go(simulation, &at, (manner, &session), crate::run::resume)
+}
+
+/// What a process does that has no simulation: the first has told why.
+fn without(session: &Session) -> u8 {
+    match session.is_first() {
+        true => INPUT_ERROR,
+        false => session.stand_by("does not find the problem"),
+    }
+}
+
+/// Does what the first process asks.
+fn serve(simulation: Simulation, manner: &Manner) -> u8 {
+    let Some(pool) = pool(manner.threads.unwrap_or(1)) else {
+        return INPUT_ERROR;
+    };
+    pool.install(|| simulation.serve());
+    0
 }
 
 /// A directory to write to; why not is printed.
@@ -56,15 +88,29 @@ pub(super) fn taken(directory: Result<Directory, RunError>) -> Option<Directory>
 
 /// The simulation of a directory of results, at its beginning; what is wrong with it is printed.
 pub(super) fn results(directory: &Path) -> Option<Simulation> {
+    let path = resolved(directory, true)?;
+    simulation(&path)
+}
+
+/// The same on several processes.
+fn results_on(directory: &Path, session: &Session) -> Option<Simulation> {
+    let path = resolved(directory, session.is_first())?;
+    simulation_on(&path, session)
+}
+
+/// The deck of a directory of results.
+fn resolved(directory: &Path, is_told: bool) -> Option<PathBuf> {
     let path = directory.join("deck.resolved.toml");
     if !path.exists() {
         let at = directory.display();
-        tell!(
-            "{at} is no directory of results: it has no deck.resolved.toml, which `moreau run` writes"
-        );
+        if is_told {
+            tell!(
+                "{at} is no directory of results: it has no deck.resolved.toml, which `moreau run` writes"
+            );
+        }
         return None;
     }
-    simulation(&path)
+    Some(path)
 }
 
 /// The simulation of a deck; findings are printed.
@@ -75,13 +121,33 @@ pub(super) fn simulation(path: &Path) -> Option<Simulation> {
     simulation
 }
 
+/// The simulation of a deck on several processes, of which the first prints the findings.
+fn simulation_on(path: &Path, session: &Session) -> Option<Simulation> {
+    let text = match session.is_first() {
+        true => read(path)?,
+        false => std::fs::read_to_string(path).ok()?,
+    };
+    let team = session.team();
+    let (simulation, findings) =
+        Simulation::open_on(&text, folder(path), &Meshes::new(), team.as_ref());
+    if session.is_first() {
+        report(&findings, path, &text);
+    }
+    simulation
+}
+
 fn go(
     simulation: Simulation,
     directory: &Directory,
-    manner: &Manner,
+    (manner, session): (&Manner, &Session),
     solve: fn(Simulation, &Directory, &mut dyn Watch) -> Result<Outcome, RunError>,
 ) -> u8 {
-    let Some(pool) = pool(manner.threads.unwrap_or(simulation.deck().solver.threads)) else {
+    // Several processes share the processors already.
+    let usual = match session.size() {
+        1 => simulation.deck().solver.threads,
+        _ => 1,
+    };
+    let Some(pool) = pool(manner.threads.unwrap_or(usual)) else {
         return INPUT_ERROR;
     };
     let mut progress = Progress::new(manner.quiet, manner.json_log, Signals::listen());
