@@ -577,14 +577,20 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     /// The blocks, with those of a team that it holds together in place of the part of this process.
     pub(crate) fn take_blocks(&mut self) -> Vec<Box<dyn Block<D>>> {
         let blocks = std::mem::take(&mut self.blocks);
-        let Some((team, process)) = self.team.as_ref().filter(|(t, _)| t.rank() == 0 && t.size() > 1)
+        let Some((team, process)) = self
+            .team
+            .as_ref()
+            .filter(|(t, _)| t.rank() == 0 && t.size() > 1)
         else {
             return blocks;
         };
         let mut nodes_of = vec![vec![false; self.mesh.nodes().len()]; team.size()];
         for &cell in self.members.iter().flatten().flatten() {
             let own = &mut nodes_of[process[cell] as usize];
-            self.mesh.cell_nodes(cell).iter().for_each(|&a| own[a] = true);
+            self.mesh
+                .cell_nodes(cell)
+                .iter()
+                .for_each(|&a| own[a] = true);
         }
         let listed = |own: Vec<bool>| -> Vec<u32> {
             (0..own.len() as u32).filter(|&a| own[a as usize]).collect()
@@ -601,7 +607,14 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             let at = (team.clone(), number);
             number += 1;
             let nodes = (nodes, per_cell);
-            Box::new(SpreadBlock::new(at, own, members, nodes, process, nodes_of.clone())) as _
+            Box::new(SpreadBlock::new(
+                at,
+                own,
+                members,
+                nodes,
+                process,
+                nodes_of.clone(),
+            )) as _
         };
         let members = self.members.clone();
         blocks.into_iter().zip(members).map(wrapped).collect()

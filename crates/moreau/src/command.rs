@@ -139,14 +139,14 @@ struct Manner {
 impl Manner {
     /// The processes to run on; why there are none is printed.
     #[cfg(feature = "distributed")]
-    fn session(&self) -> Result<processes::Session, u8> {
-        processes::Session::begin(self.engine)
+    fn started(&self) -> Result<processes::Started, u8> {
+        processes::Started::begin(self.engine)
     }
 
     /// This process alone.
     #[cfg(not(feature = "distributed"))]
-    fn session(&self) -> Result<processes::Session, u8> {
-        Ok(processes::Session)
+    fn started(&self) -> Result<processes::Started, u8> {
+        Ok(processes::Started)
     }
 }
 

@@ -51,8 +51,8 @@ pub use entries::{
 pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;
 
-pub(crate) use columns::{Unit, columns};
 use crate::algebra::SharedTeam;
+pub(crate) use columns::{Unit, columns};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf, absolute};
 

@@ -34,12 +34,7 @@ unsafe extern "C" {
         list: *mut c_int,
         order: *mut c_int,
     );
-    fn moreau_mumps_factorise(
-        m: *mut Structure,
-        values: *const f64,
-        schur: *mut f64,
-        kept: c_int,
-    );
+    fn moreau_mumps_factorise(m: *mut Structure, values: *const f64, schur: *mut f64, kept: c_int);
     fn moreau_mumps_solve(m: *mut Structure, x: *mut f64, n: c_int);
     fn moreau_mumps_null_pivot(m: *const Structure) -> c_int;
 }
@@ -166,7 +161,9 @@ impl Instance {
         as_given: bool,
     ) {
         let _alone = alone();
-        let (rows, columns) = entries.map(|(i, j)| (i as c_int + 1, j as c_int + 1)).unzip();
+        let (rows, columns) = entries
+            .map(|(i, j)| (i as c_int + 1, j as c_int + 1))
+            .unzip();
         let last = (size - kept + 1..=size).map(|k| k as c_int).collect();
         let order = match as_given {
             true => (1..=size as c_int).collect(),

@@ -270,11 +270,7 @@ impl Mumps {
     }
 
     /// Of whatever processes there are, none of which but the first holds entries.
-    fn alone(
-        pattern: &Pattern,
-        memory: Option<u64>,
-        is_definite: bool,
-    ) -> Result<Self, TooLarge> {
+    fn alone(pattern: &Pattern, memory: Option<u64>, is_definite: bool) -> Result<Self, TooLarge> {
         let none = TooLarge {
             entries: 0.0,
             room: 0.0,
@@ -296,7 +292,9 @@ impl Mumps {
     fn failure(&self, code: i32, detail: i32) -> EngineError {
         let row = self.inner().saturating_sub(1);
         if NO_MEMORY.contains(&code) {
-            let room = self.room.map_or(self.cost.entries, |bytes| bytes as f64 / 8.0);
+            let room = self
+                .room
+                .map_or(self.cost.entries, |bytes| bytes as f64 / 8.0);
             let entries = self.cost.entries.max(room);
             return EngineError::TooLarge(TooLarge { entries, room });
         }

@@ -44,7 +44,9 @@ fn main() -> ExitCode {
         match outcome {
             Ok(status) if status.success() => {}
             Ok(status) => panic!("{processes} processes: {status}"),
-            Err(error) => tell(&format!("skipped on {processes} processes: mpirun: {error}")),
+            Err(error) => tell(&format!(
+                "skipped on {processes} processes: mpirun: {error}"
+            )),
         }
     }
     ExitCode::SUCCESS

@@ -43,7 +43,10 @@ pub fn solves<E: Engine>(sample: &Sample, tolerance: f64) {
     assert!(residual < tolerance, "residual {residual:e}");
     for count in [1, 2, 3, 5, 8] {
         let some = solved(&mut engine, &b.columns(0, count).into_owned());
-        assert!(alike::<E>(&some, &x.columns(0, count).into()), "{count} columns");
+        assert!(
+            alike::<E>(&some, &x.columns(0, count).into()),
+            "{count} columns"
+        );
     }
     let last = solved(&mut engine, &b.columns(10, 1).into_owned());
     assert!(alike::<E>(&last, &x.columns(10, 1).into()));
@@ -220,4 +223,3 @@ pub fn solves_with_large_fronts<E: Engine>() {
         assert!(left < 1e-14 * norm(b), "{:e}", left / norm(b));
     }
 }
-

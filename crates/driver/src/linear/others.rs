@@ -43,20 +43,24 @@ impl Others {
     fn visit(&self, sink: &mut dyn FnMut(usize, f64)) {
         for (k, rows) in self.rows.iter().enumerate() {
             let numbers = Unpacked::new(&self.team.receive(k + 1)).reals();
-            rows.iter().zip(numbers).for_each(|(&row, x)| sink(row as usize, x));
+            rows.iter()
+                .zip(numbers)
+                .for_each(|(&row, x)| sink(row as usize, x));
         }
     }
 
     /// Adds what the missing displacements do, at the degrees of freedom of the unknowns \[N\].
     pub(crate) fn add_prescribed(&self, dofs: &[usize], load: &mut [f64]) {
-        self.team.order(Parcel::order(ask::PRESCRIBED).reals(&[]).bytes());
+        self.team
+            .order(Parcel::order(ask::PRESCRIBED).reals(&[]).bytes());
         self.visit(&mut |row, f| load[dofs[row]] += f);
     }
 
     /// Asks for the diagonal.
     pub(crate) fn find_diagonal(&mut self, size: usize) {
         let mut diagonal = vec![0.0; size];
-        self.team.order(Parcel::order(ask::DIAGONAL).reals(&[]).bytes());
+        self.team
+            .order(Parcel::order(ask::DIAGONAL).reals(&[]).bytes());
         self.visit(&mut |row, k| diagonal[row] += k);
         self.diagonal = diagonal;
     }

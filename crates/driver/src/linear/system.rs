@@ -196,13 +196,19 @@ fn here<const D: usize>(
     (position, dofs, interface): (&[u32], &[usize], usize),
     coupled: Option<&[Vec<usize>]>,
 ) -> Pattern {
-    let own = |b: &'_ dyn Block<D>| (0..b.cells().len()).filter(|&k| b.holds(k)).collect::<Vec<_>>();
+    let own = |b: &'_ dyn Block<D>| {
+        (0..b.cells().len())
+            .filter(|&k| b.holds(k))
+            .collect::<Vec<_>>()
+    };
     let mut groups: Vec<&[usize]> = Vec::new();
     for block in blocks {
         let held = own(block.as_ref()).into_iter();
         groups.extend(held.map(|k| block.nodes(k)));
     }
-    let facets = mesh.group_names().filter_map(|name| mesh.facet_group(name).ok());
+    let facets = mesh
+        .group_names()
+        .filter_map(|name| mesh.facet_group(name).ok());
     let facets = facets.flatten().map(|&f| mesh.facet_nodes(f).collect());
     let facets: BTreeSet<Vec<usize>> = facets.collect();
     groups.extend(facets.iter().map(Vec::as_slice));
@@ -291,7 +297,11 @@ impl System {
         };
         let mut other = None;
         // In the plane a factor is small, and linear cells in plastic flow are a poor coarse space.
-        if D == 3 && !is_tied && team.is_none() && conjugate_operations(&pattern, 0.0) < cost.operations {
+        if D == 3
+            && !is_tied
+            && team.is_none()
+            && conjugate_operations(&pattern, 0.0) < cost.operations
+        {
             other = coarse().filter(|other| {
                 other.as_ref().is_ok_and(|(engine, _)| {
                     let own = engine.cost();
@@ -433,7 +443,8 @@ impl System {
             self.current = self.elastic_factor && !flows;
             let size = self.size();
             let tied = self.others.as_mut().filter(|_| self.tied.is_some());
-            tied.into_iter().for_each(|others| others.find_diagonal(size));
+            tied.into_iter()
+                .for_each(|others| others.find_diagonal(size));
         }
         self.timings.assembly += clock.elapsed();
         Assembly {
@@ -648,7 +659,10 @@ impl System {
 
     /// Entry of K on the diagonal of an unknown \[N/mm\].
     pub(crate) fn diagonal(&self, unknown: u32) -> f64 {
-        let others = self.others.as_ref().map_or(0.0, |o| o.diagonal(unknown as usize));
+        let others = self
+            .others
+            .as_ref()
+            .map_or(0.0, |o| o.diagonal(unknown as usize));
         self.matrix.diagonal(unknown as usize) + others
     }
 

@@ -23,9 +23,9 @@ mod several {
     use std::sync::Arc;
 
     /// The processes of a command, until it is dropped.
-    pub(in super::super) struct Session(Option<Processes>);
+    pub(in super::super) struct Started(Option<Processes>);
 
-    impl Session {
+    impl Started {
         /// Those that `mpirun` has started, on which MUMPS solves unless there is but one and another engine is asked
         /// for; this one alone without `mpirun`.
         pub(in super::super) fn begin(solver: Option<Solver>) -> Result<Self, u8> {
@@ -38,20 +38,22 @@ mod several {
             });
             match solver {
                 Solver::Embedded if several => {
-                    tell!("the embedded engine is one of a single process: run without mpirun, or with --engine mumps");
+                    tell!(
+                        "the embedded engine is one of a single process: run without mpirun, or with --engine mumps"
+                    );
                     Err(INPUT_ERROR)
                 }
                 Solver::Embedded => Ok(Self(None)),
                 Solver::Mumps => match Processes::begin(options()) {
                     Some(processes) => {
-                        let session = Self(Some(processes));
-                        if !session.is_first() {
+                        let started = Self(Some(processes));
+                        if !started.is_first() {
                             // The first ends all.
                             for signal in [consts::SIGINT, consts::SIGTERM] {
                                 let _ = flag::register(signal, Arc::default());
                             }
                         }
-                        Ok(session)
+                        Ok(started)
                     }
                     None => {
                         tell!("MPI gives no leave to call it from threads in turn");
@@ -98,7 +100,7 @@ mod several {
         }
     }
 
-    impl Drop for Session {
+    impl Drop for Started {
         fn drop(&mut self) {
             let Some(team) = self.0.take() else { return };
             if std::thread::panicking() {
@@ -113,14 +115,14 @@ mod several {
 }
 
 #[cfg(feature = "distributed")]
-pub(super) use several::Session;
+pub(super) use several::Started;
 
 /// This process alone.
 #[cfg(not(feature = "distributed"))]
-pub(super) struct Session;
+pub(super) struct Started;
 
 #[cfg(not(feature = "distributed"))]
-impl Session {
+impl Started {
     pub(super) fn team(&self) -> Option<SharedTeam> {
         None
     }

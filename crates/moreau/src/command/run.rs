@@ -1,7 +1,7 @@
 //! `moreau run` and `moreau resume`: a deck run to its end or to where it stops, and the exit
 //! status that says so.
 
-use super::processes::Session;
+use super::processes::Started;
 use super::progress::Progress;
 use super::signals::{Signals, interrupted};
 use super::{INPUT_ERROR, Manner, NOT_CONVERGED, UNEXPECTED, folder, read, report, say, tell};
@@ -16,14 +16,14 @@ use std::path::{Path, PathBuf};
 
 /// Runs a deck; the exit status.
 pub(super) fn run(path: &Path, out: Option<PathBuf>, force: bool, manner: &Manner) -> u8 {
-    let session = match manner.session() {
-        Ok(session) => session,
+    let started = match manner.started() {
+        Ok(started) => started,
         Err(status) => return status,
     };
-    let Some(simulation) = simulation_on(path, &session) else {
-        return without(&session);
+    let Some(simulation) = simulation_on(path, &started) else {
+        return without(&started);
     };
-    if !session.is_first() {
+    if !started.is_first() {
         return serve(simulation, manner);
     }
     let given = simulation.deck().directory.as_ref().map(PathBuf::from);
@@ -31,32 +31,32 @@ pub(super) fn run(path: &Path, out: Option<PathBuf>, force: bool, manner: &Manne
     let Some(to) = taken(Directory::take_for(&directory, path, force)) else {
         return INPUT_ERROR;
     };
-    go(simulation, &to, (manner, &session), crate::run::run)
+    go(simulation, &to, (manner, &started), crate::run::run)
 }
 
 /// Continues a run; the exit status.
 pub(super) fn resume(directory: &Path, manner: &Manner) -> u8 {
-    let session = match manner.session() {
-        Ok(session) => session,
+    let started = match manner.started() {
+        Ok(started) => started,
         Err(status) => return status,
     };
-    let Some(simulation) = results_on(directory, &session) else {
-        return without(&session);
+    let Some(simulation) = results_on(directory, &started) else {
+        return without(&started);
     };
-    if !session.is_first() {
+    if !started.is_first() {
         return serve(simulation, manner);
     }
     let Some(at) = taken(Directory::take(directory)) else {
         return INPUT_ERROR;
     };
-    go(simulation, &at, (manner, &session), crate::run::resume)
+    go(simulation, &at, (manner, &started), crate::run::resume)
 }
 
 /// What a process does that has no simulation: the first has told why.
-fn without(session: &Session) -> u8 {
-    match session.is_first() {
+fn without(started: &Started) -> u8 {
+    match started.is_first() {
         true => INPUT_ERROR,
-        false => session.stand_by("does not find the problem"),
+        false => started.stand_by("does not find the problem"),
     }
 }
 
@@ -93,9 +93,9 @@ pub(super) fn results(directory: &Path) -> Option<Simulation> {
 }
 
 /// The same on several processes.
-fn results_on(directory: &Path, session: &Session) -> Option<Simulation> {
-    let path = resolved(directory, session.is_first())?;
-    simulation_on(&path, session)
+fn results_on(directory: &Path, started: &Started) -> Option<Simulation> {
+    let path = resolved(directory, started.is_first())?;
+    simulation_on(&path, started)
 }
 
 /// The deck of a directory of results.
@@ -122,15 +122,15 @@ pub(super) fn simulation(path: &Path) -> Option<Simulation> {
 }
 
 /// The simulation of a deck on several processes, of which the first prints the findings.
-fn simulation_on(path: &Path, session: &Session) -> Option<Simulation> {
-    let text = match session.is_first() {
+fn simulation_on(path: &Path, started: &Started) -> Option<Simulation> {
+    let text = match started.is_first() {
         true => read(path)?,
         false => std::fs::read_to_string(path).ok()?,
     };
-    let team = session.team();
+    let team = started.team();
     let (simulation, findings) =
         Simulation::open_on(&text, folder(path), &Meshes::new(), team.as_ref());
-    if session.is_first() {
+    if started.is_first() {
         report(&findings, path, &text);
     }
     simulation
@@ -139,11 +139,11 @@ fn simulation_on(path: &Path, session: &Session) -> Option<Simulation> {
 fn go(
     simulation: Simulation,
     directory: &Directory,
-    (manner, session): (&Manner, &Session),
+    (manner, started): (&Manner, &Started),
     solve: fn(Simulation, &Directory, &mut dyn Watch) -> Result<Outcome, RunError>,
 ) -> u8 {
     // Several processes share the processors already.
-    let usual = match session.size() {
+    let usual = match started.size() {
         1 => simulation.deck().solver.threads,
         _ => 1,
     };

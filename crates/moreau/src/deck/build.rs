@@ -130,7 +130,8 @@ pub(super) fn build(
         }
         Analysis::Solid => {
             let mesh = meshes::solid(deck, given, findings);
-            setup(deck, mesh, Solid, (parts::surface, team), findings).map(|s| Problem::Solid(Box::new(s)))
+            setup(deck, mesh, Solid, (parts::surface, team), findings)
+                .map(|s| Problem::Solid(Box::new(s)))
         }
     }
 }

@@ -166,7 +166,8 @@ impl<const D: usize> Block<D> for SpreadBlock<D> {
         }
         self.ask(&self.order(ask::LACKING), &[motion.from, motion.by, v]);
         let mut forces = Vec::new();
-        self.own.lacking(motion, v, &mut |_, force| forces.extend(force));
+        self.own
+            .lacking(motion, v, &mut |_, force| forces.extend(force));
         let mut all = vec![forces];
         all.extend(self.answers());
         self.in_order(&all, &mut |k, force| sink(self.of(k), force));

@@ -40,7 +40,11 @@ fn cut<const D: usize>(
     let longest = (0..D).max_by(|&i, &j| side(i).total_cmp(&side(j)).then(j.cmp(&i)));
     let axis = longest.unwrap_or(0);
     // Those that lie alike come in their order.
-    cells.sort_by(|&a, &b| middles[a][axis].total_cmp(&middles[b][axis]).then(a.cmp(&b)));
+    cells.sort_by(|&a, &b| {
+        middles[a][axis]
+            .total_cmp(&middles[b][axis])
+            .then(a.cmp(&b))
+    });
     let lower = count / 2;
     let (low, high) = cells.split_at_mut(cells.len() * lower / count);
     cut(low, middles, (first, lower), process);
@@ -65,6 +69,8 @@ mod tests {
             }
         }
         let halves = partition(&mesh, 2);
-        assert!((0..48).all(|c| halves[c] == u32::from(mesh.nodes()[mesh.cell_nodes(c)[0]][0] >= 6.0)));
+        assert!(
+            (0..48).all(|c| halves[c] == u32::from(mesh.nodes()[mesh.cell_nodes(c)[0]][0] >= 6.0))
+        );
     }
 }

@@ -61,7 +61,11 @@ impl Entries {
         if stiffness {
             self.matrix.reset();
         }
-        let load = if missing.is_zero() { 0 } else { self.position.len() };
+        let load = if missing.is_zero() {
+            0
+        } else {
+            self.position.len()
+        };
         self.prescribed_load.clear();
         self.prescribed_load.resize(load, 0.0);
         self.missing = missing;
@@ -102,7 +106,9 @@ impl Entries {
 
     /// The diagonal of K at own numbers.
     pub(crate) fn diagonal(&self) -> Vec<f64> {
-        (0..self.rows.len()).map(|i| self.matrix.diagonal(i)).collect()
+        (0..self.rows.len())
+            .map(|i| self.matrix.diagonal(i))
+            .collect()
     }
 
     /// As a part of the whole matrix.
