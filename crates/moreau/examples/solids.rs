@@ -1,10 +1,10 @@
 //! What MUMPS takes for the stiffness of a cube of 20-node hexahedra, with blocks of low rank and without: unknowns,
 //! entries and operations of the factor, time, memory, and the error of a solution.
 //!
-//! `cargo run --release -p moreau --features distributed --example solids -- CELLS [LOW_RANK [given]]`
+//! `cargo run --release -p moreau --features distributed --example solids -- CELLS [LOW_RANK [metis]]`
 //!
-//! CELLS go along an edge, LOW_RANK is the error that blocks may leave, 0 for none; `given` eliminates in the order of
-//! nested dissection that the embedded engine takes, instead of that of METIS. Memory is the largest that the process has held
+//! CELLS go along an edge, LOW_RANK is the error that blocks may leave, 0 for none; `metis` eliminates in the order that
+//! METIS finds, instead of that of nested dissection that the embedded engine takes. Memory is the largest that the process has held
 //! up to then, on one process; of several numbers of cells run it again for each.
 
 // A program, not a library: it prints.
@@ -121,7 +121,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (pattern, values) = stiffness(cells)?;
     let options = Options {
         low_rank,
-        as_given: arguments.next().is_some_and(|order| order == "given"),
+        metis: arguments.next().is_some_and(|order| order == "metis"),
         ..Options::default()
     };
     let before = memory();

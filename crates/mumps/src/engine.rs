@@ -1,13 +1,14 @@
-//! MUMPS as an engine: what it is asked, and what its answers mean; not how it is called.
+//! MUMPS as the engine of a team: what it is asked, and what its answers mean; not how it is called.
 
-use crate::calls::Instance;
-use crate::processes::{Options, Processes};
+use crate::calls;
+use crate::options::Options;
+use crate::part::{Part, SINGULAR, entries, places};
+use crate::processes::Processes;
 use moreau_algebra::{
     Cost, ENGINE, Engine, EngineError, Inertia, Parcel, Pattern, Share, Team, TooLarge, Unpacked,
 };
 use nalgebra::{DMatrix, DVectorViewMut, Dyn, LU};
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 /// What an order asks for, in its second place.
 const ANALYSE: usize = 1;
@@ -15,107 +16,9 @@ const FACTORISE: usize = 2;
 const SOLVE: usize = 3;
 const FREE: usize = 4;
 
-/// A pivot below this part of the scaled matrix is zero to rounding.
-const SINGULAR: f64 = 1e-14;
-
-/// Times that the working space is made larger where it was estimated too small.
-const LARGER: usize = 6;
-
-/// Errors of MUMPS: integer and real working space too small; singular; no memory.
-const SPACE: Range<i32> = -9..-7;
+/// Errors of MUMPS: singular; no memory.
 const IS_SINGULAR: i32 = -10;
 const NO_MEMORY: [i32; 2] = [-13, -7];
-
-/// Controls of an instance, by their numbers in the manual of MUMPS 5.5.
-fn prepare(instance: &mut Instance, sym: i32, options: Options) {
-    // Nothing is printed.
-    for (which, value) in [(1, -1), (2, -1), (3, -1), (4, 0)] {
-        instance.set_integer(which, value);
-    }
-    // Entries by process, order of METIS or the given one, analysed on the first process.
-    let order = if options.as_given { 1 } else { 5 };
-    for (which, value) in [(18, 3), (7, order), (28, 1)] {
-        instance.set_integer(which, value);
-    }
-    if sym == 2 {
-        // Zero pivots are told and not divided by; the last front is not cut up, so that all signs are counted.
-        instance.set_integer(24, 1);
-        instance.set_integer(13, 1);
-        instance.set_real(3, SINGULAR);
-    }
-    if let Some(spare) = options.spare {
-        instance.set_integer(14, spare);
-    }
-    if let Some(error) = options.low_rank {
-        instance.set_integer(35, 2);
-        instance.set_real(7, error);
-    }
-}
-
-/// What a process has of an engine.
-#[derive(Debug)]
-pub(crate) struct Part {
-    /// None where nothing is to be eliminated, or there was no memory.
-    instance: Option<Instance>,
-    /// The first kept unknown.
-    first: usize,
-    /// By how much working space is larger than was estimated, in percent.
-    spare: i32,
-}
-
-impl Part {
-    /// Analyses the entries of a process, in an instance that all have.
-    fn new(
-        (size, kept, sym): (usize, usize, i32),
-        options: Options,
-        entries: impl Iterator<Item = (u32, u32)>,
-    ) -> Self {
-        let mut instance = match size > kept {
-            true => Instance::new(sym),
-            false => None,
-        };
-        if let Some(instance) = &mut instance {
-            prepare(instance, sym, options);
-            if kept > 0 {
-                // S whole on the first process, by rows.
-                instance.set_integer(19, 1);
-            }
-            instance.analyse(size, entries, kept, options.as_given);
-        }
-        Self {
-            instance,
-            first: size - kept,
-            spare: options.spare.unwrap_or(20),
-        }
-    }
-
-    /// Factorises, with more working space as long as there is too little: on all processes alike.
-    fn factorise(&mut self, values: &[f64], first: bool) {
-        let Some(instance) = &mut self.instance else {
-            return;
-        };
-        for _ in 0..=LARGER {
-            // As many as were analysed: the callers have seen to it.
-            instance.factorise(values, first);
-            if !SPACE.contains(&instance.integer(1)) {
-                return;
-            }
-            self.spare = 2 * self.spare.max(20);
-            instance.set_integer(14, self.spare);
-        }
-    }
-
-    /// Entries in the rows of kept unknowns.
-    fn coupling<'a>(
-        &self,
-        entries: impl Iterator<Item = (u32, u32)> + 'a,
-        values: &'a [f64],
-    ) -> impl Iterator<Item = (u32, u32, f64)> + 'a {
-        let first = self.first;
-        let all = entries.zip(values).map(|((i, j), k)| (i, j, *k));
-        all.filter(move |&(i, _, k)| i as usize >= first && k != 0.0)
-    }
-}
 
 /// The part of other processes than the first in an order.
 pub(crate) fn assist(
@@ -155,42 +58,34 @@ pub(crate) fn assist(
     }
 }
 
-/// Positions of the entries of a pattern.
-fn places(pattern: &Pattern) -> impl Iterator<Item = (u32, u32)> + '_ {
-    (0..pattern.size()).flat_map(|j| {
-        let own = pattern.range(j).map(|k| pattern.rows()[k]);
-        own.map(move |i| (i, j as u32))
-    })
-}
-
-/// Positions of the entries of a share in the whole matrix, those of its own unknowns.
-fn entries(share: Share<'_>) -> impl Iterator<Item = (u32, u32)> {
-    let columns = (0..share.rows.len()).filter_map(move |j| Some((j, share.pattern?)));
-    columns.flat_map(move |(j, pattern)| {
-        let own = pattern.range(j).map(|k| pattern.rows()[k]);
-        own.map(move |i| (share.rows[i as usize], share.rows[j]))
-    })
-}
-
-impl Options {
-    fn packed(self, parcel: Parcel) -> Parcel {
-        let spare = self.spare.map_or(-1.0, f64::from);
-        let numbers = [
-            self.low_rank.unwrap_or(-1.0),
-            f64::from(u8::from(self.as_given)),
-            spare,
-        ];
-        parcel.reals(&numbers)
+impl Team for Processes {
+    fn rank(&self) -> usize {
+        self.number()
     }
 
-    fn unpacked(parcel: &mut Unpacked<'_>) -> Self {
-        let numbers = parcel.reals();
-        let at = |k: usize| numbers.get(k).copied().filter(|&x| x >= 0.0);
-        Self {
-            low_rank: at(0),
-            as_given: at(1) == Some(1.0),
-            spare: at(2).map(|x| x as i32),
-        }
+    fn size(&self) -> usize {
+        self.count()
+    }
+
+    fn send(&self, to: usize, bytes: &[u8]) {
+        calls::send(to, bytes);
+    }
+
+    fn receive(&self, from: usize) -> Vec<u8> {
+        calls::receive(from)
+    }
+
+    fn engine(
+        &self,
+        pattern: &Pattern,
+        memory: Option<u64>,
+        is_definite: bool,
+    ) -> Result<Box<dyn Engine>, TooLarge> {
+        Ok(Box::new(Mumps::new(self, pattern, memory, is_definite)?))
+    }
+
+    fn assist(&self, order: &[u8], share: Share<'_>) {
+        assist(self, &mut self.parts(), order, share);
     }
 }
 
@@ -505,8 +400,8 @@ impl Engine for Mumps {
             };
             let dense = self.schur.clone().lu();
             let pivots = dense.u().diagonal();
-            // What is no number is not above either.
-            if !(pivots.amin() > SINGULAR * pivots.amax()) {
+            let least = pivots.amin();
+            if least.is_nan() || least <= SINGULAR * pivots.amax() {
                 return Err(singular);
             }
             self.dense = Some(dense);
@@ -595,4 +490,16 @@ engines! {
     Definite true;
     /// Of any symmetric matrix (`sym = 2`), with the signs of its eigenvalues.
     Indefinite false;
+}
+
+/// What another process than the first does where there is nothing but engines: until the first says that it is the
+/// end, by an order of no bytes.
+pub fn serve(team: &Processes) {
+    loop {
+        let order = team.receive(0);
+        match order.first() {
+            Some(&ENGINE) => team.assist(&order, Share::NONE),
+            _ => return,
+        }
+    }
 }

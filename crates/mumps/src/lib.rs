@@ -9,9 +9,15 @@ mod calls;
 #[cfg(feature = "native")]
 mod engine;
 #[cfg(feature = "native")]
+mod options;
+#[cfg(feature = "native")]
+mod part;
+#[cfg(feature = "native")]
 mod processes;
 
 #[cfg(feature = "native")]
-pub use engine::{Definite, Indefinite};
+pub use engine::{Definite, Indefinite, serve};
 #[cfg(feature = "native")]
-pub use processes::{Options, Processes, serve};
+pub use options::Options;
+#[cfg(feature = "native")]
+pub use processes::Processes;

@@ -95,7 +95,7 @@ mod several {
         let real = |name: &str| std::env::var(name).ok()?.parse::<f64>().ok();
         Options {
             low_rank: real("MOREAU_LOW_RANK"),
-            as_given: std::env::var_os("MOREAU_ORDER_AS_GIVEN").is_some(),
+            metis: std::env::var_os("MOREAU_METIS").is_some(),
             spare: real("MOREAU_SPARE").map(|x| x as i32),
         }
     }
