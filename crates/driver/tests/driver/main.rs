@@ -19,4 +19,5 @@ mod seams;
 mod slender;
 mod states;
 mod steps;
+mod team;
 mod tools;
