@@ -142,6 +142,24 @@ fn engine(
     })
 }
 
+/// Time since a clock was started, of the ordering.
+fn ordered(clock: Instant) -> Timings {
+    Timings {
+        ordering: clock.elapsed(),
+        ..Timings::default()
+    }
+}
+
+/// That there is no room for the factor of so many unknowns.
+fn no_room(unknowns: usize, TooLarge { entries, room }: TooLarge) -> ModelError {
+    let gigabytes = |entries: f64| entries * size_of::<f64>() as f64 / 1e9;
+    ModelError::TooLarge {
+        unknowns,
+        needed: gigabytes(entries),
+        room: gigabytes(room),
+    }
+}
+
 /// Pivots below this part of the diagonal are rounding, and a motion without stiffness.
 const RIGID: f64 = 1e-14;
 
@@ -255,9 +273,7 @@ impl System {
         let condensed = || Numbering::new(mesh, &fixed, interface_nodes, pivot, tools, &[]);
         let tied = coupled.and_then(|coupled| {
             let tied = || Numbering::new(mesh, &fixed, &[], None, tools, coupled);
-            let room = bytes.map_or(f64::INFINITY, |bytes| {
-                bytes as f64 / size_of::<f64>() as f64
-            });
+            let room = bytes.map_or(f64::INFINITY, |b| b as f64 / size_of::<f64>() as f64);
             if seam == Seam::Tied {
                 let tied = tied();
                 return (Cost::of(&tied.pattern).entries <= room).then_some(tied);
@@ -277,12 +293,12 @@ impl System {
             pattern,
         } = tied.unwrap_or_else(condensed);
         let cost = Cost::of(&pattern);
-        let shared = team.filter(|team| team.size() > 1);
-        let (pattern, others) = match shared {
+        let (pattern, others) = match team.filter(|team| team.size() > 1) {
             None => (pattern, None),
             Some(team) => {
-                let held = here::<D>((mesh, blocks), (&position, &dofs, interface), coupled);
-                (held, Some(Others::new(team, &position)))
+                let numbered = (&*position, &*dofs, interface);
+                let here = here::<D>((mesh, blocks), numbered, coupled);
+                (here, Some(Others::new(team, &position)))
             }
         };
         let scatter = blocks
@@ -292,8 +308,8 @@ impl System {
         let coarse = || {
             let space = (interface_nodes, pivot, tools);
             let coarse = Coarse::new(mesh, &fixed, space, (&dofs, &pattern))?;
-            let engine = engine(&coarse.space.matrix().pattern, memory, is_definite);
-            Some(engine.map(|engine| (engine, Some(coarse))))
+            let made = engine(&coarse.space.matrix().pattern, memory, is_definite);
+            Some(made.map(|engine| (engine, Some(coarse))))
         };
         let mut other = None;
         // In the plane a factor is small, and linear cells in plastic flow are a poor coarse space.
@@ -315,13 +331,7 @@ impl System {
             Err(too_large) => coarse().unwrap_or(Err(too_large)),
         };
         let chosen = other.unwrap_or_else(own);
-        let gigabytes = |entries: f64| entries * size_of::<f64>() as f64 / 1e9;
-        let (engine, coarse) =
-            chosen.map_err(|TooLarge { entries, room }| ModelError::TooLarge {
-                unknowns: dofs.len(),
-                needed: gigabytes(entries),
-                room: gigabytes(room),
-            })?;
+        let (engine, coarse) = chosen.map_err(|error| no_room(dofs.len(), error))?;
         Ok(Self {
             prescribed: (0..position.len())
                 .filter(|&dof| position[dof] == FIXED)
@@ -350,10 +360,7 @@ impl System {
             conjugate: 0,
             floats: false,
             paired: Vec::new(),
-            timings: Timings {
-                ordering: clock.elapsed(),
-                ..Timings::default()
-            },
+            timings: ordered(clock),
         })
     }
 
