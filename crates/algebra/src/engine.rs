@@ -77,6 +77,14 @@ pub enum EngineError {
     /// There is no factor to solve with: none was made yet, or the last one failed.
     #[error("nothing is factorised")]
     NotFactorised,
+    /// A solver that is not of this crate has given up, for a reason of its own.
+    #[error("the solver of the linear system gave up with its error {code} ({detail})")]
+    GaveUp {
+        /// The number of its error.
+        code: i32,
+        /// What it tells beside it.
+        detail: i32,
+    },
 }
 
 /// A direct solver of sparse symmetric systems of one pattern.

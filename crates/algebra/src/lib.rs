@@ -16,6 +16,7 @@
 //! | conjugate gradients, preconditioned by sweeps and the factor of a coarse space | [`ConjugateGradients`] |
 //! | factors of dense matrices | [`DenseCholesky`], [`Lu`] |
 //! | L U = P A of sparse unsymmetric matrices | [`SparseLu`] of [`Rows`] |
+//! | processes that hold one matrix together, and factorise it | [`Team`] |
 //!
 //! ```
 //! use moreau_algebra::{Cholesky, Engine, Inertia, Ldlt, Matrix, Pattern};
@@ -60,6 +61,7 @@ mod panel;
 mod pattern;
 mod sparse_lu;
 mod symbolic;
+mod team;
 
 pub use cholesky::Cholesky;
 pub use coarse::{CoarseError, CoarseSpace};
@@ -73,6 +75,7 @@ pub use matrix::Matrix;
 pub use ordering::nested_dissection;
 pub use pattern::{Pattern, PatternError};
 pub use sparse_lu::{Rows, SparseLu};
+pub use team::{ENGINE, Parcel, Share, SharedTeam, Team, Unpacked};
 
 #[cfg(test)]
 extern crate self as moreau_algebra;

@@ -7,3 +7,4 @@ pub(crate) mod large;
 pub(crate) mod numbering;
 pub(crate) mod scatter;
 pub(crate) mod small;
+pub(crate) mod spread;

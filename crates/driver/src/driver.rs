@@ -2,6 +2,7 @@
 
 use crate::assembly::block::{Block, PointField, PointState};
 use crate::assembly::cell_law::{Motion, Stiffness};
+use crate::assembly::spread::serve;
 use crate::error::{IncrementError, ModelError};
 use crate::linear::system::{Contacts, System};
 use crate::model::footing::Footing;
@@ -12,6 +13,7 @@ use crate::report::{ContactRecord, Energies, IncrementReport, Iteration};
 use crate::settings::{Nesting, Seam, Settings};
 use crate::timings::Timings;
 use crate::vector::SparseVector;
+use moreau_algebra::SharedTeam;
 use moreau_contact::ContactSolution;
 use moreau_laws::{Local, Status};
 use moreau_mesh::Mesh;
@@ -59,6 +61,8 @@ pub struct Driver<const D: usize> {
     pub(crate) measure: Box<dyn Measure<D>>,
     pub(crate) contacts: Vec<Contact>,
     materials: Vec<usize>,
+    /// Processes that hold the cells together.
+    team: Option<SharedTeam>,
 }
 
 impl<const D: usize> Driver<D> {
@@ -67,7 +71,7 @@ impl<const D: usize> Driver<D> {
     /// # Errors
     /// [`ModelError::MissingMaterial`].
     pub fn new<H: Analysis<D>>(
-        model: Model<D, H>,
+        mut model: Model<D, H>,
         settings: Settings<D>,
     ) -> Result<Self, ModelError> {
         model.check()?;
@@ -97,12 +101,14 @@ impl<const D: usize> Driver<D> {
             farthest: 0.0,
             solution: None,
         };
+        let blocks = model.take_blocks();
         let mut driver = Self {
+            team: model.team.map(|(team, _)| team),
             measure: Box::new(model.hypothesis),
             // All cells have one: it was checked.
             materials: model.material.into_iter().flatten().collect(),
             mesh: model.mesh,
-            blocks: model.blocks,
+            blocks,
             tools: model.tools,
             contacts: model.contacts,
             points: model.points,
@@ -115,6 +121,16 @@ impl<const D: usize> Driver<D> {
         driver.start();
         driver.pair(&Loading::default())?;
         Ok(driver)
+    }
+
+    /// Does what the first process of the team asks of this other one, with its cells, until that has ended; at once
+    /// without a team.
+    pub fn serve(self) {
+        let sizes = (self.mesh.nodes().len(), self.state.displacement.len());
+        let Self { blocks, team, .. } = self;
+        if let Some(team) = team.filter(|team| team.rank() > 0) {
+            serve::serve(team.as_ref(), blocks, sizes);
+        }
     }
 
     /// Forces and energy of the stresses at the start.
@@ -469,7 +485,7 @@ impl<const D: usize> Driver<D> {
                 seam,
                 coupled: coupled.as_deref(),
             },
-            self.settings.memory,
+            (self.settings.memory, self.team.as_ref()),
         )?;
         system.timings += before;
         system.floats = self.floats(loading);

@@ -329,6 +329,12 @@ pub enum IncrementError {
         /// The largest that rounding explains \[N\].
         expected: f64,
     },
+    /// The solver of the linear system has no factor, for reasons of its own.
+    #[error("no factor of the stiffness: {problem}")]
+    Solver {
+        /// What the solver tells.
+        problem: String,
+    },
     /// A state that numbers do not hold: forces, displacements or energies beyond all bounds.
     #[error(
         "the {what} at the end of the increment is {value}: what is prescribed is beyond anything that \

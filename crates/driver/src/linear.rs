@@ -1,5 +1,6 @@
 //! The linear system of a mesh, its factor or what replaces it; no contact.
 
 pub(crate) mod coarse;
+pub(crate) mod others;
 pub(crate) mod suspension;
 pub(crate) mod system;

@@ -7,10 +7,13 @@ pub(crate) mod points;
 
 use crate::assembly::block::{Block, SolidBlock};
 use crate::assembly::cells::{Cells, ElementCells};
+use crate::assembly::spread::block::SpreadBlock;
+use crate::assembly::spread::partition::partition;
 use crate::error::ModelError;
 use crate::model::load::facet_of;
 use crate::model::points::{ALONG_NORMAL, ContactPoint, Tool, tool_index};
 use crate::vector::SparseVector;
+use moreau_algebra::SharedTeam;
 use moreau_contact::Obstacle;
 use moreau_laws::{BulkLaw, Friction};
 use moreau_mesh::{
@@ -20,6 +23,7 @@ use moreau_mesh::{
 };
 use nalgebra::SVector;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Most nodes of a cell.
 const MOST_NODES: usize = 27;
@@ -194,6 +198,10 @@ pub struct Model<const D: usize, H> {
     materials: usize,
     /// Whether strains and rotations of materials are large.
     large: bool,
+    /// Processes that hold the cells together, and which holds which.
+    pub(crate) team: Option<(SharedTeam, Vec<u32>)>,
+    /// Cells of all processes in each block; `None` of one that the first holds alone.
+    members: Vec<Option<Vec<usize>>>,
 }
 
 impl<const D: usize, H: Analysis<D>> Model<D, H> {
@@ -203,6 +211,8 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             material: vec![None; mesh.cell_count()],
             materials: 0,
             large: false,
+            team: None,
+            members: Vec::new(),
             mesh,
             hypothesis,
             blocks: Vec::new(),
@@ -219,6 +229,15 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             large: true,
             ..Self::new(mesh, hypothesis)
         }
+    }
+
+    /// The same with its cells on several processes, each of which makes the same model: the first goes on with
+    /// [`Driver`](crate::Driver) as if it were alone, the others with [`Driver::serve`](crate::Driver::serve). Materials come
+    /// after this; blocks of other cells than those of materials stay with the first.
+    pub fn on_team(mut self, team: SharedTeam) -> Self {
+        let process = partition(&self.mesh, team.size());
+        self.team = Some((team, process));
+        self
     }
 
     /// Gives the cells of a group a law and an integration rule.
@@ -259,7 +278,12 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             by_kind.entry(self.mesh.kind(cell)).or_default().push(cell);
         }
         self.materials += 1;
-        for (kind, cells) in by_kind {
+        let rank = self.team.as_ref().map(|(team, _)| team.rank());
+        for (kind, mut cells) in by_kind {
+            if let (Some(rank), Some((_, process))) = (rank, &self.team) {
+                self.members.push(Some(cells.clone()));
+                cells.retain(|&c| process[c] as usize == rank);
+            }
             let own = self.hypothesis.cells(&self.mesh, kind, &cells, integration);
             // A mesh of dimension D has no cells of another dimension.
             if let Some(own) = own {
@@ -305,7 +329,10 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             }
         }
         self.materials += 1;
-        self.blocks.push(Box::new(block));
+        if self.team.as_ref().is_none_or(|(team, _)| team.rank() == 0) {
+            self.blocks.push(Box::new(block));
+            self.members.push(None);
+        }
         Ok(self)
     }
 
@@ -554,6 +581,52 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
 
     /// # Errors
     /// [`ModelError::MissingMaterial`].
+    /// The blocks, with those of a team that it holds together in place of the part of this process.
+    pub(crate) fn take_blocks(&mut self) -> Vec<Box<dyn Block<D>>> {
+        let blocks = std::mem::take(&mut self.blocks);
+        let Some((team, process)) = self
+            .team
+            .as_ref()
+            .filter(|(t, _)| t.rank() == 0 && t.size() > 1)
+        else {
+            return blocks;
+        };
+        let mut nodes_of = vec![vec![false; self.mesh.nodes().len()]; team.size()];
+        for &cell in self.members.iter().flatten().flatten() {
+            let own = &mut nodes_of[process[cell] as usize];
+            self.mesh
+                .cell_nodes(cell)
+                .iter()
+                .for_each(|&a| own[a] = true);
+        }
+        let listed = |own: Vec<bool>| -> Vec<u32> {
+            (0..own.len() as u32).filter(|&a| own[a as usize]).collect()
+        };
+        let nodes_of: Arc<Vec<Vec<u32>>> = Arc::new(nodes_of.into_iter().map(listed).collect());
+        let mut number = 0;
+        let wrapped = |(own, members): (Box<dyn Block<D>>, Option<Vec<usize>>)| {
+            let Some(members) = members else { return own };
+            let process = members.iter().map(|&c| process[c]).collect();
+            let nodes: Vec<usize> = (members.iter())
+                .flat_map(|&c| self.mesh.cell_nodes(c).iter().copied())
+                .collect();
+            let per_cell = nodes.len() / members.len().max(1);
+            let at = (team.clone(), number);
+            number += 1;
+            let nodes = (nodes, per_cell);
+            Box::new(SpreadBlock::new(
+                at,
+                own,
+                members,
+                nodes,
+                process,
+                nodes_of.clone(),
+            )) as _
+        };
+        let members = self.members.clone();
+        blocks.into_iter().zip(members).map(wrapped).collect()
+    }
+
     pub(crate) fn check(&self) -> Result<(), ModelError> {
         let mut bare = (0..self.material.len()).filter(|&c| self.material[c].is_none());
         match bare.next() {

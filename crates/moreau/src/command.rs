@@ -8,6 +8,7 @@ mod check;
 mod converge;
 mod convert;
 mod plot;
+mod processes;
 mod progress;
 mod run;
 mod signals;
@@ -164,6 +165,10 @@ struct Manner {
     /// Threads, instead of the deck's; 0: all. The results do not depend on it.
     #[arg(long)]
     threads: Option<usize>,
+    /// What solves the linear systems, instead of the embedded engine alone and MUMPS under mpirun.
+    #[cfg(feature = "distributed")]
+    #[arg(long, value_name = "ENGINE")]
+    engine: Option<processes::Solver>,
     /// Fail with status 3 if an expectation of the deck is not met.
     #[arg(long)]
     verify: bool,
@@ -173,6 +178,20 @@ struct Manner {
     /// Every iteration as a line of JSON on stdout, instead of progress and summary.
     #[arg(long)]
     json_log: bool,
+}
+
+impl Manner {
+    /// The processes to run on; why there are none is printed.
+    #[cfg(feature = "distributed")]
+    fn started(&self) -> Result<processes::Started, u8> {
+        processes::Started::begin(self.engine)
+    }
+
+    /// This process alone.
+    #[cfg(not(feature = "distributed"))]
+    fn started(&self) -> Result<processes::Started, u8> {
+        Ok(processes::Started)
+    }
 }
 
 /// Does what the arguments of a command line say, the name of the program first; the exit status.
@@ -201,7 +220,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
             out,
             force,
             manner,
-        } => run::run(&deck, &parameters.given(), (out, force), &manner),
+        } => run::run(&deck, parameters.given(), (out, force), &manner),
         Command::Resume { directory, manner } => run::resume(&directory, &manner),
         Command::Bench { deck, out, force } => bench::bench(&deck, out, force),
         Command::Plot {

@@ -52,6 +52,7 @@ pub use entries::{
 pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;
 
+use crate::algebra::SharedTeam;
 pub(crate) use columns::{Unit, columns};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf, absolute};
@@ -60,12 +61,14 @@ use std::path::{Path, PathBuf, absolute};
 pub type Meshes = BTreeMap<PathBuf, Vec<u8>>;
 
 /// What a deck is given beside its text.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default)]
 pub struct Given {
     /// Mesh files that are not on disk.
     pub meshes: Meshes,
     /// Values of parameters, in place of those of the deck.
     pub parameters: BTreeMap<String, f64>,
+    /// The processes of a team, each of which opens the same deck; without one this process is alone.
+    pub team: Option<SharedTeam>,
 }
 
 /// JSON schema of decks, for editors: `docs/deck.schema.json`.
@@ -85,14 +88,13 @@ pub fn open_in(text: &str, folder: &Path) -> (Deck, Option<Problem>, Findings) {
 /// As [`open_in`], with what is given beside the text.
 pub fn open_with(text: &str, folder: &Path, given: &Given) -> (Deck, Option<Problem>, Findings) {
     let (mut deck, mut findings) = grammar::read(text, folder, &given.parameters);
-    let meshes = &given.meshes;
-    let given = deck.mesh_file.as_ref().and_then(|file| {
+    let mesh = deck.mesh_file.as_ref().and_then(|file| {
         let wanted = absolute(&file.value).ok()?;
         let is_wanted = |path: &Path| absolute(folder.join(path)).is_ok_and(|at| at == wanted);
-        let given = meshes.iter().find(|(path, _)| is_wanted(path));
-        given.map(|(_, bytes)| bytes.as_slice())
+        let found = given.meshes.iter().find(|(path, _)| is_wanted(path));
+        found.map(|(_, bytes)| bytes.as_slice())
     });
-    let mut problem = build::build(&mut deck, given, &mut findings);
+    let mut problem = build::build(&mut deck, (mesh, given.team.as_ref()), &mut findings);
     if let Some(problem) = &problem {
         let columns = match problem {
             Problem::Plane(setup) => columns(setup),

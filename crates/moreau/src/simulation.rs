@@ -124,7 +124,7 @@ pub struct Simulation {
 
 impl Simulation {
     /// Opens a deck, with what is given beside its text. Paths in it are relative to a folder. `None` if the deck has
-    /// errors.
+    /// errors. Of the processes of a team the first goes on as if it were alone, the others with [`Simulation::serve`].
     pub fn open(text: &str, folder: &Path, given: &Given) -> (Option<Self>, Findings) {
         let (deck, problem, findings) = open_with(text, folder, given);
         // For a step that follows the deck is opened again, from wherever the process is then.
@@ -154,6 +154,11 @@ impl Simulation {
             meshes,
             course,
         }
+    }
+
+    /// Does what the first process of the team asks of this other one, until that has ended.
+    pub fn serve(self) {
+        either!(self.course, course => course.serve());
     }
 
     /// The deck.

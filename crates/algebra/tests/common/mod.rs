@@ -2,6 +2,8 @@
 // Not every test uses all of them.
 #![allow(dead_code, unreachable_pub, missing_docs)]
 
+pub mod promises;
+
 use moreau_algebra::{Pattern, nested_dissection};
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;

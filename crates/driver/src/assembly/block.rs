@@ -72,6 +72,12 @@ pub trait Block<const D: usize>: Send + Sync {
     /// Nodes of the k-th cell of the block.
     fn nodes(&self, k: usize) -> &[usize];
 
+    /// Whether this process holds the k-th cell: the stiffness of the others is handed to nobody here, and their
+    /// forces come apart from it.
+    fn holds(&self, _k: usize) -> bool {
+        true
+    }
+
     /// Forces and stiffness at the end of a step, handed cell by cell, in order, to `sink`. Returns
     /// whether the stiffness is another than the elastic one anywhere.
     fn evaluate(

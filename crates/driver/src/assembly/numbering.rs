@@ -30,8 +30,10 @@ impl Numbering {
         coupled: &[Vec<usize>],
     ) -> Self {
         let nodes = mesh.nodes().len() + tools;
-        let adjacency = adjacency(mesh, nodes, coupled);
-        let neighbours = |a: usize| &adjacency.entries[adjacency.start[a]..adjacency.start[a + 1]];
+        let cells = (0..mesh.cell_count()).map(|c| mesh.cell_nodes(c));
+        let coupled = coupled.iter().map(Vec::as_slice);
+        let adjacency = Adjacency::new(&cells.chain(coupled).collect::<Vec<_>>(), nodes);
+        let neighbours = |a: usize| adjacency.of(a);
         let mut is_interface = vec![false; nodes];
         for &a in interface_nodes.iter().chain(&pivot) {
             is_interface[a] = true;
@@ -58,31 +60,26 @@ impl Numbering {
                 }
             }
         }
-        let mut column_start = Vec::with_capacity(dofs.len() + 1);
-        column_start.push(0u32);
-        let mut row: Vec<u32> = Vec::new();
-        let mut column = Vec::new();
-        for (p, &dof) in dofs.iter().enumerate() {
-            column.clear();
-            let own = dof / D;
-            for &b in neighbours(own).iter().chain(std::iter::once(&own)) {
-                let rows = position[D * b..D * b + D].iter();
-                column.extend(rows.copied().filter(|&q| q != FIXED && q as usize >= p));
-            }
-            column.sort_unstable();
-            row.extend_from_slice(&column);
-            column_start.push(row.len() as u32);
-        }
+        let pattern = adjacency.pattern::<D>(&position, &dofs, interface);
         Self {
             position,
             dofs,
             interface,
-            // Every column begins with its own row, and goes on with others in order.
-            pattern: Pattern::new(column_start, row)
-                .and_then(|pattern| pattern.keeping(interface))
-                .expect("sorted, without repetition"),
+            pattern,
         }
     }
+}
+
+/// Which unknowns share a node or one of some groups of nodes: their degrees of freedom `dofs`, with the unknown of
+/// every degree of freedom at `position`, and so many last ones kept.
+pub(crate) fn pattern_of<const D: usize>(
+    position: &[u32],
+    dofs: &[usize],
+    kept: usize,
+    groups: &[&[usize]],
+) -> Pattern {
+    let nodes = position.len() / D;
+    Adjacency::new(groups, nodes).pattern::<D>(position, dofs, kept)
 }
 
 struct Adjacency {
@@ -90,42 +87,68 @@ struct Adjacency {
     entries: Vec<usize>,
 }
 
-/// Nodes that share a cell or a coupling with each node, without the node itself, sorted.
-fn adjacency<const D: usize>(mesh: &Mesh<D>, nodes: usize, coupled: &[Vec<usize>]) -> Adjacency {
-    // Cells of node a: of[first[a]..first[a + 1]], written from the back.
-    let mut first = vec![0u32; nodes + 1];
-    let group = |c: usize| match c.checked_sub(mesh.cell_count()) {
-        None => mesh.cell_nodes(c),
-        Some(k) => &coupled[k],
-    };
-    let all = || {
-        (0..mesh.cell_count() + coupled.len()).flat_map(|c| group(c).iter().map(move |&a| (c, a)))
-    };
-    all().for_each(|(_, a)| first[a] += 1);
-    let mut sum = 0;
-    for first in &mut first {
-        sum += *first;
-        *first = sum;
-    }
-    let mut of = vec![0u32; sum as usize];
-    for (cell, a) in all() {
-        first[a] -= 1;
-        of[first[a] as usize] = cell as u32;
-    }
-    let mut start = Vec::with_capacity(nodes + 1);
-    start.push(0);
-    let mut entries = Vec::new();
-    let mut row = Vec::new();
-    for a in 0..nodes {
-        row.clear();
-        for &cell in &of[first[a] as usize..first[a + 1] as usize] {
-            let cell = group(cell as usize).iter();
-            row.extend(cell.copied().filter(|&b| b != a));
+impl Adjacency {
+    /// Nodes that share a group with each node, without the node itself, sorted.
+    fn new(groups: &[&[usize]], nodes: usize) -> Self {
+        // Groups of node a: of[first[a]..first[a + 1]], written from the back.
+        let mut first = vec![0u32; nodes + 1];
+        let all = || {
+            let numbered = groups.iter().enumerate();
+            numbered.flat_map(|(k, group)| group.iter().map(move |&a| (k, a)))
+        };
+        all().for_each(|(_, a)| first[a] += 1);
+        let mut sum = 0;
+        for first in &mut first {
+            sum += *first;
+            *first = sum;
         }
-        row.sort_unstable();
-        row.dedup();
-        entries.extend_from_slice(&row);
-        start.push(entries.len());
+        let mut of = vec![0u32; sum as usize];
+        for (group, a) in all() {
+            first[a] -= 1;
+            of[first[a] as usize] = group as u32;
+        }
+        let mut start = Vec::with_capacity(nodes + 1);
+        start.push(0);
+        let mut entries = Vec::new();
+        let mut row = Vec::new();
+        for a in 0..nodes {
+            row.clear();
+            for &group in &of[first[a] as usize..first[a + 1] as usize] {
+                let group = groups[group as usize].iter();
+                row.extend(group.copied().filter(|&b| b != a));
+            }
+            row.sort_unstable();
+            row.dedup();
+            entries.extend_from_slice(&row);
+            start.push(entries.len());
+        }
+        Self { start, entries }
     }
-    Adjacency { start, entries }
+
+    fn of(&self, node: usize) -> &[usize] {
+        &self.entries[self.start[node]..self.start[node + 1]]
+    }
+
+    /// Which unknowns are of the same node or of neighbours.
+    fn pattern<const D: usize>(&self, position: &[u32], dofs: &[usize], kept: usize) -> Pattern {
+        let mut column_start = Vec::with_capacity(dofs.len() + 1);
+        column_start.push(0u32);
+        let mut row: Vec<u32> = Vec::new();
+        let mut column = Vec::new();
+        for (p, &dof) in dofs.iter().enumerate() {
+            column.clear();
+            let own = dof / D;
+            for &b in self.of(own).iter().chain(std::iter::once(&own)) {
+                let rows = position[D * b..D * b + D].iter();
+                column.extend(rows.copied().filter(|&q| q != FIXED && q as usize >= p));
+            }
+            column.sort_unstable();
+            row.extend_from_slice(&column);
+            column_start.push(row.len() as u32);
+        }
+        // Every column begins with its own row, and goes on with others in order.
+        Pattern::new(column_start, row)
+            .and_then(|pattern| pattern.keeping(kept))
+            .expect("sorted, without repetition")
+    }
 }

@@ -17,6 +17,9 @@ pub(crate) struct Scatter {
     /// the first column of the earlier node that come before the rows of the later, and one more
     /// where the second is the earlier.
     pairs: Vec<u32>,
+    /// Where the cells that other processes hold are none of those: cells of the block before each that are. Empty
+    /// where this one holds all.
+    before: Vec<u32>,
 }
 
 /// Most unknowns of a cell: of 27 nodes in space.
@@ -51,18 +54,28 @@ impl Scatter {
             Some(2 * before as u32 + u32::from(q < p))
         };
         let mut pairs = Vec::new();
-        for k in 0..block.cells().len() {
+        let all = 0..block.cells().len();
+        let held = all.clone().filter(|&k| block.holds(k)).count();
+        let mut before = Vec::new();
+        if held < all.len() {
+            let mut count = 0;
+            for k in all.clone() {
+                before.push(count);
+                count += u32::from(block.holds(k));
+            }
+        }
+        for k in all.filter(|&k| block.holds(k)) {
             let nodes = block.nodes(k);
-            if k == 0 {
+            if pairs.is_empty() {
                 let of_a_cell = nodes.len() * (nodes.len() + 1) / 2;
-                pairs.reserve_exact(of_a_cell * block.cells().len());
+                pairs.reserve_exact(of_a_cell * held);
             }
             for (i, &a) in nodes.iter().enumerate() {
                 // Nothing goes anywhere from a node that has no unknown.
                 pairs.extend(nodes[i..].iter().map(|&b| pair(a, b).unwrap_or(0)));
             }
         }
-        Self { pairs }
+        Self { pairs, before }
     }
 
     /// Adds the stiffness of a cell to that of the system.
@@ -92,7 +105,8 @@ impl Scatter {
             }
         }
         let of_a_cell = count * (count + 1) / 2;
-        let mut pairs = &self.pairs[cell.cell * of_a_cell..(cell.cell + 1) * of_a_cell];
+        let own = (self.before.get(cell.cell)).map_or(cell.cell, |&before| before as usize);
+        let mut pairs = &self.pairs[own * of_a_cell..(own + 1) * of_a_cell];
         let mut rest = cell.stiffness;
         for a in 0..count {
             let (own, others) = pairs.split_at(count - a);

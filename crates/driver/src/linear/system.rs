@@ -3,15 +3,18 @@
 
 use crate::assembly::block::Block;
 use crate::assembly::cell_law::{Motion, Stiffness};
-use crate::assembly::numbering::Numbering;
+use crate::assembly::numbering::{Numbering, pattern_of};
 use crate::assembly::scatter::{FIXED, Scatter, prescribed_columns};
 use crate::error::ModelError;
 use crate::linear::coarse::Coarse;
+use crate::linear::others::Others;
 use crate::settings::Seam;
 use crate::timings::{Timings, timed};
 use crate::vector::SparseVector;
 use crate::vector::residual;
-use moreau_algebra::{Cholesky, Cost, Either, Engine, EngineError, Matrix, Pattern, TooLarge};
+use moreau_algebra::{
+    Cholesky, Cost, Either, Engine, EngineError, Matrix, Pattern, SharedTeam, TooLarge,
+};
 use moreau_mesh::Mesh;
 use std::collections::BTreeSet;
 use std::time::Instant;
@@ -56,6 +59,11 @@ pub(crate) struct System {
     shift: f64,
     stiffest: f64,
     engine: Box<dyn Engine>,
+    /// What other processes hold of K.
+    others: Option<Others>,
+    /// Why the engine of a team has no factor, where that is no fault of the matrix.
+    gave_up: Option<EngineError>,
+    is_of_a_team: bool,
     /// Whether the factor held is that of the elastic stiffness.
     elastic_factor: bool,
     /// Whether the values are those that the factor was made of.
@@ -117,16 +125,39 @@ fn conjugate_operations(pattern: &Pattern, coarse: f64) -> f64 {
     10.0 * 80.0 * (5.0 * pattern.entries() as f64 + 2.0 * coarse)
 }
 
-/// What factorises a stiffness of a pattern, in so much memory \[bytes\], positive definite or of any sign.
+/// What factorises a stiffness of a pattern, in so much memory \[bytes\], positive definite or of any sign: the
+/// engine of a team, or of this process.
 fn engine(
     pattern: &Pattern,
-    memory: Option<u64>,
+    memory: (Option<u64>, Option<&SharedTeam>),
     is_definite: bool,
 ) -> Result<Box<dyn Engine>, TooLarge> {
+    let (memory, team) = memory;
+    if let Some(team) = team {
+        return team.engine(pattern, memory, is_definite);
+    }
     Ok(match is_definite {
         true => Box::new(Cholesky::analyse(pattern, memory)?),
         false => Box::new(Either::analyse(pattern, memory)?),
     })
+}
+
+/// Time since a clock was started, of the ordering.
+fn ordered(clock: Instant) -> Timings {
+    Timings {
+        ordering: clock.elapsed(),
+        ..Timings::default()
+    }
+}
+
+/// That there is no room for the factor of so many unknowns.
+fn no_room(unknowns: usize, TooLarge { entries, room }: TooLarge) -> ModelError {
+    let gigabytes = |entries: f64| entries * size_of::<f64>() as f64 / 1e9;
+    ModelError::TooLarge {
+        unknowns,
+        needed: gigabytes(entries),
+        room: gigabytes(room),
+    }
 }
 
 /// Pivots below this part of the diagonal are rounding, and a motion without stiffness.
@@ -176,6 +207,33 @@ fn pairs<const D: usize>(blocks: &[Box<dyn Block<D>>]) -> usize {
     blocks.iter().map(|b| of(b.as_ref())).sum()
 }
 
+/// Where this process has entries of K: of the cells that it holds, and of what contacts and pressures may couple, on
+/// which it adds them up.
+fn here<const D: usize>(
+    (mesh, blocks): (&Mesh<D>, &[Box<dyn Block<D>>]),
+    (position, dofs, interface): (&[u32], &[usize], usize),
+    coupled: Option<&[Vec<usize>]>,
+) -> Pattern {
+    let own = |b: &'_ dyn Block<D>| {
+        (0..b.cells().len())
+            .filter(|&k| b.holds(k))
+            .collect::<Vec<_>>()
+    };
+    let mut groups: Vec<&[usize]> = Vec::new();
+    for block in blocks {
+        let held = own(block.as_ref()).into_iter();
+        groups.extend(held.map(|k| block.nodes(k)));
+    }
+    let facets = mesh
+        .group_names()
+        .filter_map(|name| mesh.facet_group(name).ok());
+    let facets = facets.flatten().map(|&f| mesh.facet_nodes(f).collect());
+    let facets: BTreeSet<Vec<usize>> = facets.collect();
+    groups.extend(facets.iter().map(Vec::as_slice));
+    groups.extend(coupled.into_iter().flatten().map(Vec::as_slice));
+    pattern_of::<D>(position, dofs, interface, &groups)
+}
+
 /// What a system has to know of contacts.
 pub(crate) struct Contacts<'a> {
     /// Nodes that may touch, on both sides.
@@ -201,8 +259,9 @@ impl System {
         blocks: &[Box<dyn Block<D>>],
         fixed: impl Fn(usize) -> bool,
         contacts: &Contacts<'_>,
-        memory: Option<u64>,
+        memory: (Option<u64>, Option<&SharedTeam>),
     ) -> Result<Self, ModelError> {
+        let (bytes, team) = memory;
         let clock = Instant::now();
         let &Contacts {
             nodes: interface_nodes,
@@ -214,9 +273,7 @@ impl System {
         let condensed = || Numbering::new(mesh, &fixed, interface_nodes, pivot, tools, &[]);
         let tied = coupled.and_then(|coupled| {
             let tied = || Numbering::new(mesh, &fixed, &[], None, tools, coupled);
-            let room = memory.map_or(f64::INFINITY, |bytes| {
-                bytes as f64 / size_of::<f64>() as f64
-            });
+            let room = bytes.map_or(f64::INFINITY, |b| b as f64 / size_of::<f64>() as f64);
             if seam == Seam::Tied {
                 let tied = tied();
                 return (Cost::of(&tied.pattern).entries <= room).then_some(tied);
@@ -235,6 +292,15 @@ impl System {
             interface,
             pattern,
         } = tied.unwrap_or_else(condensed);
+        let cost = Cost::of(&pattern);
+        let (pattern, others) = match team.filter(|team| team.size() > 1) {
+            None => (pattern, None),
+            Some(team) => {
+                let numbered = (&*position, &*dofs, interface);
+                let here = here::<D>((mesh, blocks), numbered, coupled);
+                (here, Some(Others::new(team, &position)))
+            }
+        };
         let scatter = blocks
             .iter()
             .map(|b| Scatter::new(b.as_ref(), &position, &pattern))
@@ -242,13 +308,16 @@ impl System {
         let coarse = || {
             let space = (interface_nodes, pivot, tools);
             let coarse = Coarse::new(mesh, &fixed, space, (&dofs, &pattern))?;
-            let engine = engine(&coarse.space.matrix().pattern, memory, is_definite);
-            Some(engine.map(|engine| (engine, Some(coarse))))
+            let made = engine(&coarse.space.matrix().pattern, memory, is_definite);
+            Some(made.map(|engine| (engine, Some(coarse))))
         };
-        let cost = Cost::of(&pattern);
         let mut other = None;
         // In the plane a factor is small, and linear cells in plastic flow are a poor coarse space.
-        if D == 3 && !is_tied && conjugate_operations(&pattern, 0.0) < cost.operations {
+        if D == 3
+            && !is_tied
+            && team.is_none()
+            && conjugate_operations(&pattern, 0.0) < cost.operations
+        {
             other = coarse().filter(|other| {
                 other.as_ref().is_ok_and(|(engine, _)| {
                     let own = engine.cost();
@@ -258,16 +327,11 @@ impl System {
         }
         let own = || match engine(&pattern, memory, is_definite) {
             Ok(engine) => Ok((engine, None)),
+            Err(too_large) if team.is_some() => Err(too_large),
             Err(too_large) => coarse().unwrap_or(Err(too_large)),
         };
         let chosen = other.unwrap_or_else(own);
-        let gigabytes = |entries: f64| entries * size_of::<f64>() as f64 / 1e9;
-        let (engine, coarse) =
-            chosen.map_err(|TooLarge { entries, room }| ModelError::TooLarge {
-                unknowns: dofs.len(),
-                needed: gigabytes(entries),
-                room: gigabytes(room),
-            })?;
+        let (engine, coarse) = chosen.map_err(|error| no_room(dofs.len(), error))?;
         Ok(Self {
             prescribed: (0..position.len())
                 .filter(|&dof| position[dof] == FIXED)
@@ -278,7 +342,10 @@ impl System {
             pivot,
             scatter,
             prescribed_columns: Vec::new(),
-            keeps_elastic: is_definite && pattern.entries() <= KEPT,
+            keeps_elastic: is_definite && others.is_none() && pattern.entries() <= KEPT,
+            others,
+            gave_up: None,
+            is_of_a_team: team.is_some(),
             matrix: Matrix::new(pattern),
             coarse,
             tied: is_tied.then(Vec::new),
@@ -293,10 +360,7 @@ impl System {
             conjugate: 0,
             floats: false,
             paired: Vec::new(),
-            timings: Timings {
-                ordering: clock.elapsed(),
-                ..Timings::default()
-            },
+            timings: ordered(clock),
         })
     }
 
@@ -360,6 +424,9 @@ impl System {
                 prescribed_load[unknown] += k * missing.at(prescribed);
             }
         }
+        if let Some(others) = &mut self.others {
+            others.reset(with_stiffness, missing);
+        }
         let position = &self.position;
         let (pattern, values) = self.matrix.values_mut();
         for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
@@ -376,8 +443,15 @@ impl System {
                 }
             });
         }
+        if let (Some(others), Some(_)) = (&self.others, missing) {
+            others.add_prescribed(&self.dofs, &mut prescribed_load);
+        }
         if with_stiffness {
             self.current = self.elastic_factor && !flows;
+            let size = self.size();
+            let tied = self.others.as_mut().filter(|_| self.tied.is_some());
+            tied.into_iter()
+                .for_each(|others| others.find_diagonal(size));
         }
         self.timings.assembly += clock.elapsed();
         Assembly {
@@ -400,6 +474,9 @@ impl System {
         let clock = Instant::now();
         let by = vec![0.0; from.len()];
         let keeps = self.keeps_elastic;
+        if let Some(others) = &mut self.others {
+            others.reset(true, None);
+        }
         let (position, all) = (&self.position, &mut self.prescribed_columns);
         let (pattern, values) = self.matrix.values_mut();
         for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
@@ -420,8 +497,13 @@ impl System {
             self.matrix.keep();
         }
         let first = self.size() - self.interface;
-        let diagonal = |p: usize| self.matrix.diagonal(p);
-        self.stiffest = (0..self.size()).map(diagonal).fold(0.0, f64::max);
+        if let Some(others) = &mut self.others {
+            others.find_diagonal(self.dofs.len());
+        }
+        let own = |p: usize| self.diagonal(p as u32);
+        let stiffest = (0..self.size()).map(own).fold(0.0, f64::max);
+        self.stiffest = stiffest;
+        let diagonal = |p: usize| self.diagonal(p as u32);
         self.shift = match (shifted, &self.tied) {
             (false, _) => 0.0,
             (true, Some(_)) => self.stiffest,
@@ -463,6 +545,7 @@ impl System {
             return Ok(());
         }
         self.elastic_factor = false;
+        self.gave_up = None;
         self.factorisations += 1;
         let (interface, shift) = (self.interface, self.shift);
         let inertia = timed(&mut self.timings.factorisation, || {
@@ -475,6 +558,13 @@ impl System {
             };
             matrix.shift(interface, shift);
             self.engine.factorise(matrix.values())
+        })
+        .inspect_err(|error| {
+            let is_of_the_matrix = matches!(
+                error,
+                EngineError::NotPositiveDefinite { .. } | EngineError::Singular { .. }
+            );
+            self.gave_up = (!is_of_the_matrix && self.is_of_a_team).then_some(*error);
         })
         .map_err(|error| {
             let dofs = self.coarse.as_ref().map_or(&self.dofs, |c| &c.dofs);
@@ -491,6 +581,11 @@ impl System {
         self.elastic_factor = elastic;
         self.current = true;
         Ok(())
+    }
+
+    /// Why the engine of a team has no factor, where that is no fault of the matrix.
+    pub(crate) fn gave_up(&self) -> Option<EngineError> {
+        self.gave_up
     }
 
     /// Whether the matrix that the factor was made of has negative eigenvalues, its kept unknowns aside.
@@ -541,6 +636,9 @@ impl System {
             self.engine.factorise(&sum)
         });
         let holds = outcome.is_ok() && self.engine.least_pivot() > RIGID;
+        if let Some(others) = &mut self.others {
+            others.factorised(holds);
+        }
         match holds {
             true => sum.copy_from_slice(self.matrix.values()),
             false => sum.clear(),
@@ -551,7 +649,8 @@ impl System {
 
     /// Whether the factor at hand is that of K and of ties.
     pub(crate) fn holds_ties(&self) -> bool {
-        self.tied.as_deref() == Some(self.matrix.values())
+        let others = self.others.as_ref().is_none_or(Others::is_factorised);
+        others && self.tied.as_deref() == Some(self.matrix.values())
     }
 
     /// Begins an increment, which does the same whatever factor the last one has left.
@@ -567,7 +666,20 @@ impl System {
 
     /// Entry of K on the diagonal of an unknown \[N/mm\].
     pub(crate) fn diagonal(&self, unknown: u32) -> f64 {
-        self.matrix.diagonal(unknown as usize)
+        let others = self
+            .others
+            .as_ref()
+            .map_or(0.0, |o| o.diagonal(unknown as usize));
+        self.matrix.diagonal(unknown as usize) + others
+    }
+
+    /// f − K u.
+    fn residual(&self, u: &[f64], f: &[f64]) -> Vec<f64> {
+        let mut r = self.matrix.residual(u, f);
+        if let Some(others) = &self.others {
+            others.subtract_product(u, &mut r);
+        }
+        r
     }
 
     /// The factor held is of no use to the next increment.

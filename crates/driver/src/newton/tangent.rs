@@ -110,10 +110,14 @@ impl<const D: usize> Driver<D> {
             false => &BLENDS,
         };
         for &part in blends {
-            if outcome.is_ok() && !leads_nowhere(system) {
+            if outcome.is_ok() && !leads_nowhere(system) || system.gave_up().is_some() {
                 break;
             }
             outcome = self.blend(system, now, (end, missing), part);
+        }
+        if let (Err(_), Some(error)) = (outcome, system.gave_up()) {
+            let problem = error.to_string();
+            return Err(IncrementError::Solver { problem });
         }
         if let Err(dof) = outcome
             && let Some(tool) = (dof / D).checked_sub(self.mesh.nodes().len())

@@ -20,4 +20,5 @@ mod slender;
 mod states;
 mod steps;
 mod surfaces;
+mod team;
 mod tools;

@@ -1,6 +1,7 @@
 //! `moreau run` and `moreau resume`: a deck run to its end or to where it stops, and the exit
 //! status that says so.
 
+use super::processes::Started;
 use super::progress::Progress;
 use super::signals::{Signals, interrupted};
 use super::{INPUT_ERROR, Manner, NOT_CONVERGED, UNEXPECTED, folder, read, report, say, tell};
@@ -16,30 +17,61 @@ use std::path::{Path, PathBuf};
 /// Runs a deck; the exit status.
 pub(super) fn run(
     path: &Path,
-    given: &Given,
+    given: Given,
     (out, force): (Option<PathBuf>, bool),
     manner: &Manner,
 ) -> u8 {
-    let Some(simulation) = simulation(path, given) else {
-        return INPUT_ERROR;
+    let started = match manner.started() {
+        Ok(started) => started,
+        Err(status) => return status,
     };
+    let Some(simulation) = simulation_on(path, given, &started) else {
+        return without(&started);
+    };
+    if !started.is_first() {
+        return serve(simulation, manner);
+    }
     let given = simulation.deck().directory.as_ref().map(PathBuf::from);
     let directory = out.or(given).unwrap_or_else(|| default_directory(path, ""));
     let Some(to) = taken(Directory::take_for(&directory, path, force)) else {
         return INPUT_ERROR;
     };
-    go(simulation, &to, manner, crate::run::run)
+    go(simulation, &to, (manner, &started), crate::run::run)
 }
 
 /// Continues a run; the exit status.
 pub(super) fn resume(directory: &Path, manner: &Manner) -> u8 {
-    let Some(simulation) = results(directory) else {
-        return INPUT_ERROR;
+    let started = match manner.started() {
+        Ok(started) => started,
+        Err(status) => return status,
     };
+    let Some(simulation) = results_on(directory, &started) else {
+        return without(&started);
+    };
+    if !started.is_first() {
+        return serve(simulation, manner);
+    }
     let Some(at) = taken(Directory::take(directory)) else {
         return INPUT_ERROR;
     };
-    go(simulation, &at, manner, crate::run::resume)
+    go(simulation, &at, (manner, &started), crate::run::resume)
+}
+
+/// What a process does that has no simulation: the first has told why.
+fn without(started: &Started) -> u8 {
+    match started.is_first() {
+        true => INPUT_ERROR,
+        false => started.stand_by("does not find the problem"),
+    }
+}
+
+/// Does what the first process asks.
+fn serve(simulation: Simulation, manner: &Manner) -> u8 {
+    let Some(pool) = pool(manner.threads.unwrap_or(1)) else {
+        return INPUT_ERROR;
+    };
+    pool.install(|| simulation.serve());
+    0
 }
 
 /// A directory to write to; why not is printed.
@@ -61,15 +93,29 @@ pub(super) fn taken(directory: Result<Directory, RunError>) -> Option<Directory>
 
 /// The simulation of a directory of results, at its beginning; what is wrong with it is printed.
 pub(super) fn results(directory: &Path) -> Option<Simulation> {
+    let path = resolved(directory, true)?;
+    simulation(&path, &Given::default())
+}
+
+/// The same on several processes.
+fn results_on(directory: &Path, started: &Started) -> Option<Simulation> {
+    let path = resolved(directory, started.is_first())?;
+    simulation_on(&path, Given::default(), started)
+}
+
+/// The deck of a directory of results.
+fn resolved(directory: &Path, is_told: bool) -> Option<PathBuf> {
     let path = directory.join("deck.resolved.toml");
     if !path.exists() {
         let at = directory.display();
-        tell!(
-            "{at} is no directory of results: it has no deck.resolved.toml, which `moreau run` writes"
-        );
+        if is_told {
+            tell!(
+                "{at} is no directory of results: it has no deck.resolved.toml, which `moreau run` writes"
+            );
+        }
         return None;
     }
-    simulation(&path, &Given::default())
+    Some(path)
 }
 
 /// The simulation of a deck; findings are printed.
@@ -80,13 +126,35 @@ pub(super) fn simulation(path: &Path, given: &Given) -> Option<Simulation> {
     simulation
 }
 
+/// The simulation of a deck on several processes, of which the first prints the findings.
+fn simulation_on(path: &Path, given: Given, started: &Started) -> Option<Simulation> {
+    let text = match started.is_first() {
+        true => read(path)?,
+        false => std::fs::read_to_string(path).ok()?,
+    };
+    let given = Given {
+        team: started.team(),
+        ..given
+    };
+    let (simulation, findings) = Simulation::open(&text, folder(path), &given);
+    if started.is_first() {
+        report(&findings, path, &text);
+    }
+    simulation
+}
+
 fn go(
     simulation: Simulation,
     directory: &Directory,
-    manner: &Manner,
+    (manner, started): (&Manner, &Started),
     solve: fn(Simulation, &Directory, &mut dyn Watch) -> Result<Outcome, RunError>,
 ) -> u8 {
-    let Some(pool) = pool(manner.threads.unwrap_or(simulation.deck().solver.threads)) else {
+    // Several processes share the processors already.
+    let usual = match started.size() {
+        1 => simulation.deck().solver.threads,
+        _ => 1,
+    };
+    let Some(pool) = pool(manner.threads.unwrap_or(usual)) else {
         return INPUT_ERROR;
     };
     let mut progress = Progress::new(manner.quiet, manner.json_log, Signals::listen());

@@ -11,6 +11,7 @@ mod slips;
 
 use super::entries::{Action, Analysis, Deck, Method};
 use super::finding::{Class, Findings};
+use crate::algebra::SharedTeam;
 use crate::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
 use crate::driver::{
     self, Driver, Increments, LeastGap, ModelError, Nesting, RigidMotion, Settings, Step, Support,
@@ -95,10 +96,11 @@ pub enum Problem {
     Solid(Box<Setup<3>>),
 }
 
-/// Builds what the deck describes, on the mesh file that is given, or else that on disk; `None` if that has errors.
+/// Builds what the deck describes, on the mesh file that is given, or else that on disk, and on a team, if there is
+/// one; `None` if that has errors.
 pub(super) fn build(
     deck: &mut Deck,
-    given: Option<&[u8]>,
+    (given, team): (Option<&[u8]>, Option<&SharedTeam>),
     findings: &mut Findings,
 ) -> Option<Problem> {
     match deck.analysis {
@@ -116,19 +118,20 @@ pub(super) fn build(
                 deck,
                 mesh,
                 thickness.unwrap_or_default(),
-                parts::profile,
+                (parts::profile, team),
                 findings,
             )
             .map(|s| Problem::Plane(Box::new(s)))
         }
         Analysis::Axisymmetric => {
             let mesh = meshes::meridian(deck, given, findings);
-            setup(deck, mesh, Axisymmetric, parts::profile, findings)
+            setup(deck, mesh, Axisymmetric, (parts::profile, team), findings)
                 .map(|s| Problem::Plane(Box::new(s)))
         }
         Analysis::Solid => {
             let mesh = meshes::solid(deck, given, findings);
-            setup(deck, mesh, Solid, parts::surface, findings).map(|s| Problem::Solid(Box::new(s)))
+            setup(deck, mesh, Solid, (parts::surface, team), findings)
+                .map(|s| Problem::Solid(Box::new(s)))
         }
     }
 }
@@ -137,7 +140,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     deck: &mut Deck,
     mesh: Option<Mesh<D>>,
     hypothesis: H,
-    surface: parts::Surface<D>,
+    (surface, team): (parts::Surface<D>, Option<&SharedTeam>),
     findings: &mut Findings,
 ) -> Option<Setup<D>> {
     let groups = mesh.map(|mesh| Groups::new(deck, mesh, findings));
@@ -156,7 +159,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     }
     let parts = parts?;
     let mesh = groups.mesh.clone();
-    let model = parts::assemble(deck, mesh, hypothesis, &parts, surface, findings)?;
+    let model = parts::assemble(deck, (mesh, team), hypothesis, &parts, surface, findings)?;
     let stiffness = |part| parts::stiffness(deck, &groups.mesh, &hypothesis, part);
     let settings = settings(deck, stiffness, findings)?;
     let driver = driver(Driver::new(model, settings), deck, &groups, findings)?;

@@ -46,6 +46,11 @@ impl<const D: usize> Course<D> {
         }
     }
 
+    /// [`Driver::serve`].
+    pub(super) fn serve(self) {
+        self.setup.driver.serve();
+    }
+
     pub(crate) fn driver(&self) -> &Driver<D> {
         &self.setup.driver
     }

@@ -207,7 +207,7 @@ impl System {
     /// f − K u at the unknowns, and what rounding leaves of it, with f a sum of forces as large as `given`.
     pub(crate) fn left(&self, f: &[f64], u: &[f64], given: f64) -> (Vec<f64>, f64) {
         let rounding = given + self.stiffest * largest(u.iter().copied());
-        (self.matrix.residual(u, f), ACCURATE * rounding)
+        (self.residual(u, f), ACCURATE * rounding)
     }
 
     /// Writes displacements of the unknowns to `d_u` at every degree of freedom.
@@ -271,7 +271,7 @@ impl System {
         }
         let mut refined = false;
         loop {
-            let mut residual = self.matrix.residual(u, f);
+            let mut residual = self.residual(u, f);
             residual[rows..].fill(0.0);
             let found = largest(residual.iter().copied());
             let motion = largest(u.iter().copied());

@@ -63,7 +63,7 @@ impl Faulty {
 
 impl Engine for Faulty {
     fn analyse(pattern: &Pattern, memory: Option<u64>) -> Result<Self, TooLarge> {
-        let (engine, factor) = (engine(pattern, memory, true)?, 1.0);
+        let (engine, factor) = (engine(pattern, (memory, None), true)?, 1.0);
         Ok(Self { engine, factor })
     }
     fn size(&self) -> usize {

@@ -2,6 +2,7 @@
 //! libraries.
 
 use super::groups::HIDDEN;
+use crate::algebra::SharedTeam;
 use crate::contact::{Ball, ContactError, Cylinder, Obstacle, Plane, Polyline, Triangulated};
 use crate::deck::entries::{
     Adjust, Curve, Deck, FrictionEntry, Hardening, MaterialEntry, Shape, SoilEntry,
@@ -410,7 +411,7 @@ fn by_rule<const D: usize>(
 /// The model.
 pub(super) fn assemble<const D: usize, H: Analysis<D>>(
     deck: &Deck,
-    mut mesh: Mesh<D>,
+    (mut mesh, team): (Mesh<D>, Option<&SharedTeam>),
     hypothesis: H,
     parts: &Parts,
     surface: Surface<D>,
@@ -432,6 +433,9 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
         true => Model::with_large_strains(mesh, hypothesis),
         false => Model::new(mesh, hypothesis),
     };
+    if let Some(team) = team {
+        model = model.on_team(team.clone());
+    }
     for (entry, law, name, rule) in pieces {
         let added = match law {
             Law::Elastic(law) => model.material(&name, law, rule),

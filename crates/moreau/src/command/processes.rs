@@ -1,0 +1,141 @@
+//! The processes that a command runs on: this one alone, or those that `mpirun` has started; what they do is the
+//! library's affair.
+
+use crate::algebra::SharedTeam;
+
+/// What solves the linear systems.
+#[cfg(feature = "distributed")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(super) enum Solver {
+    /// That of this program.
+    Embedded,
+    /// MUMPS, on all processes.
+    Mumps,
+}
+
+#[cfg(feature = "distributed")]
+mod several {
+    use super::super::{INPUT_ERROR, tell};
+    use super::{SharedTeam, Solver};
+    use crate::algebra::Team;
+    use moreau_mumps::{Options, Processes};
+    use signal_hook::{consts, flag};
+    use std::sync::Arc;
+
+    /// The processes of a command, until it is dropped.
+    pub(in super::super) struct Started(Option<Processes>);
+
+    impl Started {
+        /// Those that `mpirun` has started, on which MUMPS solves unless there is but one and another engine is asked
+        /// for; this one alone without `mpirun`.
+        pub(in super::super) fn begin(solver: Option<Solver>) -> Result<Self, u8> {
+            let told = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"].map(std::env::var);
+            let told = told.into_iter().flatten().find_map(|n| n.parse().ok());
+            let several = told.is_some_and(|n: usize| n > 1);
+            let solver = solver.unwrap_or(match told {
+                Some(_) => Solver::Mumps,
+                None => Solver::Embedded,
+            });
+            match solver {
+                Solver::Embedded if several => {
+                    tell!(
+                        "the embedded engine is one of a single process: run without mpirun, or with --engine mumps"
+                    );
+                    Err(INPUT_ERROR)
+                }
+                Solver::Embedded => Ok(Self(None)),
+                Solver::Mumps => match Processes::begin(options()) {
+                    Some(processes) => {
+                        let started = Self(Some(processes));
+                        if !started.is_first() {
+                            // The first ends all.
+                            for signal in [consts::SIGINT, consts::SIGTERM] {
+                                let _ = flag::register(signal, Arc::default());
+                            }
+                        }
+                        Ok(started)
+                    }
+                    None => {
+                        tell!("MPI gives no leave to call it from threads in turn");
+                        Err(INPUT_ERROR)
+                    }
+                },
+            }
+        }
+
+        pub(in super::super) fn team(&self) -> Option<SharedTeam> {
+            let processes = self.0.clone()?;
+            Some(Arc::new(processes))
+        }
+
+        pub(in super::super) fn is_first(&self) -> bool {
+            self.0.as_ref().is_none_or(|team| team.rank() == 0)
+        }
+
+        /// Number of processes.
+        pub(in super::super) fn size(&self) -> usize {
+            self.0.as_ref().map_or(1, |team| team.size())
+        }
+
+        /// Another process than the first that has no simulation: what has been told by the first is not told again,
+        /// but where that has one, all end.
+        pub(in super::super) fn stand_by(&self, what: &str) -> u8 {
+            if let Some(team) = &self.0
+                && !team.receive(0).is_empty()
+            {
+                tell!("process {}: {what} as the first process does", team.rank());
+                Processes::abort(INPUT_ERROR);
+            }
+            INPUT_ERROR
+        }
+    }
+
+    /// Settings of MUMPS that are for tests and measurements.
+    fn options() -> Options {
+        let real = |name: &str| std::env::var(name).ok()?.parse::<f64>().ok();
+        Options {
+            low_rank: real("MOREAU_LOW_RANK"),
+            metis: std::env::var_os("MOREAU_METIS").is_some(),
+            spare: real("MOREAU_SPARE").map(|x| x as i32),
+        }
+    }
+
+    impl Drop for Started {
+        fn drop(&mut self) {
+            let Some(team) = self.0.take() else { return };
+            if std::thread::panicking() {
+                Processes::abort(INPUT_ERROR);
+            }
+            if team.rank() == 0 {
+                team.order(&[]);
+            }
+            team.end();
+        }
+    }
+}
+
+#[cfg(feature = "distributed")]
+pub(super) use several::Started;
+
+/// This process alone.
+#[cfg(not(feature = "distributed"))]
+pub(super) struct Started;
+
+#[cfg(not(feature = "distributed"))]
+impl Started {
+    pub(super) fn team(&self) -> Option<SharedTeam> {
+        None
+    }
+
+    pub(super) fn is_first(&self) -> bool {
+        true
+    }
+
+    pub(super) fn size(&self) -> usize {
+        1
+    }
+
+    pub(super) fn stand_by(&self, _: &str) -> u8 {
+        super::INPUT_ERROR
+    }
+}

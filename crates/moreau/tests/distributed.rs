@@ -1,0 +1,268 @@
+//! `mpirun -n N moreau run`: the results of one process on several, and what is left where one of them dies, a disk
+//! is full or MUMPS lacks room. Where there is no `mpirun` these tests say so and test nothing.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const MOREAU: &str = env!("CARGO_BIN_EXE_moreau");
+
+/// A body of several materials' worth of cells that flows under a rough punch, small enough for a test.
+fn deck(cells: [usize; 3], increments: usize, head: &str, contact: &str) -> String {
+    let [x, y, z] = cells;
+    format!(
+        r#"units = "mm-N-MPa"
+analysis = "solid"
+{head}
+mesh.block = [{{ name = "block", element = "hex20", x = [0, 20], y = [0, 20], z = [0, 10], cells = [{x}, {y}, {z}] }}]
+material = [{{ on = "block", young = 210000.0, poisson = 0.3, yield-stress = 300.0, hardening = {{ linear = 1000.0 }} }}]
+tool = [{{ name = "punch", sphere = {{ center = [0, 0, 40], radius = 30 }} }}]
+contact = [{{ surface = "{contact}", against = "punch", friction = 0.2 }}]
+[[step]]
+name = "indent"
+increments = {increments}
+fix = [
+  {{ on = "block.left", u = ["x"] }},
+  {{ on = "block.bottom", u = ["y"] }},
+  {{ on = "block.back", u = ["x", "y", "z"] }},
+]
+tools = [{{ name = "punch", move = [0, 0, -0.3] }}]
+[output]
+vtu = "last"
+checkpoint = 1
+"#
+    )
+}
+
+/// A folder of a test, with a deck in it.
+struct Place(PathBuf);
+
+impl Place {
+    fn new(name: &str, deck: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("moreau-{}-{name}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).expect("a folder");
+        fs::write(path.join("deck.toml"), deck).expect("a file");
+        Self(path)
+    }
+
+    fn alone(&self, arguments: &[&str]) -> Output {
+        let mut command = Command::new(MOREAU);
+        command.args(arguments).current_dir(&self.0);
+        command.output().expect("the command")
+    }
+
+    fn on(&self, processes: usize, arguments: &[&str]) -> Command {
+        let mut command = Command::new("mpirun");
+        command
+            .args(["--oversubscribe", "-n", &processes.to_string(), MOREAU])
+            .args(arguments)
+            .current_dir(&self.0)
+            .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+            .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+        command
+    }
+
+    fn history(&self, out: &str) -> Vec<Vec<f64>> {
+        let text = fs::read_to_string(self.0.join(out).join("history.csv")).expect("a history");
+        let mut lines = text.lines();
+        let names: Vec<&str> = lines.next().expect("a head").split(',').collect();
+        let told = |name: &&str| name.trim_matches('"').starts_with("force.");
+        let columns: Vec<usize> = (0..names.len()).filter(|&c| told(&names[c])).collect();
+        let row = |line: &str| {
+            let all: Vec<&str> = line.split(',').collect();
+            let own = columns.iter().map(|&c| all[c].parse().expect("a number"));
+            own.collect()
+        };
+        lines.map(row).collect()
+    }
+
+    fn statuses(&self, out: &str) -> Vec<String> {
+        let text = fs::read_to_string(self.0.join(out).join("contact.csv")).expect("contacts");
+        let head = text.lines().next().unwrap_or_default().split(',');
+        let at = head
+            .clone()
+            .position(|name| name == "status")
+            .expect("a column");
+        let status = |line: &str| line.split(',').nth(at).unwrap_or_default().to_owned();
+        text.lines().skip(1).map(status).collect()
+    }
+
+    /// Forces to 1e-9 of the largest, and all statuses.
+    fn assert_alike(&self, one: &str, two: &str) {
+        let (a, b) = (self.history(one), self.history(two));
+        assert_eq!(a.len(), b.len(), "{two}");
+        let largest = a.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+        for (x, y) in a.iter().flatten().zip(b.iter().flatten()) {
+            assert!((x - y).abs() < 1e-9 * largest, "{two}: {x} and {y}");
+        }
+        assert_eq!(self.statuses(one), self.statuses(two), "{two}");
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Whether there is MPI; if not, that is said.
+fn has_mpi(test: &str) -> bool {
+    let there = Command::new("mpirun").arg("--version").output().is_ok();
+    if !there {
+        let _ = writeln!(std::io::stderr(), "skipped, as there is no mpirun: {test}");
+    }
+    there
+}
+
+fn same_on_all(name: &str, deck: &str) {
+    if !has_mpi(name) {
+        return;
+    }
+    let place = Place::new(name, deck);
+    let run = ["run", "deck.toml", "--quiet", "--out"];
+    let told = place.alone(&[&run[..], &["one"]].concat());
+    assert!(told.status.success(), "{told:?}");
+    let out = |n: usize| format!("on-{n}");
+    for n in [1, 2, 3] {
+        let own = out(n);
+        let told = place.on(n, &[&run[..], &[&own]].concat()).output();
+        let told = told.expect("mpirun");
+        assert!(told.status.success(), "{n}: {told:?}");
+        place.assert_alike("one", &own);
+    }
+    // The body of all processes in one file, and one list.
+    let list =
+        |n: usize| fs::read_to_string(place.0.join(out(n)).join("result.pvd")).expect("a list");
+    assert_eq!(list(1), list(3));
+}
+
+#[test]
+fn results_do_not_depend_on_the_number_of_processes() {
+    same_on_all("condensed", &deck([4, 4, 2], 3, "", "block.front"));
+}
+
+#[test]
+fn large_strains_do_not_either() {
+    let head = "strain = \"finite\"";
+    same_on_all("large", &deck([3, 3, 2], 3, head, "block.front"));
+}
+
+#[test]
+fn nor_do_contacts_that_are_tied() {
+    same_on_all("tied", &deck([8, 8, 1], 2, "", "block.front"));
+}
+
+#[test]
+fn a_checkpoint_is_one_of_any_number_of_processes() {
+    if !has_mpi("a checkpoint is one of any number of processes") {
+        return;
+    }
+    let place = Place::new("resumed", &deck([4, 4, 2], 4, "", "block.front"));
+    let run = ["run", "deck.toml", "--quiet", "--out"];
+    assert!(place.alone(&[&run[..], &["one"]].concat()).status.success());
+    let ended = place.on(3, &[&run[..], &["other"]].concat()).output();
+    assert!(ended.expect("mpirun").status.success());
+    // As if it had ended after its third increment.
+    fs::remove_file(place.0.join("other/checkpoint/increment-000004.ckpt")).expect("the last");
+    let told = place.on(2, &["resume", "other", "--quiet"]).output();
+    let told = told.expect("mpirun");
+    assert!(told.status.success(), "{told:?}");
+    place.assert_alike("one", "other");
+}
+
+/// The processes of a run by their rank.
+fn process(deck: &Path, rank: &str) -> Option<u32> {
+    let entries = fs::read_dir("/proc").ok()?.flatten();
+    let mut numbers = entries.filter_map(|e| e.file_name().to_str()?.parse::<u32>().ok());
+    numbers.find(|n| {
+        let of = |file: &str| fs::read(format!("/proc/{n}/{file}")).unwrap_or_default();
+        let place = fs::read_link(format!("/proc/{n}/cwd"));
+        let rank = format!("OMPI_COMM_WORLD_RANK={rank}");
+        place.is_ok_and(|at| at == deck)
+            && of("environ")
+                .split(|b| *b == 0)
+                .any(|v| v == rank.as_bytes())
+    })
+}
+
+#[test]
+fn a_process_that_dies_ends_all_and_leaves_the_last_checkpoint() {
+    if !has_mpi("a process that dies ends all") {
+        return;
+    }
+    let place = Place::new("killed", &deck([7, 7, 4], 40, "", "block.front"));
+    let mut command = place.on(3, &["run", "deck.toml", "--out", "out"]);
+    let child = command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn();
+    let child = child.expect("mpirun");
+    let first = place.0.join("out/checkpoint/increment-000001.ckpt");
+    let started = Instant::now();
+    while !first.exists() && started.elapsed() < Duration::from_secs(120) {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let at = fs::canonicalize(&place.0).expect("a folder");
+    let victim = process(&at, "2").expect("a process of rank 2");
+    let killed = Command::new("kill")
+        .args(["-9", &victim.to_string()])
+        .status();
+    assert!(killed.expect("kill").success());
+    let told = child.wait_with_output().expect("mpirun");
+    assert!(!told.status.success());
+    let text = String::from_utf8_lossy(&told.stderr).into_owned();
+    assert!(
+        text.contains("signal 9") || text.contains("Killed"),
+        "{text}"
+    );
+    assert_eq!(process(&at, "0"), None);
+    // What is there goes on: here on one process, for the next increments.
+    let deck = fs::read_to_string(place.0.join("out/deck.resolved.toml"));
+    assert!(deck.is_ok_and(|deck| deck.contains("indent")));
+    let before = place.history("out").len();
+    assert!(before >= 1);
+    let mut child = Command::new(MOREAU)
+        .args(["resume", "out", "--quiet"])
+        .current_dir(&place.0)
+        .spawn()
+        .expect("the command");
+    let started = Instant::now();
+    while place.history("out").len() < before + 1 && started.elapsed() < Duration::from_secs(120) {
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    child.kill().expect("running");
+    let _ = child.wait();
+    assert!(place.history("out").len() > before);
+}
+
+#[test]
+fn too_little_space_of_mumps_is_made_larger() {
+    if !has_mpi("too little space of MUMPS") {
+        return;
+    }
+    let place = Place::new(
+        "space",
+        &deck([4, 4, 2], 2, "strain = \"finite\"", "block.front"),
+    );
+    let run = ["run", "deck.toml", "--quiet", "--out"];
+    assert!(place.alone(&[&run[..], &["one"]].concat()).status.success());
+    let mut command = place.on(2, &[&run[..], &["two"]].concat());
+    let told = command.env("MOREAU_SPARE", "-60").output().expect("mpirun");
+    assert!(told.status.success(), "{told:?}");
+    place.assert_alike("one", "two");
+}
+
+#[test]
+fn a_deck_with_errors_is_told_once_and_ends_all() {
+    if !has_mpi("a deck with errors") {
+        return;
+    }
+    let place = Place::new("wrong", "units = \"mm-N-MPa\"\nanalysis = \"sold\"\n");
+    let told = place.on(3, &["run", "deck.toml"]).output().expect("mpirun");
+    assert_eq!(told.status.code(), Some(1), "{told:?}");
+    let text = String::from_utf8_lossy(&told.stderr).into_owned();
+    assert_eq!(text.matches("deck.toml:2").count(), 1, "{text}");
+}
