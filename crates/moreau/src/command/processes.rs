@@ -94,9 +94,9 @@ mod several {
     fn options() -> Options {
         let real = |name: &str| std::env::var(name).ok()?.parse::<f64>().ok();
         Options {
-            low_rank: real("MOREAU_LOW_RANK"),
             metis: std::env::var_os("MOREAU_METIS").is_some(),
             spare: real("MOREAU_SPARE").map(|x| x as i32),
+            ..Options::default()
         }
     }
 
