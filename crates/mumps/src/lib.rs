@@ -1,5 +1,5 @@
-//! MUMPS and MPI behind the seam of the sparse symmetric systems, [`Engine`](moreau_algebra::Engine) and
-//! [`Team`](moreau_algebra::Team): no algorithm of its own, and nothing at all without the feature `native`, which
+//! MUMPS and MPI behind the seam of the sparse symmetric systems, `moreau_algebra::Engine` and
+//! `moreau_algebra::Team`: no algorithm of its own, and nothing at all without the feature `native`, which
 //! needs both on the system.
 //!
 //! `docs/cluster.md` tells what to install. The calls of C are in `calls.c`, their `unsafe` in one file.

@@ -7,6 +7,7 @@ mod metamorphic;
 mod mutants;
 mod parameters;
 mod refused;
+mod rules;
 mod schema;
 mod supports;
 mod surfaces;
