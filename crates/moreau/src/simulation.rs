@@ -2,7 +2,7 @@
 //! tables and grids. No file is written, and nothing is printed.
 //!
 //! ```
-//! use moreau::deck::Meshes;
+//! use moreau::deck::Given;
 //! use moreau::simulation::Simulation;
 //! use std::{ops::ControlFlow, path::Path};
 //!
@@ -17,7 +17,7 @@
 //! fix = [{ on = "bar.left", u = ["x", "y"] }]
 //! move = [{ on = "bar.right", u = { x = 0.1 } }]
 //! "#;
-//! let (simulation, findings) = Simulation::open(text, Path::new(""), &Meshes::default());
+//! let (simulation, findings) = Simulation::open(text, Path::new(""), &Given::default());
 //! let mut simulation = simulation.unwrap_or_else(|| panic!("{}", findings.render("bar", text, false)));
 //! while let Some(increment) = simulation.advance(&mut |_, _| ControlFlow::Continue(()))? {
 //!     assert_eq!(increment.step, "pull");

@@ -383,8 +383,8 @@ pub(super) fn vector(
     }
 }
 
-/// Symbols of formulas, and the keys that stand for them.
-const SYMBOLS: [(&str, &str); 9] = [
+/// Symbols of formulas, and words that belong one table further in, with the keys that stand for them.
+const SYMBOLS: [(&str, &str); 16] = [
     ("E", "young"),
     ("nu", "poisson"),
     ("sigma_y", "yield-stress"),
@@ -394,6 +394,13 @@ const SYMBOLS: [(&str, &str); 9] = [
     ("phi", "friction-angle"),
     ("psi", "dilatancy-angle"),
     ("mu", "coulomb"),
+    ("mu", "friction"),
+    ("pressure", "load"),
+    ("traction", "load"),
+    ("force", "load"),
+    ("body-force", "load"),
+    ("displacement", "move"),
+    ("turn", "tools"),
 ];
 
 /// A table, as an inline one or under a header.

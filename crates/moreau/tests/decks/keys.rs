@@ -28,6 +28,19 @@ fn unknown_keys_and_values_name_the_nearest() {
     );
     says("quad8", "quad88", "quad88", &["did you mean \"quad8\"?"]);
     says("title =", "titel =", "titel", &["did you mean \"title\"?"]);
+    // A word that belongs one table further in.
+    says(
+        "increments = 20",
+        "increments = 20\npressure = 3",
+        "pressure = 3",
+        &["unknown key \"pressure\" in [[step]]; did you mean \"load\"?"],
+    );
+    says(
+        "friction = 0.1",
+        "friction = 0.1\nmu = 0.1",
+        "mu = 0.1",
+        &["did you mean \"friction\"?"],
+    );
     says(
         "increments = 20",
         "increments = 20\nincrement = 3",
