@@ -196,6 +196,8 @@ impl Chapter {
 pub struct Case {
     /// Name on the command line.
     pub name: &'static str,
+    /// Whether it takes too long for a quick run, unless it is asked for by name.
+    pub long: bool,
     /// Where it stands in the report; the cases of a chapter follow one another.
     pub chapter: Chapter,
     /// Title in the report.

@@ -37,7 +37,7 @@ pub struct Args {
     /// Cases to run, by name [default: all]
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
-    /// Coarse meshes and few variants only
+    /// Coarse meshes and few variants only, and no long cases unless named
     #[arg(long)]
     quick: bool,
     /// Folder of the report [default: target/verify of the workspace]
@@ -58,7 +58,10 @@ struct Setting {
 /// not known, as for any other bad argument.
 pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     let known = verification::cases::all();
-    let cases = select::select(&known, &args.cases).unwrap_or_else(|unknown| refuse(&unknown));
+    let mut cases = select::select(&known, &args.cases).unwrap_or_else(|unknown| refuse(&unknown));
+    if args.quick && args.cases.is_empty() {
+        cases.retain(|case| !case.long);
+    }
     let out = args
         .out
         .clone()

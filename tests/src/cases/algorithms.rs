@@ -17,6 +17,7 @@ use std::time::Instant;
 /// The case.
 pub(super) const CASE: Case = Case {
     name: "algorithms",
+    long: false,
     chapter: Chapter::Paper,
     title: "Comparison of the algorithms (paper 8.2.2, figures 15–17)",
     description: "The punched block with a friction of 0.1, 20 cells, 2×2 quadrature, under the \

@@ -14,6 +14,7 @@ use std::error::Error;
 /// The case.
 pub(super) const CASE: Case = Case {
     name: "collapse",
+    long: false,
     chapter: Chapter::Beyond,
     title: "Loads beyond collapse, and the elements that lock",
     description: "Five bodies of an elastic perfectly plastic material are given loads that they \

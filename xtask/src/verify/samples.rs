@@ -8,6 +8,7 @@ use verification::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
 /// A case that passes, one whose checks fail, one that errs and one that panics.
 pub fn cases() -> Vec<Case> {
     let case = |name, run| Case {
+        long: false,
         name,
         chapter: Chapter::Paper,
         title: "A made-up <case>",
