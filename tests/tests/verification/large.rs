@@ -61,10 +61,7 @@ fn a_block_is_upset_between_platens_that_hold_it() -> Fallible {
 
 #[test]
 fn a_block_is_upset_with_friction() -> Fallible {
-    for (kind, mus) in [
-        (QUAD8, [0.0, 0.1, 0.3, 1.0].as_slice()),
-        (QUAD4, &[0.1, 0.3]),
-    ] {
+    for (kind, mus) in [(QUAD8, [0.0, 0.3, 1.0].as_slice()), (QUAD4, &[0.1])] {
         for &mu in mus {
             let name = format!("F2_{}_8x8_mu{mu}_H500", kind.2);
             let billet = Billet { kind, ..SQUARE };
@@ -82,7 +79,7 @@ fn a_block_is_upset_with_friction() -> Fallible {
 #[test]
 fn a_block_without_hardening_is_upset_with_friction() -> Fallible {
     let plane = PlaneStrain::default();
-    for mu in [0.0, 0.1, 0.3] {
+    for mu in [0.0, 0.3] {
         let name = format!("F2_Q8_8x8_mu{mu}_H0");
         squeezed(SQUARE, plane, (0.0, mu), (4.0, 40), &name)?;
     }
@@ -101,7 +98,7 @@ fn a_cylinder_is_upset_with_friction() -> Fallible {
 
 #[test]
 fn a_ring_is_squeezed_with_friction() -> Fallible {
-    let rings = [0.0, 0.05, 0.1, 0.2, 0.4].map(|mu| (QUAD8, mu));
+    let rings = [0.0, 0.1, 0.4].map(|mu| (QUAD8, mu));
     for (kind, mu) in rings.into_iter().chain([(QUAD4, 0.2)]) {
         let name = format!("F3ring_{}_12x8_mu{mu}_H500", kind.2);
         let billet = Billet { kind, ..RING };
@@ -134,24 +131,20 @@ fn a_bar_is_drawn_until_it_necks() -> Fallible {
 
 #[test]
 fn a_block_is_indented_by_a_disc() -> Fallible {
-    for mu in [0.0, 0.2] {
-        let mut driver = indented(mu)?;
-        let name = format!("F5_Q8_lev1_mu{mu}");
-        let (tables, mut off) = (Tables::read(&name)?, Difference::default());
-        let step = Step::new("indent")
-            .fix("block.bottom", &[Axis::X, Axis::Y])
-            .fix("block.left", &[Axis::X])
-            .tool("disc", [0.0, -3.0]);
-        driver.run(&step, 60, |driver, report| {
-            let force = driver.tool_force("disc").expect("a tool");
-            off.compare((driver, report), (force[1], "tool0_Fy"), &tables);
-            if mu > 0.0 {
-                let moment = driver.tool_moment("disc").expect("a tool");
-                off.compare((driver, report), (moment.z, "tool0_M"), &tables);
-            }
-        })?;
-        check(&off, &name);
-    }
+    let mut driver = indented(0.2)?;
+    let name = "F5_Q8_lev1_mu0.2";
+    let (tables, mut off) = (Tables::read(name)?, Difference::default());
+    let step = Step::new("indent")
+        .fix("block.bottom", &[Axis::X, Axis::Y])
+        .fix("block.left", &[Axis::X])
+        .tool("disc", [0.0, -3.0]);
+    driver.run(&step, 60, |driver, report| {
+        let force = driver.tool_force("disc").expect("a tool");
+        off.compare((driver, report), (force[1], "tool0_Fy"), &tables);
+        let moment = driver.tool_moment("disc").expect("a tool");
+        off.compare((driver, report), (moment.z, "tool0_M"), &tables);
+    })?;
+    check(&off, name);
     Ok(())
 }
 

@@ -174,12 +174,11 @@ fn a_pad_slides_when_its_shear_is_the_friction_of_its_pressure() -> Fallible {
             young,
             ..plane(1.0, 0.3)
         })?;
-        check(&Pad {
-            young,
-            ..space(1.0, 0.3)
-        })?;
     }
-    Ok(())
+    check(&Pad {
+        young: 1e3,
+        ..space(1.0, 0.3)
+    })
 }
 
 #[test]

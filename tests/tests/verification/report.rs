@@ -1,4 +1,4 @@
-//! The cases of `cargo xtask verify`, in their quick form; not what they compute, which is in the
+//! Cases of `cargo xtask verify` in their quick form, but for the slowest; not what they compute, which is in the
 //! library of this package.
 
 use verification::{Options, cases};
@@ -57,11 +57,6 @@ fn punch_in_space() {
 #[test]
 fn penalty_study() {
     assert_passes("penalty");
-}
-
-#[test]
-fn comparison_of_algorithms() {
-    assert_passes("algorithms");
 }
 
 #[test]

@@ -13,7 +13,7 @@ use std::fs;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// The examples, with two increments a step and loads in proportion; solids on a third of the lines.
+/// The examples, with two increments a step and loads in proportion, on half of the lines, solids on a third.
 fn examples() -> Vec<(String, Table)> {
     let mut all = Vec::new();
     for entry in fs::read_dir(folder("docs/examples")).expect("examples") {
@@ -24,12 +24,13 @@ fn examples() -> Vec<(String, Table)> {
         let name = path.file_stem().expect("a name").to_string_lossy();
         let text = fs::read_to_string(&path).expect("a deck");
         let mut deck: Table = text.parse().expect("toml");
-        if is_solid(&deck) {
-            for block in deck["mesh"]["block"].as_array_mut().expect("blocks") {
-                for cells in block["cells"].as_array_mut().expect("cells") {
-                    let count = cells.as_integer().expect("a count");
-                    *cells = ((count + 2) / 3).into();
-                }
+        let coarser = if is_solid(&deck) { 3 } else { 2 };
+        let blocks = deck["mesh"].as_table_mut().expect("a mesh");
+        let blocks = blocks.get_mut("block").and_then(Value::as_array_mut);
+        for block in blocks.into_iter().flatten() {
+            for cells in block["cells"].as_array_mut().expect("cells") {
+                let count = cells.as_integer().expect("a count");
+                *cells = ((count + coarser - 1) / coarser).into();
             }
         }
         deck.remove("expect");

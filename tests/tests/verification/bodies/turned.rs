@@ -7,7 +7,7 @@ use moreau::mesh::Solid;
 use CellKind::{Hex8, Hex20, Quad4, Quad8, Tri6};
 
 const CLOSED: f64 = 0.6;
-const TURNS: usize = 9;
+const TURNS: usize = 6;
 
 /// Steel with hardening.
 fn pressed<H: Blocks<D>, const D: usize>(stack: Stack<H, D>) -> Stack<H, D> {
@@ -89,26 +89,25 @@ fn turned<H: Blocks<D>, const D: usize>(stack: &Stack<H, D>) -> Fallible {
 
 #[test]
 fn what_is_pressed_and_turned_in_the_plane_is_as_if_it_were_not_turned() -> Fallible {
-    for kinds in [[Quad8, Quad8], [Quad4, Quad8], [Tri6, Quad4]] {
-        for (swapped, friction) in [(false, 0.0), (true, 0.0), (false, 0.3), (true, 0.3)] {
-            let stack = Stack::<PlaneStrain, 2>::new(kinds, [[5, 2], [4, 2]]);
-            turned(&pressed(Stack {
-                swapped,
-                friction,
-                ..stack
-            }))?;
-        }
+    for (kinds, swapped, friction) in [
+        ([Quad8, Quad8], false, 0.0),
+        ([Quad8, Quad8], true, 0.3),
+        ([Quad4, Quad8], false, 0.3),
+        ([Tri6, Quad4], true, 0.3),
+    ] {
+        let stack = Stack::<PlaneStrain, 2>::new(kinds, [[5, 2], [4, 2]]);
+        turned(&pressed(Stack {
+            swapped,
+            friction,
+            ..stack
+        }))?;
     }
     Ok(())
 }
 
 #[test]
 fn what_is_pressed_and_turned_in_space_is_as_if_it_were_not_turned() -> Fallible {
-    for (kinds, swapped) in [
-        ([Hex8, Hex8], false),
-        ([Hex8, Hex8], true),
-        ([Hex20, Hex8], false),
-    ] {
+    for (kinds, swapped) in [([Hex8, Hex8], true), ([Hex20, Hex8], false)] {
         let stack = Stack::<Solid, 3>::new(kinds, [[3, 1, 2], [2, 1, 3]]);
         let friction = 0.3;
         turned(&pressed(Stack {
