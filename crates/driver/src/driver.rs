@@ -61,8 +61,8 @@ pub struct Driver<const D: usize> {
     pub(crate) measure: Box<dyn Measure<D>>,
     pub(crate) contacts: Vec<Contact>,
     materials: Vec<usize>,
-    /// Processes that hold the cells together.
-    team: Option<SharedTeam>,
+    /// Processes that hold the cells together, and which of them has which cell.
+    team: Option<(SharedTeam, Vec<u32>)>,
 }
 
 impl<const D: usize> Driver<D> {
@@ -103,7 +103,7 @@ impl<const D: usize> Driver<D> {
         };
         let blocks = model.take_blocks();
         let mut driver = Self {
-            team: model.team.map(|(team, _)| team),
+            team: model.team,
             measure: Box::new(model.hypothesis),
             // All cells have one: it was checked.
             materials: model.material.into_iter().flatten().collect(),
@@ -123,12 +123,17 @@ impl<const D: usize> Driver<D> {
         Ok(driver)
     }
 
+    /// The process that holds each cell; `None` without a team.
+    pub fn processes(&self) -> Option<&[u32]> {
+        self.team.as_ref().map(|(_, process)| &**process)
+    }
+
     /// Does what the first process of the team asks of this other one, with its cells, until that has ended; at once
     /// without a team.
     pub fn serve(self) {
         let sizes = (self.mesh.nodes().len(), self.state.displacement.len());
         let Self { blocks, team, .. } = self;
-        if let Some(team) = team.filter(|team| team.rank() > 0) {
+        if let Some((team, _)) = team.filter(|(team, _)| team.rank() > 0) {
             serve::serve(team.as_ref(), blocks, sizes);
         }
     }
@@ -485,7 +490,10 @@ impl<const D: usize> Driver<D> {
                 seam,
                 coupled: coupled.as_deref(),
             },
-            (self.settings.memory, self.team.as_ref()),
+            (
+                self.settings.memory,
+                self.team.as_ref().map(|(team, _)| team),
+            ),
         )?;
         system.timings += before;
         system.floats = self.floats(loading);

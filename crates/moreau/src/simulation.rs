@@ -267,6 +267,11 @@ impl Simulation {
         either!(&self.course, course => grids::body(course.driver()).0)
     }
 
+    /// The process that holds each cell, where several do.
+    pub(crate) fn processes(&self) -> Option<&[u32]> {
+        either!(&self.course, course => course.driver().processes())
+    }
+
     /// The contact surfaces with gaps, slips, tractions and statuses; `None` without contacts.
     pub fn surface(&self) -> Option<Grid> {
         either!(&self.course, course => grids::surface(course.driver()))

@@ -1,6 +1,10 @@
 //! An unstructured grid as a VTK file and back: appended binary data, compressed; not what the grid is
 //! of.
 
+mod pieces;
+
+pub(crate) use pieces::{joined, pieces, whole};
+
 use crate::mesh::{CellKind, FacetKind, Mesh};
 use flate2::{Compression, read::ZlibDecoder, write::ZlibEncoder};
 use std::fmt::Write as _;
@@ -228,13 +232,18 @@ impl Stored {
         values: impl IntoIterator<Item = &'a T>,
     ) -> Self {
         let bytes: Vec<u8> = values.into_iter().flat_map(T::bytes).collect();
-        let name = name.replace('&', "&amp;").replace('<', "&lt;");
         Self {
-            name: name.replace('"', "&quot;"),
+            name: Self::named(name),
             kind: T::KIND,
             components,
             data: compressed(&bytes),
         }
+    }
+
+    /// A name with what has a meaning in XML replaced.
+    fn named(name: &str) -> String {
+        let name = name.replace('&', "&amp;").replace('<', "&lt;");
+        name.replace('"', "&quot;")
     }
 
     fn of(array: &Array) -> Self {

@@ -133,10 +133,32 @@ fn same_on_all(name: &str, deck: &str) {
         assert!(told.status.success(), "{n}: {told:?}");
         place.assert_alike("one", &own);
     }
-    // The body of all processes in one file, and one list.
-    let list =
-        |n: usize| fs::read_to_string(place.0.join(out(n)).join("result.pvd")).expect("a list");
-    assert_eq!(list(1), list(3));
+    // The same files, those of several processes in pieces that have all cells between them.
+    let read = |n: usize, file: &str| {
+        let bytes = fs::read(place.0.join(out(n)).join(file)).expect("a file");
+        String::from_utf8_lossy(&bytes).into_owned()
+    };
+    let cells = |text: &str| {
+        let (_, after) = text.split_once("NumberOfCells=\"").expect("a piece");
+        let number = after.split('"').next().expect("a number");
+        number.parse::<usize>().expect("a number")
+    };
+    assert!(!read(1, "result.pvd").contains(".pvtu"));
+    let list = read(3, "result.pvd");
+    assert_eq!(read(1, "result.pvd"), list.replace(".pvtu", ".vtu"));
+    let name = list.split('"').find(|file| file.starts_with("body_"));
+    let name = name.expect("a body").trim_end_matches(".pvtu");
+    let whole = read(3, &format!("{name}.pvtu"));
+    let pieces: Vec<usize> = (0..3)
+        .map(|p| format!("{name}_{p}.vtu"))
+        .inspect(|piece| assert!(whole.contains(&format!("<Piece Source=\"{piece}\"/>"))))
+        .map(|piece| cells(&read(3, &piece)))
+        .collect();
+    assert!(pieces.iter().all(|&count| count > 0), "{pieces:?}");
+    assert_eq!(
+        pieces.iter().sum::<usize>(),
+        cells(&read(1, &format!("{name}.vtu")))
+    );
 }
 
 #[test]

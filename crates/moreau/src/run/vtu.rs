@@ -4,7 +4,7 @@
 use super::RunError;
 use super::files::{Mark, Stream, read_text, write_file};
 use crate::simulation::{Array, Grid, Simulation};
-use crate::vtu::{attribute, point_data};
+use crate::vtu::{attribute, joined, pieces, point_data, whole};
 use std::path::{Path, PathBuf};
 
 /// Name of the list.
@@ -41,7 +41,8 @@ impl Collection {
             .flatten()
         {
             let name = entry.file_name().to_string_lossy().into_owned();
-            if is_ours(&name) && !kept.contains(&format!("\"{name}\"")) {
+            let whole = whole_of(&name);
+            if is_ours(&name) && !kept.contains(&format!("\"{whole}\"")) {
                 // One that stays does no harm.
                 let _ = std::fs::remove_file(entry.path());
             }
@@ -103,8 +104,7 @@ impl Collection {
             }
         };
         for (part, name, grid) in files {
-            let file = format!("{name}_{number:05}.vtu");
-            write_file(&self.directory.join(&file), &grid.bytes())?;
+            let file = self.write(simulation, &format!("{name}_{number:05}"), &grid)?;
             list.line(&format!(
                 "<DataSet timestep=\"{time}\" part=\"{part}\" name=\"{name}\" file=\"{file}\"/>"
             ))?;
@@ -113,15 +113,50 @@ impl Collection {
         self.list = Some(list);
         Ok(())
     }
+
+    /// Writes a grid, in pieces where several processes hold its cells; the file to be listed.
+    fn write(&self, simulation: &Simulation, name: &str, grid: &Grid) -> Result<String, RunError> {
+        let parts = simulation.processes().and_then(|of| pieces(grid, of));
+        let Some(parts) = parts.filter(|parts| parts.len() > 1) else {
+            let file = format!("{name}.vtu");
+            write_file(&self.directory.join(&file), &grid.bytes())?;
+            return Ok(file);
+        };
+        let files: Vec<String> = (0..parts.len())
+            .map(|p| format!("{name}_{p}.vtu"))
+            .collect();
+        for (piece, file) in parts.iter().zip(&files) {
+            write_file(&self.directory.join(file), &piece.bytes())?;
+        }
+        let file = format!("{name}.pvtu");
+        write_file(&self.directory.join(&file), &whole(&parts, &files))?;
+        Ok(file)
+    }
+}
+
+/// The file in the list that a file belongs to: itself, unless it is a piece.
+fn whole_of(name: &str) -> String {
+    let piece = name.strip_suffix(".vtu").and_then(|n| n.rsplit_once('_'));
+    match piece {
+        Some((whole, _)) if whole.contains('_') => format!("{whole}.pvtu"),
+        _ => name.to_owned(),
+    }
 }
 
 /// Whether a name is that of a file that a collection may write.
 pub(super) fn is_ours(name: &str) -> bool {
-    let number = |kind: &str| name.strip_prefix(kind)?.strip_suffix(".vtu");
+    let number = |kind: &str| {
+        let rest = name.strip_prefix(kind)?;
+        rest.strip_suffix(".vtu").or(rest.strip_suffix(".pvtu"))
+    };
     let numbered = ["body_", "contact_", "points_", "tools_", "mode_"]
         .into_iter()
         .find_map(number);
-    let digits = |n: &str| n.len() >= 5 && n.bytes().all(|b| b.is_ascii_digit());
+    let all_digits = |n: &str| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit());
+    let digits = |n: &str| {
+        let (increment, piece) = n.split_once('_').unwrap_or((n, "0"));
+        increment.len() >= 5 && all_digits(increment) && all_digits(piece)
+    };
     name == "failed.vtu" || numbered.is_some_and(digits)
 }
 
@@ -130,7 +165,8 @@ pub(super) fn bodies(directory: &Path) -> Vec<(usize, f64, PathBuf)> {
     let text = std::fs::read_to_string(directory.join(LIST)).unwrap_or_default();
     let body = |line: &str| {
         let file = attribute(line, "file")?;
-        let number = file.strip_prefix("body_")?.strip_suffix(".vtu")?.parse();
+        let (number, _) = file.strip_prefix("body_")?.split_once('.')?;
+        let number = number.parse();
         let time = attribute(line, "timestep")?.parse().ok()?;
         Some((number.ok()?, time, directory.join(file)))
     };
@@ -144,6 +180,15 @@ pub(super) fn read_point_data(path: &Path) -> Result<Vec<Array>, RunError> {
         source,
     };
     let bytes = std::fs::read(path).map_err(error)?;
-    point_data(&bytes)
-        .ok_or_else(|| error(std::io::Error::other("it is not a file of a run, or torn")))
+    let arrays = match path.extension().is_some_and(|e| e == "pvtu") {
+        false => point_data(&bytes),
+        true => {
+            let text = String::from_utf8_lossy(&bytes);
+            let sources = text.lines().filter(|l| l.starts_with("<Piece"));
+            let sources = sources.filter_map(|piece| attribute(piece, "Source"));
+            let read = sources.map(|file| std::fs::read(path.with_file_name(file)));
+            joined(&read.collect::<Result<Vec<_>, _>>().map_err(error)?)
+        }
+    };
+    arrays.ok_or_else(|| error(std::io::Error::other("it is not a file of a run, or torn")))
 }
