@@ -72,7 +72,7 @@ pub struct Given {
 }
 
 /// JSON schema of decks, for editors: `docs/deck.schema.json`.
-pub const SCHEMA: &str = include_str!("../../../docs/deck.schema.json");
+pub const SCHEMA: &str = include_str!("../deck.schema.json");
 
 /// Reads a deck and builds its problem, if it has no error. The findings are errors and warnings.
 /// Paths in it are relative to the current folder: see [`open_in`].
