@@ -9,6 +9,7 @@ mod forbidden;
 mod headers;
 mod items;
 mod lexer;
+mod licences;
 mod links;
 mod locked;
 mod quiet;
@@ -66,7 +67,9 @@ impl fmt::Display for Violation {
 
 /// Runs the task; `Ok(true)` when the workspace is tidy.
 pub fn run() -> Result<bool, Box<dyn Error>> {
-    let (tree, violations) = violations(&workspace::root())?;
+    let root = workspace::root();
+    let (tree, mut violations) = violations(&root)?;
+    violations.extend(licences::violations(&root)?);
     for violation in &violations {
         println!("{violation}");
     }
