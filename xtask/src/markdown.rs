@@ -18,7 +18,8 @@ pub fn cell(text: &str) -> String {
             _ => shown += part,
         }
     }
-    shown.replace('|', "\\|").replace('\n', " ")
+    let lines: Vec<&str> = shown.lines().filter(|line| !line.is_empty()).collect();
+    lines.join(" ").replace('|', "\\|")
 }
 
 /// A text as code; nothing where there is none.
@@ -36,7 +37,7 @@ mod tests {
     #[test]
     fn no_sign_ends_a_cell() {
         assert_eq!(
-            cell("a < |b| of `x <y>`\n*"),
+            cell("a < |b| of `x <y>`\n\n*"),
             "a &lt; \\|b\\| of `x <y>` \\*"
         );
         assert_eq!(code("a|b"), "`a\\|b`");
