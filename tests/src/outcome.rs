@@ -36,6 +36,9 @@ pub struct Check {
     pub source: String,
     /// Whether the comparison holds; false for NaN.
     pub pass: bool,
+    /// Whether the number is a time or made of times, and another in the next run.
+    #[serde(skip)]
+    pub timed: bool,
 }
 
 impl Check {
@@ -63,6 +66,16 @@ impl Check {
             kind,
             source,
             pass,
+            timed: false,
+        }
+    }
+
+    /// The same of a number that is made of times.
+    #[must_use]
+    pub fn timed(self) -> Self {
+        Self {
+            timed: true,
+            ..self
         }
     }
 

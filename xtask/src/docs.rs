@@ -1,10 +1,14 @@
 //! `cargo xtask docs`: the pages that are written from what they describe, and the check that they are as that is now; not
 //! the pages that people write.
 
+mod command;
 mod deck;
+mod described;
+mod results;
 
 use std::error::Error;
 use std::fs;
+use std::path::Path;
 
 use verification::workspace;
 
@@ -16,10 +20,86 @@ pub struct Args {
     check: bool,
 }
 
+/// A page, and what keeps it from being complete.
+struct Page {
+    /// Name of the file.
+    name: &'static str,
+    text: String,
+    /// What the page is written from, for whoever has to mend it.
+    of: &'static str,
+    lacks: Vec<String>,
+}
+
 /// Writes the pages, or checks them; `Ok(false)` where one is not as it should be.
 pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     let root = workspace::root();
-    let schema = serde_json::from_str(&fs::read_to_string(root.join("docs/deck.schema.json"))?)?;
+    let folder = root.join("docs/reference");
+    let pages = pages(&root)?;
+    let mut good = true;
+    for page in &pages {
+        for lack in &page.lacks {
+            println!("{}: {lack}", page.of);
+            good = false;
+        }
+        let path = folder.join(page.name);
+        if !args.check {
+            fs::create_dir_all(&folder)?;
+            fs::write(&path, &page.text)?;
+        } else if fs::read_to_string(&path).unwrap_or_default() != page.text {
+            let (name, of) = (page.name, page.of);
+            println!("docs/reference/{name} is not that of {of}: run `cargo xtask docs`");
+            good = false;
+        }
+    }
+    if good {
+        println!("✓ docs: {} pages", pages.len());
+    }
+    Ok(good)
+}
+
+/// All pages.
+fn pages(root: &Path) -> Result<Vec<Page>, Box<dyn Error>> {
+    let told = described::described()?;
+    let of_results =
+        |name, of, entries: &[described::Entry], text: fn(&[described::Entry]) -> String| Page {
+            name,
+            text: text(entries),
+            of,
+            lacks: results::lacks(entries),
+        };
+    Ok(vec![
+        of_deck(root)?,
+        of_results(
+            "history.md",
+            "the table of history.csv",
+            &told.history,
+            results::history,
+        ),
+        of_results(
+            "contact.md",
+            "the table of contact.csv",
+            &told.contact,
+            results::contact,
+        ),
+        of_results(
+            "run-json.md",
+            "the table of run.json",
+            &told.run,
+            results::run,
+        ),
+        Page {
+            name: "command.md",
+            text: command::page(&told.command),
+            of: "the command line",
+            lacks: command::lacks(&told.command),
+        },
+    ])
+}
+
+/// The page of the keys of decks.
+fn of_deck(root: &Path) -> Result<Page, Box<dyn Error>> {
+    let of = "docs/deck.schema.json";
+    let schema = serde_json::from_str(&fs::read_to_string(root.join(of))?)?;
     let mut decks = Vec::new();
     for folder in ["docs/examples", "docs/large"] {
         for entry in fs::read_dir(root.join(folder))? {
@@ -33,24 +113,10 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     }
     decks.sort_by(|a: &(String, toml::Table), b| a.0.cmp(&b.0));
     let keys = deck::keys(&schema, &decks);
-    let mut good = true;
-    for lack in deck::lacks(&keys) {
-        println!("docs/deck.schema.json: {lack}");
-        good = false;
-    }
-    let path = root.join("docs/reference/deck.md");
-    let page = deck::page(&schema, &keys);
-    if args.check {
-        if fs::read_to_string(&path).unwrap_or_default() != page {
-            println!("docs/reference/deck.md is not that of the schema: run `cargo xtask docs`");
-            good = false;
-        }
-    } else {
-        fs::create_dir_all(path.parent().unwrap_or(&root))?;
-        fs::write(&path, page)?;
-    }
-    if good {
-        println!("✓ docs: {} keys", keys.len());
-    }
-    Ok(good)
+    Ok(Page {
+        name: "deck.md",
+        text: deck::page(&schema, &keys),
+        of,
+        lacks: deck::lacks(&keys),
+    })
 }

@@ -2,6 +2,7 @@
 
 mod benchmarks;
 mod docs;
+mod markdown;
 mod tidy;
 mod verify;
 

@@ -6,6 +6,7 @@ mod execute;
 mod files;
 mod groups;
 mod number;
+mod pages;
 mod paint;
 mod progress;
 mod report;
@@ -43,6 +44,9 @@ pub struct Args {
     /// Folder of the report [default: target/verify of the workspace]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Write the pages of the cases in docs/validation too
+    #[arg(long)]
+    pages: bool,
 }
 
 /// How a set of cases was run.
@@ -70,14 +74,13 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
         quick: args.quick,
         threads: threads(),
     };
-    let verdict = verify(
-        &cases,
-        setting,
-        &out,
-        Paint::of_stdout(),
-        Progress::new,
-        &mut io::stdout(),
-    )?;
+    let docs = workspace::root().join("docs");
+    let terminal = &mut io::stdout();
+    let paint = Paint::of_stdout();
+    let (verdict, runs) = verify(&cases, setting, &out, paint, Progress::new, terminal)?;
+    if args.pages {
+        pages::write(&docs, &known, &runs, setting)?;
+    }
     Ok(verdict.pass())
 }
 
@@ -93,14 +96,14 @@ fn refuse(unknown: &select::UnknownCase) -> ! {
 }
 
 /// Runs the cases one after the other, tells `terminal` about each, and writes the report to `out`.
-fn verify(
-    cases: &[&Case],
+fn verify<'a>(
+    cases: &[&'a Case],
     setting: Setting,
     out: &Path,
     paint: Paint,
     progress: fn(&str) -> Progress,
     terminal: &mut dyn Write,
-) -> Result<Verdict, Box<dyn Error>> {
+) -> Result<(Verdict, Vec<Run<'a>>), Box<dyn Error>> {
     // An unwritable folder is told before the computation, not after it.
     files::prepare(out)?;
     writeln!(
@@ -108,7 +111,7 @@ fn verify(
         "{}\n",
         paint.faint(&terminal::preamble(cases.len(), setting))
     )?;
-    let mut runs: Vec<Run<'_>> = Vec::with_capacity(cases.len());
+    let mut runs: Vec<Run<'a>> = Vec::with_capacity(cases.len());
     for &case in cases {
         let run = execute::execute(case, setting.quick, progress(case.name));
         writeln!(terminal, "{}", terminal::case(&run, paint))?;
@@ -121,7 +124,7 @@ fn verify(
         "{}",
         verdict.line(&workspace::shown(&report), paint)
     )?;
-    Ok(verdict)
+    Ok((verdict, runs))
 }
 
 /// Writes figures and tables first and the report last, so that a report that is there is complete.
@@ -182,7 +185,7 @@ mod tests {
             |_| Progress::silent(),
             &mut text,
         );
-        (verdict.unwrap(), String::from_utf8(text).unwrap())
+        (verdict.unwrap().0, String::from_utf8(text).unwrap())
     }
 
     fn listing(folder: &Path) -> Vec<String> {

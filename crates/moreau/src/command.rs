@@ -14,7 +14,7 @@ mod run;
 mod signals;
 
 use crate::deck::Given;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -192,6 +192,11 @@ impl Manner {
     fn started(&self) -> Result<processes::Started, u8> {
         Ok(processes::Started)
     }
+}
+
+/// The command line as it is defined, for whoever writes about it.
+pub fn definition() -> clap::Command {
+    Arguments::command()
 }
 
 /// Does what the arguments of a command line say, the name of the program first; the exit status.

@@ -35,6 +35,7 @@
 
 mod build;
 mod columns;
+mod described;
 mod echo;
 mod entries;
 mod finding;
@@ -53,7 +54,8 @@ pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;
 
 use crate::algebra::SharedTeam;
-pub(crate) use columns::{Unit, columns};
+pub(crate) use columns::{columns, history_columns};
+pub(crate) use described::{Described, Unit};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf, absolute};
 

@@ -106,7 +106,7 @@ impl Folder {
 }
 
 /// A stem without characters that mean something to a file system.
-fn file_name(stem: &str) -> String {
+pub fn file_name(stem: &str) -> String {
     let safe = |c: char| {
         if c.is_alphanumeric() || "-_.+=".contains(c) {
             c

@@ -2,70 +2,155 @@
 
 use super::status_name;
 use super::touch::{Touch, touches};
-use crate::deck::Units;
+use crate::deck::{Described, Unit, Units};
 use crate::driver::{ContactRecord, Driver};
 use crate::mesh::NodeKind;
 use crate::table::{Column, Table, Values};
+
+/// The columns of `contact.csv`, in their order.
+pub(super) const COLUMNS: [Described; 22] = [
+    Described::new("step", Unit::Count, "Number of the step, from 1."),
+    Described::new(
+        "increment",
+        Unit::Count,
+        "Number of the increment since the virgin state, from 1.",
+    ),
+    Described::new(
+        "contact",
+        Unit::None,
+        "Name of the surface that the point is on.",
+    ),
+    Described::new(
+        "node",
+        Unit::Count,
+        "Number of the node in the mesh, from 0.",
+    ),
+    Described::new(
+        "x",
+        Unit::Length,
+        "Place of the node in the undeformed body.",
+    ),
+    Described::new("y", Unit::Length, "The same along y."),
+    Described::new("z", Unit::Length, "The same along z."),
+    Described::new(
+        "kind",
+        Unit::None,
+        "Place of the node on the facets of its surface: `corner`, `midside` or `face`.",
+    ),
+    Described::new(
+        "gap",
+        Unit::Length,
+        "Gap along the normal; where nothing is opposite it is the size of the mesh.",
+    ),
+    Described::new(
+        "slip_1",
+        Unit::Length,
+        "Slip in the increment along the first tangent.",
+    ),
+    Described::new(
+        "slip_2",
+        Unit::Length,
+        "Slip in the increment along the second tangent.",
+    ),
+    Described::new(
+        "t_n",
+        Unit::Force,
+        "Force on the body along the normal, positive where it presses.",
+    ),
+    Described::new(
+        "t_1",
+        Unit::Force,
+        "Force on the body along the first tangent.",
+    ),
+    Described::new(
+        "t_2",
+        Unit::Force,
+        "Force on the body along the second tangent.",
+    ),
+    Described::new(
+        "p_n",
+        Unit::Stress,
+        "Pressure: `t_n` over the share of the surface that the node has.",
+    ),
+    Described::new(
+        "p_1",
+        Unit::Stress,
+        "Shear traction along the first tangent: `t_1` over the same share.",
+    ),
+    Described::new(
+        "p_2",
+        Unit::Stress,
+        "Shear traction along the second tangent: `t_2` over the same share.",
+    ),
+    Described::new("status", Unit::None, "`open`, `stick` or `slip`."),
+    Described::new(
+        "x_now",
+        Unit::Length,
+        "Place of the node in the deformed body.",
+    ),
+    Described::new("y_now", Unit::Length, "The same along y."),
+    Described::new("z_now", Unit::Length, "The same along z."),
+    Described::new(
+        "s",
+        Unit::Length,
+        "Arc length along the surface of the undeformed body.",
+    )
+    .when("in the plane"),
+];
 
 /// All contact points, in a step counted from 1. Slips are those of the last increment; nodes are counted from 0.
 pub(super) fn table<const D: usize>(driver: &Driver<D>, units: Units, stage: usize) -> Table {
     let records = driver.contacts();
     let touches = touches(driver);
-    let (l, f, s) = (units.length(), units.force(), units.stress());
-    let column = |name: &str, unit: &str, values: Values| Column {
-        name: name.to_owned(),
-        unit: unit.to_owned(),
-        values,
+    let count = |of: &dyn Fn(&ContactRecord<D>) -> usize| {
+        Values::Counts(records.iter().map(|c| of(c) as i64).collect())
     };
-    let count = |name: &str, of: &dyn Fn(&ContactRecord<D>) -> usize| {
-        let values = records.iter().map(|c| of(c) as i64).collect();
-        column(name, "", Values::Counts(values))
-    };
-    let text = |name: &str, of: &dyn Fn(usize) -> &'static str| {
-        let values = (0..records.len()).map(|k| of(k).to_owned()).collect();
-        column(name, "", Values::Texts(values))
+    let text = |of: &dyn Fn(usize) -> &'static str| {
+        Values::Texts((0..records.len()).map(|k| of(k).to_owned()).collect())
     };
     let surfaces = records.iter().map(|c| driver.contact_name(c.contact).0);
     let surfaces = surfaces.map(str::to_owned).collect();
     // Three components, those that the plane does not have zero.
-    let vector = |names: [&str; 3], unit, of: &dyn Fn(&ContactRecord<D>, &Touch<D>) -> [f64; D]| {
+    let vector = |of: &dyn Fn(&ContactRecord<D>, &Touch<D>) -> [f64; D]| {
         let vectors = records.iter().zip(&touches).map(|(c, t)| of(c, t));
         let vectors: Vec<[f64; D]> = vectors.collect();
-        let component = |k: usize| {
+        [0, 1, 2].map(|k| {
             let at = |v: &[f64; D]| v.get(k).copied().unwrap_or(0.0);
-            column(
-                names[k],
-                unit,
-                Values::Numbers(vectors.iter().map(at).collect()),
-            )
-        };
-        [component(0), component(1), component(2)]
+            Values::Numbers(vectors.iter().map(at).collect())
+        })
     };
     let now = |c: &ContactRecord<D>| {
         let u = driver.displacement(c.node);
         std::array::from_fn(|i| c.position[i] + u[i])
     };
-    let mut columns = vec![
-        count("step", &|_| stage),
-        count("increment", &|_| driver.increments()),
-        column("contact", "", Values::Texts(surfaces)),
-        count("node", &|c| c.node),
+    let mut values = vec![
+        count(&|_| stage),
+        count(&|_| driver.increments()),
+        Values::Texts(surfaces),
+        count(&|c| c.node),
     ];
-    columns.extend(vector(["x", "y", "z"], l, &|c, _| c.position));
-    columns.push(text("kind", &|k| match records[k].kind {
+    values.extend(vector(&|c, _| c.position));
+    values.push(text(&|k| match records[k].kind {
         NodeKind::Corner => "corner",
         NodeKind::Midside => "midside",
         NodeKind::Face => "face",
     }));
-    columns.extend(vector(["gap", "slip_1", "slip_2"], l, &|_, t| t.u.into()));
-    columns.extend(vector(["t_n", "t_1", "t_2"], f, &|c, _| c.t.into()));
-    columns.extend(vector(["p_n", "p_1", "p_2"], s, &|_, t| t.traction.into()));
-    columns.push(text("status", &|k| status_name(touches[k].status)));
-    columns.extend(vector(["x_now", "y_now", "z_now"], l, &|c, _| now(c)));
+    values.extend(vector(&|_, t| t.u.into()));
+    values.extend(vector(&|c, _| c.t.into()));
+    values.extend(vector(&|_, t| t.traction.into()));
+    values.push(text(&|k| status_name(touches[k].status)));
+    values.extend(vector(&|c, _| now(c)));
     if D == 2 {
-        columns.push(column("s", l, Values::Numbers(arcs(driver))));
+        values.push(Values::Numbers(arcs(driver)));
     }
-    Table::new(columns)
+    let column = |(column, values): (&Described, Values)| Column {
+        name: column.name.to_owned(),
+        unit: column.unit.symbol(units).to_owned(),
+        values,
+    };
+    // The last column is one of the plane alone.
+    debug_assert_eq!(values.len(), COLUMNS.len() - usize::from(D == 3));
+    Table::new(COLUMNS.iter().zip(values).map(column).collect())
 }
 
 /// Arc length along its surface at every contact point, in the undeformed body.

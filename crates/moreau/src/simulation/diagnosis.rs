@@ -88,22 +88,6 @@ impl Diagnosis {
             units: deck.units,
         }
     }
-
-    /// For `run.json`.
-    pub(super) fn json(&self) -> serde_json::Value {
-        let worst = |w: &Imbalance| serde_json::json!({ "node": w.node, "position": w.position, "force": w.force });
-        let flip = |f: &Flip| {
-            let statuses: Vec<&str> = f.statuses.iter().map(|s| status_name(*s)).collect();
-            serde_json::json!({ "node": f.node, "position": f.position, "statuses": statuses })
-        };
-        serde_json::json!({
-            "worst": self.worst.iter().map(worst).collect::<Vec<_>>(),
-            "flips": self.flips.iter().map(flip).collect::<Vec<_>>(),
-            "plastic_fraction": self.plastic_fraction,
-            "load_factor": self.limit,
-            "suggestion": self.suggestion,
-        })
-    }
 }
 
 fn suggestion(

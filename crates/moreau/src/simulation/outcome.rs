@@ -12,9 +12,7 @@ use crate::driver::{
     UpperBound,
 };
 use crate::laws::Status;
-use crate::memory;
 use crate::numbers::shown;
-use std::collections::BTreeMap;
 use std::fmt;
 
 /// How a run ended.
@@ -337,55 +335,6 @@ impl Outcome {
             | RunStatus::NotConverged(error)
             | RunStatus::Collapsed(error) => Some(error),
         }
-    }
-
-    /// The content of `run.json`.
-    pub fn json(&self) -> String {
-        let verdict = |v: &Verdict| {
-            serde_json::json!({
-                "column": v.column, "expected": v.expected, "tolerance": v.tolerance,
-                "found": v.found, "passed": v.passed(),
-            })
-        };
-        let value = serde_json::json!({
-            "version": env!("CARGO_PKG_VERSION"),
-            "finished": self.finished,
-            "title": self.title,
-            "units": self.units.name(),
-            "status": self.status.name(),
-            "error": self.error(),
-            "seconds": self.seconds,
-            "increments": self.increments,
-            "newton_iterations": self.newton_iterations,
-            "contact_iterations": self.contact_iterations,
-            "factorisations": self.factorisations,
-            "linear_iterations": self.linear_iterations,
-            "contact_solves": self.contact_solves,
-            "cuts": self.cuts,
-            "peak_memory_mb": memory::peak().map(|bytes| bytes as f64 / f64::from(1 << 20)),
-            "dofs": self.dofs,
-            "threads": self.threads,
-            "certificate": {
-                "bipotential_gap": self.certificate.bipotential_gap,
-                "relative_gap": self.relative_gap,
-                "penetration": self.certificate.penetration,
-                "excess_force": self.certificate.excess_force,
-                "friction_over_critical": self.criticality,
-            },
-            "values": self.values.iter().cloned().collect::<BTreeMap<_, _>>(),
-            "expectations": self.verdicts.iter().map(verdict).collect::<Vec<_>>(),
-            "collapse": self.collapse.as_ref().map(|(step, c)| serde_json::json!({
-                "step": step,
-                "load_factor": c.load_factor,
-                "growth": c.growth,
-                "upper_bound": c.upper_bound.map(|b| b.load_factor),
-                "elastic_share": c.upper_bound.map(|b| b.elastic_share),
-                "strict": c.upper_bound.map(|b| !b.coulomb),
-            })),
-            "warnings": self.warnings,
-            "diagnosis": self.diagnosis.as_ref().map(Diagnosis::json),
-        });
-        format!("{value:#}\n")
     }
 }
 
