@@ -8,7 +8,7 @@ mod results;
 
 use std::error::Error;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use verification::workspace;
 
@@ -18,6 +18,9 @@ pub struct Args {
     /// Write nothing; fail where a page is not what would be written
     #[arg(long)]
     check: bool,
+    /// What `cargo run -p moreau --example reference` printed, where it is built already.
+    #[arg(long, value_name = "FILE")]
+    described: Option<PathBuf>,
 }
 
 /// A page, and what keeps it from being complete.
@@ -34,7 +37,7 @@ struct Page {
 pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     let root = workspace::root();
     let folder = root.join("docs/reference");
-    let pages = pages(&root)?;
+    let pages = pages(&root, args.described.as_deref())?;
     let mut good = true;
     for page in &pages {
         for lack in &page.lacks {
@@ -58,8 +61,8 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
 }
 
 /// All pages.
-fn pages(root: &Path) -> Result<Vec<Page>, Box<dyn Error>> {
-    let told = described::described()?;
+fn pages(root: &Path, printed: Option<&Path>) -> Result<Vec<Page>, Box<dyn Error>> {
+    let told = described::described(printed)?;
     let of_results =
         |name, of, entries: &[described::Entry], text: fn(&[described::Entry]) -> String| Page {
             name,
