@@ -1,71 +1,86 @@
 # %% [markdown]
-# # Line contact: Hertz, then Cattaneo and Mindlin
-# A rigid cylinder of radius 100 mm is pressed on an elastic block by a force P, and then pulled sideways by
-# Q < μ P. Nothing slides as a whole, but the edge of the contact does: micro-slip, where fretting begins.
-# The block is nearly incompressible, for which pressure and shear do not influence each other at the surface.
+# # Hertz, then Cattaneo and Mindlin
+#
+# A rigid cylinder of radius R = 1000 mm is pressed on an elastic half-space, in plane strain, and then dragged along it
+# with less than the force of full slip. Hertz gave the pressure in 1882; Cattaneo (1938) and Mindlin (1949) the zone
+# that sticks in the middle while the edges of the contact slip already.
+#
+# Their solution needs that pressure alone makes no slip, and drag no pressure. Against a rigid body that is so for
+# ν = 1/2. Here ν = 0.49, and Dundurs' coupling β = (1 − 2ν)/(2 − 2ν) = 0.02 is a twenty-fifth of the friction. The
+# cells are quad9, whose tractions oscillate less than those of quad8 in so nearly incompressible a body.
 
 # %%
 import numpy as np
 
 import moreau_fem as mc
 
-R, E, NU, MU = 100.0, 2000.0, 0.49, 0.3
-P, Q = 20.0, 4.5  # N per mm of thickness: Q/(μ P) = 3/4
+RADIUS, E, NU, MU = 1000.0, 210e3, 0.49, 0.5
+STIFFNESS = E / (1 - NU**2)  # E* of a rigid and an elastic body [MPa]
+HALF_WIDTH = 1.0  # of the contact, aimed at [mm]
+FORCE = np.pi * HALF_WIDTH**2 * STIFFNESS / (4 * RADIUS)  # N/mm
+DRAG = 0.5 * MU * FORCE
 
-# %% [markdown]
-# Cells of 0.1 mm where contact is expected, growing away from it: the block is to be large beside the contact.
 
-# %%
-grown = np.cumsum(0.1 * 1.4 ** np.arange(1, 15))
-fine = np.linspace(-1.4, 1.4, 29)
-x = np.concatenate([-1.4 - grown[::-1], fine, 1.4 + grown])
-y = np.concatenate([-1.0 - grown[::-1], np.linspace(-1.0, 0.0, 11)])
-hold = [dict(on="block.bottom", u=["x", "y"])]
+def graded(fine: float, cells: int, size: float) -> list[float]:
+    """Lines from 0 to `size`: so many cells up to `fine`, beyond it each 1.4 times as long as the one before."""
+    lines = list(np.linspace(0, fine, cells + 1))
+    while (step := 1.4 * (lines[-1] - lines[-2])) < 0.6 * (size - lines[-1]):
+        lines.append(lines[-1] + step)
+    return [*lines, size]
+
+
+right, depth = graded(1.2, 24, 40.0), graded(0.5, 8, 40.0)
+held = [dict(on="block.bottom", u=["x", "y"])]
 deck = mc.Deck(
     units="mm-N-MPa",
     analysis="plane-strain",
-    mesh=[
-        mc.block("block", "quad8", x=dict(lines=x.tolist()), y=dict(lines=y.tolist()), cells=[0, 0]),
-        dict(group=[dict(name="near", on="block.top", x=[-1.41, 1.41])]),
-    ],
+    mesh=dict(
+        block=[dict(name="block", element="quad9", cells=[0, 0],
+                    x=dict(lines=[-x for x in right[:0:-1]] + right), y=dict(lines=[-y for y in reversed(depth)]))],
+        group=[dict(name="zone", on="block.top", x=[-1.2, 1.2])],
+    ),
     material=[dict(on="block", young=E, poisson=NU)],
-    tool=[dict(name="cylinder", cylinder=dict(center=[0, R], radius=R))],
-    contact=[dict(surface="near", against="cylinder", friction=MU)],
+    tool=[dict(name="cylinder", cylinder=dict(center=[0, RADIUS], radius=RADIUS))],
+    contact=[dict(surface="zone", against="cylinder", friction=MU)],
     step=[
-        dict(name="press", increments=5, fix=hold, tools=[dict(name="cylinder", force=[0, -P])]),
-        dict(name="pull", increments=10, fix=hold, tools=[dict(name="cylinder", force=[Q, -P])]),
+        dict(name="press", increments=1, fix=held, tools=[dict(name="cylinder", force=[0, -FORCE])]),
+        dict(name="drag", increments=10, fix=held, tools=[dict(name="cylinder", force=[DRAG, -FORCE])]),
     ],
 )
-
-# %%
-sim = mc.Simulation(deck)
-found = {}
-for inc in sim:
-    table = sim.contacts()
-    found[inc.step] = {name: np.asarray(table[name]) for name in ["x", "p_n", "p_1", "status"]}
-print(sim.summary)
+result = mc.run(deck)
+zone = result.contacts.query("kind == 'midside'").sort_values("x")
+touching, stuck = zone[zone["status"] != "open"], zone[zone["status"] == "stick"]
+zone[["x", "status", "p_n", "p_1"]]
 
 # %% [markdown]
-# Half widths: points are 0.05 mm apart. Tractions are compared where they are largest.
+# ## What must hold
+#
+# With E* = E/(1 − ν²), the half width is a = √(4PR/πE*), the pressure p₀ √(1 − x²/a²) with p₀ = 2P/πa. Under a drag Q
+# the middle sticks over c = a √(1 − Q/μP), and the shear is that of full slip less an ellipse over c.
+#
+# Tolerances: widths are known to a cell, 0.05 mm, as the edge is somewhere between two midside points. Tractions are
+# compared there, within 0.9 a and farther than 0.1 a from ±c: nearer, an ellipse's end with its infinite slope is
+# within one cell. What is left is coupling and mesh: 2 % of the pressure, 4 % of the friction. The block is 40 a deep,
+# so that its far sides are felt to the order of (1/40)² only.
 
 # %%
-pressed, pulled = found[1], found[2]
-half_width = np.abs(pressed["x"][pressed["status"] != "open"]).max()
-stick = np.abs(pulled["x"][pulled["status"] == "stick"]).max()
-middle = np.abs(pressed["x"]) < 0.21
-peak, shear = pressed["p_n"][middle].mean(), np.abs(pulled["p_1"][middle]).mean()
+a = np.sqrt(4 * FORCE * RADIUS / (np.pi * STIFFNESS))
+p0 = 2 * FORCE / (np.pi * a)
+c = a * np.sqrt(1 - DRAG / (MU * FORCE))
+x = zone["x"].to_numpy()
 
-# %% [markdown]
-# **Known.** Hertz: a² = 4 P R/(π E*), p₀ = 2 P/(π a), E* = E/(1 − ν²). Cattaneo and Mindlin: what sticks has the half
-# width c = a √(1 − Q/(μ P)), and the shear is μ p₀ (√(1 − x²/a²) − c/a √(1 − x²/c²)) there.
 
-# %%
-a = np.sqrt(4 * P * R * (1 - NU**2) / (np.pi * E))
-p0, c = 2 * P / (np.pi * a), a * np.sqrt(1 - Q / (MU * P))
-at = pressed["x"][middle]
-hertz = p0 * np.sqrt(1 - (at / a) ** 2).mean()
-mindlin = MU * p0 * (np.sqrt(1 - (at / a) ** 2) - c / a * np.sqrt(1 - (at / c) ** 2)).mean()
-for name, is_, known in [("a [mm]", half_width, a), ("p [MPa]", peak, hertz), ("c [mm]", stick, c), ("q [MPa]", shear, mindlin)]:
-    print(f"{name:8} {is_:.4f}, known {known:.4f}")
-assert abs(half_width - a) < 0.05 and abs(stick - c) < 0.05
-assert abs(peak / hertz - 1) < 0.02 and abs(shear / mindlin - 1) < 0.03
+def ellipse(half: float) -> np.ndarray:
+    return np.sqrt(np.clip(1 - (x / half) ** 2, 0, None))
+
+
+shear = MU * p0 * (ellipse(a) - c / a * ellipse(c))
+inner = np.abs(x) < 0.9 * a
+away = inner & (np.abs(np.abs(x) - c) > 0.1 * a)
+print("contact", touching["x"].abs().max(), "of", a, "mm, stick", stuck["x"].abs().max(), "of", c, "mm")
+
+assert abs(result.contacts["t_n"].sum() / FORCE - 1) < 1e-4  # normals turn by 10⁻³
+assert abs(result.contacts["t_1"].abs().sum() / DRAG - 1) < 1e-4
+assert abs(touching["x"].abs().max() - a) < 0.05 and abs(stuck["x"].abs().max() - c) < 0.05
+assert abs(zone["p_n"] - p0 * ellipse(a))[inner].max() < 2e-2 * p0
+assert abs(zone["p_1"].abs() - shear)[away].max() < 4e-2 * MU * p0
