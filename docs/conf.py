@@ -9,6 +9,7 @@ project = "moreau"
 author = "the authors of moreau"
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 exclude_patterns = ["build", "_build"]
+html_theme = "furo"
 html_title = "moreau"
 html_copy_source = False
 html_show_copyright = False
