@@ -13,7 +13,8 @@ use std::fs;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// The examples, with two increments a step and loads in proportion, on half of the lines, solids on a third.
+/// The examples, with two increments a step and loads in proportion; solids on a third of the lines, large plane
+/// bodies on half of them.
 fn examples() -> Vec<(String, Table)> {
     let mut all = Vec::new();
     for entry in fs::read_dir(folder("docs/examples")).expect("examples") {
@@ -24,11 +25,18 @@ fn examples() -> Vec<(String, Table)> {
         let name = path.file_stem().expect("a name").to_string_lossy();
         let text = fs::read_to_string(&path).expect("a deck");
         let mut deck: Table = text.parse().expect("toml");
-        let coarser = if is_solid(&deck) { 3 } else { 2 };
+        let solid = is_solid(&deck);
         let blocks = deck["mesh"].as_table_mut().expect("a mesh");
         let blocks = blocks.get_mut("block").and_then(Value::as_array_mut);
         for block in blocks.into_iter().flatten() {
-            for cells in block["cells"].as_array_mut().expect("cells") {
+            let along = block["cells"].as_array_mut().expect("cells");
+            let all: i64 = along.iter().filter_map(Value::as_integer).product();
+            let coarser = match (solid, all > 100) {
+                (true, _) => 3,
+                (false, true) => 2,
+                (false, false) => 1,
+            };
+            for cells in along {
                 let count = cells.as_integer().expect("a count");
                 *cells = ((count + coarser - 1) / coarser).into();
             }
