@@ -17,15 +17,18 @@ impl Clock {
     pub fn new() -> Self {
         let cost = || ThreadTime::now().elapsed();
         let least = (0..1000).map(|_| cost()).min().unwrap_or_default();
-        Self { cost: least }
+        let cost = least.max(Duration::from_nanos(1));
+        Self { cost }
     }
 
-    /// Seconds of a computation, and its result.
+    /// Seconds of a computation, no fewer than a look at the clock takes, and its result: nothing takes
+    /// no time, and no ratio of two times is infinite.
     pub fn time<T>(&self, compute: impl FnOnce() -> T) -> (f64, T) {
         let start = ThreadTime::now();
         let result = compute();
         let spent = start.elapsed();
-        (spent.saturating_sub(self.cost).as_secs_f64(), result)
+        let own = spent.saturating_sub(self.cost).max(self.cost);
+        (own.as_secs_f64(), result)
     }
 
     /// The fastest of several runs of a computation that tells its own seconds, and its last result.
@@ -52,6 +55,7 @@ mod tests {
         let (seconds, sum) =
             clock.time(|| (0..10_000_000).fold(0.0, |s: f64, k| s + f64::sqrt(k.into())));
         assert!(seconds > 0.0 && sum > 0.0);
+        assert!((0..1000).all(|_| clock.time(|| ()).0 > 0.0));
         let mut left = vec![2.0, 1.0, 3.0];
         let (least, last) = clock.fastest(|| {
             std::hint::black_box((0..1_000_000).map(f64::from).sum::<f64>());
