@@ -1,5 +1,6 @@
 //! A model: mesh, materials, tools and contacts; not its loads, which are steps.
 
+pub(crate) mod amplitude;
 pub(crate) mod footing;
 pub(crate) mod load;
 pub(crate) mod motion_row;

@@ -1,6 +1,7 @@
 //! Steps as an engineer writes them, and the loading they amount to; not how it is applied.
 
 use crate::error::ModelError;
+use crate::model::amplitude::Amplitude;
 use crate::model::points::Turn;
 use crate::vector::SparseVector;
 use moreau_mesh::{Facet, Mesh};
@@ -69,13 +70,42 @@ pub(crate) enum Condition<const D: usize> {
     },
 }
 
+impl<const D: usize> Condition<D> {
+    /// The condition with a share of its value.
+    fn scaled(&self, share: f64) -> Self {
+        let mut scaled = self.clone();
+        match &mut scaled {
+            Self::Displace { value, .. }
+            | Self::Pressure {
+                pressure: value, ..
+            }
+            | Self::Turn { angle: value, .. }
+            | Self::Push { force: value, .. } => *value *= share,
+            Self::Force { force: vector, .. }
+            | Self::Traction {
+                traction: vector, ..
+            }
+            | Self::BodyForce {
+                density: vector, ..
+            }
+            | Self::Tool {
+                displacement: vector,
+                ..
+            } => vector.iter_mut().for_each(|v| *v *= share),
+        }
+        scaled
+    }
+}
+
 /// A step: all conditions that hold in it, with their totals at its end. They are ramped
-/// linearly from what held at the end of the step before; what is not listed is released, and its
-/// reaction ramped to zero.
+/// linearly from what held at the end of the step before, or as [`Step::over`] says; what is not listed is
+/// released, and its reaction ramped to zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step<const D: usize> {
     pub(crate) name: String,
     pub(crate) conditions: Vec<Condition<D>>,
+    /// Of conditions by their number.
+    pub(crate) amplitudes: BTreeMap<usize, Amplitude>,
 }
 
 impl<const D: usize> Step<D> {
@@ -84,6 +114,7 @@ impl<const D: usize> Step<D> {
         Self {
             name: name.into(),
             conditions: Vec::new(),
+            amplitudes: BTreeMap::new(),
         }
     }
 
@@ -166,6 +197,60 @@ impl<const D: usize> Step<D> {
             axis,
             force,
         })
+    }
+
+    /// Gives the values of the conditions added last, so many of them, an amplitude: rows of the time in the step,
+    /// from 0 to 1, and the share of the value that acts then, linear in between. The totals at the end of the step
+    /// are the last shares. An increment ends at every row.
+    ///
+    /// A step starts at what held before: the first row says how much of the value that was.
+    pub fn over(mut self, last: usize, rows: &[[f64; 2]]) -> Self {
+        let all = self.conditions.len();
+        let amplitude = Amplitude::new(rows);
+        let of = all.saturating_sub(last)..all;
+        self.amplitudes.extend(of.map(|k| (k, amplitude.clone())));
+        self
+    }
+
+    /// Times strictly within the step at which an amplitude has a row, in order.
+    pub(crate) fn breaks(&self) -> Vec<f64> {
+        let times = self.amplitudes.values().flat_map(Amplitude::breaks);
+        let mut times: Vec<f64> = times.collect();
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        times
+    }
+
+    /// The step with each condition times what `part` makes of its amplitude, or once without one.
+    fn shared(&self, part: impl Fn(&Amplitude) -> f64) -> Self {
+        let scaled = |(k, condition): (usize, &Condition<D>)| match self.amplitudes.get(&k) {
+            Some(amplitude) => condition.scaled(part(amplitude)),
+            None => condition.clone(),
+        };
+        Self {
+            name: self.name.clone(),
+            conditions: self.conditions.iter().enumerate().map(scaled).collect(),
+            amplitudes: BTreeMap::new(),
+        }
+    }
+
+    /// The step without amplitudes: the totals at its end.
+    pub(crate) fn totals(&self) -> Self {
+        self.shared(|amplitude| amplitude.at(1.0))
+    }
+
+    /// The step of what the amplitudes add at a time to the straight way between its ends, as the difference of both.
+    pub(crate) fn bent(&self, time: f64) -> [Self; 2] {
+        [
+            self.shared(|amplitude| amplitude.bend(time)),
+            self.shared(|_| 0.0),
+        ]
+    }
+
+    /// Whether all amplitudes are such.
+    pub(crate) fn check(&self) -> Result<(), ModelError> {
+        let mut all = self.amplitudes.values();
+        all.try_for_each(|amplitude| amplitude.check(&self.name))
     }
 
     fn with(mut self, condition: Condition<D>) -> Self {
@@ -316,6 +401,20 @@ impl<const D: usize> Loading<D> {
             }
         }
         0.0
+    }
+
+    /// `self + (end − start)`, for loadings with the same prescribed degrees of freedom.
+    pub(crate) fn and(&self, end: &Self, start: &Self) -> Self {
+        let more = end.increment_from(start);
+        let sum = |a: f64, b: f64| a + b;
+        let of = |dof: &usize| more.displacement.get(dof).copied().unwrap_or(0.0);
+        let own = self.displacement.iter();
+        Self {
+            displacement: own.map(|(dof, &u)| (*dof, u + of(dof))).collect(),
+            force: self.force.with(&more.force, sum),
+            pressure: self.pressure.with(&more.pressure, sum),
+            turn: self.turn.with(&more.turn, sum),
+        }
     }
 
     /// `self − start`, for loadings with the same prescribed degrees of freedom.

@@ -14,6 +14,8 @@ impl<const D: usize> Driver<D> {
     /// # Errors
     /// Unknown groups and tools, displacements prescribed twice, numbers that are not finite.
     pub fn loading(&self, step: &Step<D>) -> Result<Loading<D>, ModelError> {
+        step.check()?;
+        let step = &step.totals();
         let mesh = &self.mesh;
         let mut loading = Loading::default();
         let mut moved: BTreeMap<usize, f64> = BTreeMap::new();
@@ -167,6 +169,20 @@ impl<const D: usize> Driver<D> {
             });
         }
         Ok(unit * angle)
+    }
+
+    /// The loadings at the times within a step at which an amplitude has a row, from those at its ends.
+    pub(crate) fn knots(
+        &self,
+        step: &Step<D>,
+        [start, end]: [&Loading<D>; 2],
+    ) -> Result<Vec<(f64, Loading<D>)>, ModelError> {
+        let at = |time: f64| {
+            let [bent, straight] = step.bent(time);
+            let (bent, straight) = (self.loading(&bent)?, self.loading(&straight)?);
+            Ok((time, start.towards(end, time).and(&bent, &straight)))
+        };
+        step.breaks().into_iter().map(at).collect()
     }
 
     /// The loading that holds now, with the prescribed displacements of `end`: those that are new

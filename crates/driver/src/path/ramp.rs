@@ -20,6 +20,8 @@ pub struct Ramp<const D: usize> {
     step: String,
     start: Loading<D>,
     end: Loading<D>,
+    /// Times within the step at which the way from start to end bends, and the loadings there.
+    knots: Vec<(f64, Loading<D>)>,
     increments: Increments,
     /// Equal pieces done: counted, so that their ends are exact multiples of the base.
     whole: usize,
@@ -132,6 +134,9 @@ impl<const D: usize> Saved for Ramp<D> {
     fn visit(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
         self.start.visit(numbers)?;
         self.end.visit(numbers)?;
+        for (_, loading) in &mut self.knots {
+            loading.visit(numbers)?;
+        }
         for count in [&mut self.whole, &mut self.easy, &mut self.cuts] {
             numbers.count(count)?;
         }
@@ -158,9 +163,43 @@ impl<const D: usize> Saved for Ramp<D> {
 }
 
 impl<const D: usize> Ramp<D> {
+    /// The loading at a time of the step, in [0, 1].
+    fn at(&self, time: f64) -> Loading<D> {
+        let next = self.knots.iter().position(|(knot, _)| time <= *knot);
+        let last = next.unwrap_or(self.knots.len()).checked_sub(1);
+        let (from, start) =
+            last.map_or((0.0, &self.start), |k| (self.knots[k].0, &self.knots[k].1));
+        let (to, end) = next.map_or((1.0, &self.end), |k| (self.knots[k].0, &self.knots[k].1));
+        start.towards(end, (time - from) / (to - from))
+    }
+
+    /// Where the next attempt ends, and whether an equal piece of the step ends there.
+    fn target(&self) -> (f64, bool) {
+        let pieces = self.increments.pieces();
+        let base = 1.0 / pieces as f64;
+        let tiny = 1e-9 * base;
+        let next = match self.whole + 1 >= pieces {
+            true => 1.0,
+            false => (self.whole + 1) as f64 * base,
+        };
+        let reach = self.done + self.length;
+        let knots = self.knots.iter().map(|(knot, _)| *knot);
+        let knot = knots.into_iter().find(|knot| *knot > self.done + tiny);
+        let at_end = reach >= next - tiny;
+        match knot {
+            // One that all but coincides with the end of a piece is that.
+            Some(knot) if (knot - next).abs() <= tiny && at_end => (next, true),
+            Some(knot) if knot < next && reach >= knot - tiny => (knot, false),
+            _ if at_end => (next, true),
+            _ => (reach, false),
+        }
+    }
+
     /// Whether something that the step prescribes is moved.
     fn moves(&self) -> bool {
-        self.start.displacement != self.end.displacement || self.start.turn != self.end.turn
+        let to = self.knots.iter().map(|(_, loading)| loading);
+        to.chain([&self.end])
+            .any(|to| self.start.displacement != to.displacement || self.start.turn != to.turn)
     }
 
     /// Takes note of an increment from λ = `before`, and of the work that the loads of the whole step
@@ -179,7 +218,8 @@ impl<const D: usize> Ramp<D> {
         let [Some(last), Some(first)] = self.yielded else {
             return None;
         };
-        let limit = Yielded::limit(first, last).filter(|_| !self.moves());
+        let straight = self.knots.is_empty() && !self.moves();
+        let limit = Yielded::limit(first, last).filter(|_| straight);
         limit.map(|limit| limit.max(self.done))
     }
 
@@ -216,9 +256,11 @@ impl<const D: usize> Driver<D> {
     ) -> Result<Ramp<D>, ModelError> {
         let end = self.loading(step)?;
         let increments = increments.into();
+        let start = self.start_of(&end);
         Ok(Ramp {
             step: step.name.clone(),
-            start: self.start_of(&end),
+            knots: self.knots(step, [&start, &end])?,
+            start,
             end,
             increments,
             whole: 0,
@@ -255,6 +297,9 @@ impl<const D: usize> Driver<D> {
         let dofs = self.state.displacement.len();
         ramp.start.check(&self.mesh, dofs)?;
         ramp.end.check(&self.mesh, dofs)?;
+        for (_, loading) in &ramp.knots {
+            loading.check(&self.mesh, dofs)?;
+        }
         let (before, at_hand) = (ramp.clone(), self.at_hand());
         let outcome = self.attempts(ramp, watch);
         if let Err(IncrementError::Interrupted) = outcome {
@@ -270,20 +315,12 @@ impl<const D: usize> Driver<D> {
         ramp: &mut Ramp<D>,
         watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<IncrementReport, IncrementError> {
-        let pieces = ramp.increments.pieces();
-        let base = 1.0 / pieces as f64;
         loop {
             if let Some(path) = ramp.path {
                 return self.follow(ramp, path, watch);
             }
-            let next = (ramp.whole + 1) as f64 * base;
-            let at_end = ramp.done + ramp.length >= next - 1e-9 * base;
-            let target = match at_end {
-                true if ramp.whole + 1 >= pieces => 1.0,
-                true => next,
-                false => ramp.done + ramp.length,
-            };
-            let loading = ramp.start.towards(&ramp.end, target);
+            let (target, at_end) = ramp.target();
+            let loading = ramp.at(target);
             let cuts = ramp.cuts;
             let watch = &mut |i: &Iteration<'_>| watch(&Iteration { cuts, ..*i });
             match self.advance_watched(&loading, watch) {
@@ -337,9 +374,9 @@ impl<const D: usize> Driver<D> {
         self.nodal_forces(&ramp.end.increment_from(&ramp.start), &rest)
     }
 
-    /// The path of a step that moves nothing, from after its first increment on.
+    /// The path of a step that moves nothing and whose loads grow by one factor, from after its first increment on.
     fn path(&self, ramp: &Ramp<D>) -> Option<Path> {
-        let moves = ramp.moves();
+        let moves = ramp.moves() || !ramp.knots.is_empty();
         let (last, before) = self.state.last.as_ref()?;
         let rest = vec![0.0; last.len()];
         let load = self.load(ramp);
