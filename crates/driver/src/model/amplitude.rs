@@ -1,6 +1,7 @@
 //! How a value of a step varies over its time.
 
 use crate::error::ModelError;
+use std::cmp::Ordering;
 
 /// The share of a value that acts over the time of a step: linear between rows of time and share, of which the first
 /// is at time 0 and the last at time 1.
@@ -57,7 +58,10 @@ impl Amplitude {
         };
         let ends = [(first[0], 0.0), (last[0], 1.0)];
         let shares = self.rows.iter().map(|row| row[1]);
-        let falls = self.rows.windows(2).find(|pair| !(pair[0][0] < pair[1][0]));
+        let falls = self
+            .rows
+            .windows(2)
+            .find(|pair| pair[0][0].partial_cmp(&pair[1][0]) != Some(Ordering::Less));
         let odd = ends.into_iter().find(|(time, end)| time != end);
         let odd = odd.map(|(time, _)| time);
         let odd = odd.or(falls.map(|pair| pair[1][0]));

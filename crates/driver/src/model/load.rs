@@ -199,6 +199,16 @@ impl<const D: usize> Step<D> {
         })
     }
 
+    /// Number of conditions, one for each axis, group and tool of which it says something.
+    pub fn len(&self) -> usize {
+        self.conditions.len()
+    }
+
+    /// Whether nothing holds in it.
+    pub fn is_empty(&self) -> bool {
+        self.conditions.is_empty()
+    }
+
     /// Gives the values of the conditions added last, so many of them, an amplitude: rows of the time in the step,
     /// from 0 to 1, and the share of the value that acts then, linear in between. The totals at the end of the step
     /// are the last shares. An increment ends at every row.

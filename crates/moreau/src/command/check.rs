@@ -330,7 +330,13 @@ fn conditions(deck: &Deck) {
                     format!("tool is driven by {f:?} {force}, else moves by {u:?} {length}")
                 }
             };
-            say!("           {}: {what}", condition.on.value);
+            let over = condition.table.as_ref().map(|table| {
+                let row = |row: &[f64; 2]| format!("{} at {}", row[1], row[0]);
+                let rows: Vec<String> = table.value.iter().map(row).collect();
+                format!(", times {} of the step", rows.join(", "))
+            });
+            let over = over.unwrap_or_default();
+            say!("           {}: {what}{over}", condition.on.value);
         }
     }
     for e in &deck.expectations {

@@ -1,6 +1,7 @@
 //! From entries to a driver and its steps; the physical ranges are those of the libraries, whose
 //! errors get the place of the value responsible.
 
+mod amplitudes;
 mod conditions;
 mod groups;
 mod meshes;
@@ -180,6 +181,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     penetrations::warn(deck, &driver, &gaps, findings);
     let supports = supports(&driver, (deck, &gaps), &stages, &groups, findings);
     conditions::doubts(deck, findings);
+    amplitudes::check(deck, findings);
     conditions::inner_surfaces(deck, &groups, findings);
     slips::warn(deck, &groups, surface, findings);
     let held = conditions::held(deck, &groups);

@@ -272,7 +272,14 @@ fn lists(conditions: &[ConditionEntry], dimension: usize) -> [(&'static str, Vec
                 (3, format!("{{ name = {on}, move = {u:?}, force = {v:?} }}"))
             }
         };
-        lists[list].1.push(item);
+        lists[list].1.push(match &condition.table {
+            None => item,
+            Some(table) => format!(
+                "{}, table = {:?} }}",
+                item.trim_end_matches(" }"),
+                table.value
+            ),
+        });
     }
     lists
 }

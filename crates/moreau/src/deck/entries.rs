@@ -294,6 +294,8 @@ pub struct ConditionEntry {
     pub on: At<String>,
     /// What is put on it.
     pub action: Action,
+    /// Rows of the time in the step and the share of the value that acts then.
+    pub table: Option<At<Vec<[f64; 2]>>>,
     /// Place of the whole condition.
     pub span: Range<usize>,
 }

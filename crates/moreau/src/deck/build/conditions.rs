@@ -19,6 +19,7 @@ pub(super) fn stages<const D: usize>(deck: &Deck, groups: &Groups<D>) -> Vec<Sta
         for condition in &entry.conditions {
             let on = condition.on.value.as_str();
             let nodes = groups.nodes_of(on);
+            let before = step.len();
             step = match &condition.action {
                 Action::Fix(axes) => {
                     let axes: Vec<Axis> = axes.iter().map(|&i| AXES[i]).collect();
@@ -44,6 +45,10 @@ pub(super) fn stages<const D: usize>(deck: &Deck, groups: &Groups<D>) -> Vec<Sta
                     driven.fold(moved, |s, i| s.push(on, AXES[i], force[i]))
                 }
             };
+            if let Some(table) = &condition.table {
+                let added = step.len() - before;
+                step = step.over(added, &table.value);
+            }
         }
         let directions = |name: &String| {
             let own = entry.conditions.iter().filter(|c| c.on.value == *name);

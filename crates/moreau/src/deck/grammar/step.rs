@@ -26,9 +26,12 @@ pub(super) fn read(table: Table<'_>, dimension: usize) -> Option<StepEntry> {
     ] {
         let list = table.tables(key, &format!("{key} of a step"));
         conditions.extend(list.into_iter().filter_map(|t| {
+            // What is fixed is at rest.
+            let value = if key == "fix" { None } else { t.get("table") };
+            let table = value.and_then(|v| amplitude(v, t.log()));
             let condition = read(&t, dimension);
             t.finish();
-            condition
+            condition.map(|c| ConditionEntry { table, ..c })
         }));
     }
     let span = table.span.clone();
@@ -80,8 +83,32 @@ fn condition(on: Option<At<String>>, action: Action, table: &Table<'_>) -> Optio
     Some(ConditionEntry {
         on: on?,
         action,
+        table: None,
         span: table.span.clone(),
     })
+}
+
+/// Rows of time and share, of which the times rise from 0 to 1.
+fn amplitude(value: Value<'_>, log: &Log) -> Option<At<Vec<[f64; 2]>>> {
+    const ROWS: &str = "rows of time and share, as in [[0, 0], [0.5, 1], [1, 0]]";
+    let rows = reader::items(value, "table", ROWS, log)?;
+    let row = |value: Value<'_>| {
+        let row = reader::vector(value, "row of the table", 2, log)?.value;
+        Some([row[0], row[1]])
+    };
+    let rows: Vec<[f64; 2]> = rows.into_iter().map(row).collect::<Option<_>>()?;
+    let times = || rows.iter().map(|row| row[0]);
+    let rises = rows.windows(2).all(|pair| pair[0][0] < pair[1][0]);
+    if rows.len() < 2 || !rises || [times().next(), times().last()] != [Some(0.0), Some(1.0)] {
+        let given: Vec<String> = times().map(|time| time.to_string()).collect();
+        log.borrow_mut().error(
+            &value.span(),
+            format!("times of the table are {}", given.join(", ")),
+            "expected times in the step that rise from 0 to 1",
+        );
+        return None;
+    }
+    Some(At::new(rows, value.span()))
 }
 
 fn fix(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {

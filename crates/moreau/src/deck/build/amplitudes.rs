@@ -1,0 +1,115 @@
+//! What a table over time does not go with: a step that has no end, and a jump at its beginning.
+
+use crate::deck::entries::{Action, ConditionEntry, Deck, StepEntry};
+use crate::deck::finding::{Class, Findings};
+
+/// What a part of a condition acts as, and along which axis.
+type Part = (&'static str, usize);
+
+/// Tables in steps until collapse, and those that begin with another value than the step before ended with.
+pub(super) fn check(deck: &Deck, findings: &mut Findings) {
+    for (number, step) in deck.steps.iter().enumerate() {
+        for condition in &step.conditions {
+            let Some(table) = &condition.table else {
+                continue;
+            };
+            if step.until_collapse {
+                findings
+                    .error_with(
+                        &table.span,
+                        "a table in a step with until = \"collapse\", whose loads grow by one factor",
+                        "over the time of a step that does not end",
+                        "a step of its own before it for what varies",
+                    )
+                    .about(Class::Steps);
+                continue;
+            }
+            jumps(&deck.steps[..number], condition, findings);
+        }
+    }
+}
+
+/// The parts of a condition that start elsewhere than the steps before have ended.
+fn jumps(before: &[StepEntry], condition: &ConditionEntry, findings: &mut Findings) {
+    let Some((table, &[_, share])) = condition
+        .table
+        .as_ref()
+        .and_then(|t| Some((t, t.value.first()?)))
+    else {
+        return;
+    };
+    for (part, value) in parts(&condition.action) {
+        let starts = value * share;
+        let Some(held) = held(before, &condition.on.value, part) else {
+            continue;
+        };
+        if (starts - held).abs() <= 1e-9 * value.abs().max(held.abs()) {
+            continue;
+        }
+        let (what, on) = (part.0, &condition.on.value);
+        let remedy = match value {
+            0.0 => "a step of its own that takes it back".to_owned(),
+            _ => format!("[0, {}] as the first row", held / value + 0.0), // Not −0.
+        };
+        findings
+            .error_with(
+                &table.span,
+                format!("the {what} of \"{on}\" would jump from {held} to {starts} at the beginning of the step"),
+                "not where the step before ended",
+                remedy,
+            )
+            .about(Class::Steps);
+        return;
+    }
+}
+
+/// What acts at the end of the steps so far; `None` for a displacement that nothing prescribes then. Loads are released
+/// by a step that does not list them, and tools stay.
+fn held(before: &[StepEntry], on: &str, part: Part) -> Option<f64> {
+    let of = |step: &StepEntry| -> Option<f64> {
+        let own = step.conditions.iter().filter(|c| c.on.value == on);
+        let values = own.flat_map(|c| {
+            let last = c.table.as_ref().and_then(|t| Some(t.value.last()?[1]));
+            let share = last.unwrap_or(1.0);
+            parts(&c.action)
+                .into_iter()
+                .map(move |(p, v)| (p, v * share))
+        });
+        let values: Vec<f64> = values.filter(|(p, _)| *p == part).map(|(_, v)| v).collect();
+        (!values.is_empty()).then(|| values.iter().sum())
+    };
+    match part.0 {
+        DISPLACEMENT => before.last().map_or(Some(0.0), of),
+        MOTION | TURN => Some(before.iter().rev().find_map(of).unwrap_or(0.0)),
+        _ => Some(before.last().and_then(of).unwrap_or(0.0)),
+    }
+}
+
+const DISPLACEMENT: &str = "displacement";
+const MOTION: &str = "motion";
+const TURN: &str = "turn";
+
+/// The numbers of a condition.
+fn parts(action: &Action) -> Vec<(Part, f64)> {
+    let vector = |what: &'static str, v: &[f64]| -> Vec<(Part, f64)> {
+        let of = |(axis, &value)| ((what, axis), value);
+        v.iter().enumerate().map(of).collect()
+    };
+    let motion = |u: &Option<Vec<f64>>| u.as_ref().map_or(Vec::new(), |u| vector(MOTION, u));
+    match action {
+        Action::Fix(axes) => axes.iter().map(|&i| ((DISPLACEMENT, i), 0.0)).collect(),
+        Action::Move(u) => u
+            .iter()
+            .map(|&(i, value)| ((DISPLACEMENT, i), value))
+            .collect(),
+        Action::Pressure(p) => vec![(("pressure", 0), *p)],
+        Action::Traction(t) => vector("traction", t),
+        Action::Force(f) => vector("force", f),
+        Action::BodyForce(f) => vector("body force", f),
+        Action::Tool(u, turn) => {
+            let turn = turn.iter().map(|turn| ((TURN, 0), turn.angle));
+            motion(u).into_iter().chain(turn).collect()
+        }
+        Action::Push(f, u) => [vector("force", f), motion(u)].concat(),
+    }
+}

@@ -1,0 +1,80 @@
+//! Tables over the time of a step.
+
+use super::{says, shown};
+use moreau::deck::open;
+
+/// What the punch does in the example.
+const MOVE: &str = "u = { y = -0.2 } }";
+
+fn with(table: &str) -> String {
+    MOVE.replace(" } }", &format!(" }}, table = {table} }}"))
+}
+
+#[test]
+fn rows_that_make_no_table_are_pointed_at() {
+    for table in [
+        "[]",
+        "[[0, 1]]",
+        "[[0.1, 0], [1, 1]]",
+        "[[0, 0], [0.9, 1]]",
+        "[[0, 0], [0.6, 1], [0.4, 0.5], [1, 1]]",
+        "[[0, 0], [0.5, 1], [0.5, 0], [1, 1]]",
+    ] {
+        says(
+            MOVE,
+            &with(table),
+            "table =",
+            &["times of the table", "rise from 0 to 1"],
+        );
+    }
+    for (table, words) in [
+        ("1", "rows of time and share"),
+        ("[0, 1]", "2 numbers"),
+        ("[[0, 0, 0], [1, 1]]", "2 numbers"),
+        ("[[0, 0], [1, nan]]", "number"),
+    ] {
+        says(MOVE, &with(table), "table =", &[words]);
+    }
+    // What is fixed has no value to vary.
+    let fixed = "on = \"block.left\", u = [\"x\"]";
+    let varied = format!("{fixed}, table = [[0, 0], [1, 1]]");
+    says(fixed, &varied, "table =", &["unknown key \"table\""]);
+}
+
+#[test]
+fn what_would_jump_is_pointed_at_with_the_row_that_does_not() {
+    let words = [
+        "the displacement of \"punch\" would jump from 0 to -0.1",
+        "[0, 0] as the first row",
+    ];
+    says(MOVE, &with("[[0, 0.5], [1, 1]]"), "table =", &words);
+    let more = |kind: &str, table: &str| {
+        let second = format!(
+            "\n[[step]]\nname = \"more\"\nincrements = 2\nfix = [{{ on = \"block.left\", u = [\"x\"] }}]\n{kind}, table = {table} }}]\n\n[expect]"
+        );
+        shown("\n[expect]", &second)
+    };
+    let shift = "move = [{ on = \"punch\", u = { y = -0.4 }";
+    assert!(more(shift, "[[0, 0], [1, 1]]").contains("[0, 0.5] as the first row"));
+    assert_eq!(more(shift, "[[0, 0.5], [1, 1]]"), "");
+    // A load that was not there starts at nothing.
+    let load = "load = [{ on = \"block.top\", pressure = 10.0";
+    assert!(
+        more(load, "[[0, 1], [1, 1]]")
+            .contains("the pressure of \"block.top\" would jump from 0 to 10")
+    );
+    assert_eq!(more(load, "[[0, 0], [0.5, 1], [1, 0.5]]"), "");
+}
+
+#[test]
+fn a_step_without_end_has_no_table() {
+    let text = include_str!("../../../../docs/examples/cylinder-to-collapse.toml");
+    let until = text.replacen("pressure = ", "table = [[0, 0], [1, 1]], pressure = ", 1);
+    assert_ne!(until, text);
+    let (_, problem, findings) = open(&until);
+    let said = findings.render("deck.toml", &until, false);
+    assert!(
+        problem.is_none() && said.contains("until = \"collapse\""),
+        "{said}"
+    );
+}
