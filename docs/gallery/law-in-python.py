@@ -64,7 +64,7 @@ deck = mc.Deck(
     output=dict(probes=["tube.left"]),
 )
 tube = mc.run(deck, laws={"tube": copper})
-tube.history[["time", "u.tube.left.x", "newton_iterations"]]
+tube
 
 # %% [markdown]
 # ## What must hold
@@ -78,8 +78,8 @@ tube.history[["time", "u.tube.left.x", "newton_iterations"]]
 
 # %%
 c = np.sqrt(3) / 2 * (PRESSURE * np.sqrt(3) * N / K / (A ** (-2 * N) - B ** (-2 * N))) ** (1 / N)
-widened = tube.history["u.tube.left.x"].to_numpy()
-load = tube.history["time"].to_numpy()
+widened = np.asarray(tube.history["u.tube.left.x"])
+load = np.asarray(tube.history["time"])
 points = tube.simulation.arrays("points")
 equivalent = K * (2 * c / np.sqrt(3) / points.points[:, 0] ** 2) ** N
 
