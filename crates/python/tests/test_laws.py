@@ -1,6 +1,7 @@
 """Laws in Python: the numbers of those of the core, what is wrong with them, and what they cost."""
 
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -168,6 +169,15 @@ def test_an_interrupt_in_a_law_is_one_of_the_simulation(block, raising):
     for _ in simulation:
         pass
     assert simulation.increments == 20
+
+
+def test_runs_in_threads_have_the_bits_of_one_alone(block):
+    def end(_):
+        return mc.run(block, laws={"block": steel()}).simulation.displacement
+
+    alone = end(0)
+    with ThreadPoolExecutor(4) as pool:
+        assert all(np.array_equal(one, alone) for one in pool.map(end, range(8)))
 
 
 class Spoilt(VonMises):
