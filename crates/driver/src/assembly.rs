@@ -5,6 +5,7 @@ pub(crate) mod cell_law;
 pub(crate) mod cells;
 pub(crate) mod large;
 pub(crate) mod numbering;
+pub(crate) mod panel;
 pub(crate) mod scatter;
 pub(crate) mod small;
 pub(crate) mod spread;

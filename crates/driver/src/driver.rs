@@ -3,7 +3,7 @@
 use crate::assembly::block::{Block, PointField, PointState};
 use crate::assembly::cell_law::{Motion, Stiffness};
 use crate::assembly::spread::serve;
-use crate::error::{IncrementError, ModelError};
+use crate::error::{IncrementError, LawFault, ModelError};
 use crate::linear::system::{Contacts, System};
 use crate::model::footing::Footing;
 use crate::model::load::Loading;
@@ -119,6 +119,7 @@ impl<const D: usize> Driver<D> {
             unstable: false,
         };
         driver.start();
+        driver.check_laws()?;
         driver.pair(&Loading::default())?;
         Ok(driver)
     }
@@ -422,17 +423,29 @@ impl<const D: usize> Driver<D> {
         };
         let small = system.is_tied() && D * self.points.len() <= CONDENSABLE;
         self.system = Some(system);
-        match outcome {
+        match outcome.map_err(|error| self.or_fault(error)) {
             Err(IncrementError::Contact { .. }) if small && self.settings.seam == Seam::Cheaper => {
                 // A dense matrix costs more, and its methods find what this one does not.
                 let mut system = self.elastic_system(end, None, Seam::Condensed)?;
                 let watch = &mut |_: &Self, now: &Iteration<'_>| watch(now);
                 let outcome = self.increment(&mut system, &start, end, watch);
                 self.system = Some(system);
-                outcome
+                outcome.map_err(|error| self.or_fault(error))
             }
             outcome => outcome,
         }
+    }
+
+    /// # Errors
+    /// What a law could not answer in the last evaluation.
+    pub(crate) fn check_laws(&mut self) -> Result<(), LawFault> {
+        let fault = self.blocks.iter_mut().find_map(|block| block.take_fault());
+        fault.map_or(Ok(()), Err)
+    }
+
+    /// What a law could not answer, where there is such, in place of what followed from that.
+    pub(crate) fn or_fault(&mut self, error: IncrementError) -> IncrementError {
+        self.check_laws().err().map_or(error, Into::into)
     }
 
     /// The linear system for the prescribed degrees of freedom of a loading and a pivot: the one at

@@ -1,7 +1,9 @@
 //! Errors of the driver: of setting up a model and of a step; facts with numbers.
 
+mod law;
 mod tool;
 
+pub use law::{LawFault, Place};
 pub use tool::ToolOutOfContact;
 
 use crate::report::collapse::Collapse;
@@ -176,6 +178,18 @@ pub enum ModelError {
         /// The second value \[mm\].
         second: f64,
     },
+    /// Of a law that is given from outside.
+    #[error(transparent)]
+    Law(#[from] LawFault),
+    /// A law of panels where strains and rotations are large.
+    #[error(
+        "the law of {group:?} answers for small strains only, and the strains of this model are large: take a law \
+         of points, or small strains"
+    )]
+    SmallStrainsOnly {
+        /// Its group of cells.
+        group: String,
+    },
     /// A number that is NaN or infinite, or outside of its range.
     #[error("{what} is {value}, expected {expected}")]
     OutOfRange {
@@ -346,6 +360,9 @@ pub enum IncrementError {
         /// Its value.
         value: f64,
     },
+    /// Of a law that is given from outside.
+    #[error(transparent)]
+    Law(#[from] LawFault),
     /// Whoever watched the iterates broke off.
     #[error("the increment was interrupted")]
     Interrupted,
@@ -384,6 +401,18 @@ pub enum IncrementError {
     },
 }
 
+impl IncrementError {
+    /// Whether the increment was broken off from outside, by whoever watched it or by a law: the next one begins as if
+    /// it had not.
+    pub fn is_broken_off(&self) -> bool {
+        match self {
+            Self::Interrupted => true,
+            Self::Law(fault) => fault.breaks_off(),
+            _ => false,
+        }
+    }
+}
+
 /// A factor that does not solve the system it was made of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Inaccurate {
@@ -416,6 +445,7 @@ fn collapse_hint(
         IncrementError::Passage { .. }
             | IncrementError::Within { .. }
             | IncrementError::NotFinite { .. }
+            | IncrementError::Law(_)
             | IncrementError::Snap { .. }
     ) {
         return String::new();

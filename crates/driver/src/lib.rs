@@ -47,6 +47,7 @@ pub use assembly::block::{Block, BlockEnergy, CellResult, PointField, PointState
 pub use assembly::cell_law::{CellLaw, CellOutput, Motion, Stiffness};
 pub use assembly::cells::{Cells, ElementCells};
 pub use assembly::large::Large;
+pub use assembly::panel::PanelBlock;
 pub use assembly::small::Small;
 pub use checks::between::Between;
 pub use checks::gaps::LeastGap;
@@ -54,7 +55,7 @@ pub use checks::rigid::Stopper;
 pub use checks::smallness::{Deformation, Extent};
 pub use checks::supports::{RigidMotion, Support};
 pub use driver::Driver;
-pub use error::{Imbalance, IncrementError, ModelError, ToolOutOfContact};
+pub use error::{Imbalance, IncrementError, LawFault, ModelError, Place, ToolOutOfContact};
 pub use model::load::{Axis, Loading, Step};
 pub use model::{Analysis, Model};
 pub use path::buckling::Buckling;

@@ -8,6 +8,7 @@ pub(crate) mod points;
 
 use crate::assembly::block::{Block, SolidBlock};
 use crate::assembly::cells::{Cells, ElementCells};
+use crate::assembly::panel::PanelBlock;
 use crate::assembly::spread::block::SpreadBlock;
 use crate::assembly::spread::partition::partition;
 use crate::error::ModelError;
@@ -16,7 +17,7 @@ use crate::model::points::{ALONG_NORMAL, ContactPoint, Tool, tool_index};
 use crate::vector::SparseVector;
 use moreau_algebra::SharedTeam;
 use moreau_contact::Obstacle;
-use moreau_laws::{BulkLaw, Friction};
+use moreau_laws::{BulkLaw, Friction, PanelLaw};
 use moreau_mesh::{
     Axisymmetric, CellKind, Element, Facet, Hex8, Hex20, Hex27, Hypothesis, Integration, Mesh,
     MortarRow, Pairing, PlaneStrain, PositiveShare, Pressed, Quad4, Quad8, Quad9, Share, Solid,
@@ -268,17 +269,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         integration: Integration,
         state: impl Fn(&[f64; D]) -> L::State,
     ) -> Result<Self, ModelError> {
-        let mut by_kind: BTreeMap<CellKind, Vec<usize>> = BTreeMap::new();
-        for &cell in self.mesh.cell_group(group)? {
-            if self.material[cell].replace(self.materials).is_some() {
-                return Err(ModelError::TwoMaterials {
-                    cell,
-                    group: group.into(),
-                });
-            }
-            by_kind.entry(self.mesh.kind(cell)).or_default().push(cell);
-        }
-        self.materials += 1;
+        let by_kind = self.claim(group)?;
         let rank = self.team.as_ref().map(|(team, _)| team.rank());
         for (kind, mut cells) in by_kind {
             if let (Some(rank), Some((_, process))) = (rank, &self.team) {
@@ -296,6 +287,51 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             }
         }
         Ok(self)
+    }
+
+    /// Gives the cells of a group a law that answers for many points at once, and an integration rule. On a team they
+    /// stay with the first process.
+    ///
+    /// # Errors
+    /// An unknown group; [`ModelError::TwoMaterials`]; [`ModelError::SmallStrainsOnly`]; [`ModelError::Law`] for a law
+    /// that is none at rest.
+    pub fn panel_material(
+        mut self,
+        group: &str,
+        law: &Arc<dyn PanelLaw>,
+        integration: Integration,
+    ) -> Result<Self, ModelError> {
+        if self.large {
+            return Err(ModelError::SmallStrainsOnly {
+                group: group.into(),
+            });
+        }
+        for (kind, cells) in self.claim(group)? {
+            let own = self.hypothesis.cells(&self.mesh, kind, &cells, integration);
+            let first = self.team.as_ref().is_none_or(|(team, _)| team.rank() == 0);
+            if let Some(own) = own.filter(|_| first) {
+                let block = PanelBlock::new(cells, own, law.clone())?;
+                self.blocks.push(Box::new(block));
+                self.members.push(None);
+            }
+        }
+        Ok(self)
+    }
+
+    /// Takes the cells of a group for the next material, by their kind.
+    fn claim(&mut self, group: &str) -> Result<BTreeMap<CellKind, Vec<usize>>, ModelError> {
+        let mut by_kind: BTreeMap<CellKind, Vec<usize>> = BTreeMap::new();
+        for &cell in self.mesh.cell_group(group)? {
+            if self.material[cell].replace(self.materials).is_some() {
+                return Err(ModelError::TwoMaterials {
+                    cell,
+                    group: group.into(),
+                });
+            }
+            by_kind.entry(self.mesh.kind(cell)).or_default().push(cell);
+        }
+        self.materials += 1;
+        Ok(by_kind)
     }
 
     /// Adds a block of cells of any element and law, [`SolidBlock`] or another: one material, with the

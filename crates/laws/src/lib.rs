@@ -46,7 +46,8 @@
 //! | any of these, as a structure sees it | [`Friction`] | as an equation |
 //! | of tests and documents only | [`textbook`] | all |
 //!
-//! A law of your own is a [`BulkLaw`] or a [`ShearBound`]; [`contract`] tests it in one line.
+//! A law of your own is a [`BulkLaw`] or a [`ShearBound`]; [`contract`] tests it in one line. One of another language
+//! is a [`PanelLaw`].
 //!
 //! Tensors are in Mandel notation, see `moreau_mandel`; units are N, mm and MPa. Constructors
 //! return [`LawError`] for data that define no law; past them nothing fails, and data that are not
@@ -63,6 +64,7 @@ mod friction;
 mod isotropic;
 mod large;
 mod local;
+mod panel;
 pub mod textbook;
 mod von_mises;
 
@@ -81,4 +83,5 @@ pub use friction::tresca::Tresca;
 pub use isotropic::Isotropic;
 pub use large::{LargeResponse, Turned, respond_large, volume_change};
 pub use local::{Local, Status};
+pub use panel::{NoAnswer, Panel, PanelLaw, PointByPoint};
 pub use von_mises::{VonMises, VonMisesState};

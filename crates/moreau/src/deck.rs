@@ -54,13 +54,18 @@ pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;
 
 use crate::algebra::SharedTeam;
+use crate::laws::PanelLaw;
 pub(crate) use columns::{columns, history_columns};
 pub(crate) use described::{Described, Unit};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf, absolute};
+use std::sync::Arc;
 
 /// Mesh files that are not on disk: their contents, by the paths that decks give.
 pub type Meshes = BTreeMap<PathBuf, Vec<u8>>;
+
+/// Laws that stand in place of those of the materials of a deck, by the group of cells that a material is on.
+pub type Laws = BTreeMap<String, Arc<dyn PanelLaw>>;
 
 /// What a deck is given beside its text.
 #[derive(Debug, Clone, Default)]
@@ -69,6 +74,8 @@ pub struct Given {
     pub meshes: Meshes,
     /// Values of parameters, in place of those of the deck.
     pub parameters: BTreeMap<String, f64>,
+    /// Laws in place of those of its materials, under small strains.
+    pub laws: Laws,
     /// The processes of a team, each of which opens the same deck; without one this process is alone.
     pub team: Option<SharedTeam>,
 }
@@ -96,7 +103,7 @@ pub fn open_with(text: &str, folder: &Path, given: &Given) -> (Deck, Option<Prob
         let found = given.meshes.iter().find(|(path, _)| is_wanted(path));
         found.map(|(_, bytes)| bytes.as_slice())
     });
-    let mut problem = build::build(&mut deck, (mesh, given.team.as_ref()), &mut findings);
+    let mut problem = build::build(&mut deck, mesh, given, &mut findings);
     if let Some(problem) = &problem {
         let columns = match problem {
             Problem::Plane(setup) => columns(setup),

@@ -50,7 +50,7 @@ pub use saved::RestoreError;
 pub(crate) use course::Course;
 pub(crate) use saved::{sealed, unsealed};
 
-use crate::deck::{Deck, Findings, Given, Meshes, Problem, open_with};
+use crate::deck::{Deck, Findings, Given, Problem, open_with};
 use crate::driver::{IncrementError, IncrementReport, Iteration, ModelError, Numbers};
 use crate::laws::Status;
 use crate::mesh::Mesh;
@@ -120,7 +120,8 @@ pub(crate) use either;
 /// A deck under way.
 pub struct Simulation {
     deck: Deck,
-    meshes: Meshes,
+    /// What the deck is given when it is opened again, for a step that follows.
+    given: Given,
     course: Either,
 }
 
@@ -129,31 +130,32 @@ impl Simulation {
     /// errors. Of the processes of a team the first goes on as if it were alone, the others with [`Simulation::serve`].
     pub fn open(text: &str, folder: &Path, given: &Given) -> (Option<Self>, Findings) {
         let (deck, problem, findings) = open_with(text, folder, given);
-        // For a step that follows the deck is opened again, from wherever the process is then.
+        // From wherever the process is then.
         let at = |path: &PathBuf| absolute(folder.join(path)).unwrap_or_else(|_| path.clone());
-        let kept = || {
-            given
-                .meshes
-                .iter()
+        let kept = || Given {
+            meshes: (given.meshes.iter())
                 .map(|(path, mesh)| (at(path), mesh.clone()))
+                .collect(),
+            laws: given.laws.clone(),
+            ..Given::default()
         };
-        let simulation = problem.map(|problem| Self::of(deck, problem, kept().collect()));
+        let simulation = problem.map(|problem| Self::of(deck, problem, kept()));
         (simulation, findings)
     }
 
     /// A deck whose meshes are on disk, and its problem.
     pub fn new(deck: Deck, problem: Problem) -> Self {
-        Self::of(deck, problem, Meshes::default())
+        Self::of(deck, problem, Given::default())
     }
 
-    fn of(deck: Deck, problem: Problem, meshes: Meshes) -> Self {
+    fn of(deck: Deck, problem: Problem, given: Given) -> Self {
         let course = match problem {
             Problem::Plane(setup) => Either::Plane(Box::new(Course::new(&deck, *setup))),
             Problem::Solid(setup) => Either::Solid(Box::new(Course::new(&deck, *setup))),
         };
         Self {
             deck,
-            meshes,
+            given,
             course,
         }
     }
@@ -177,8 +179,8 @@ impl Simulation {
     /// to the bit, as if there had been no interruption.
     ///
     /// # Errors
-    /// [`StepError`]: the same again in every later call, but for
-    /// [`IncrementError::Interrupted`] where `watch` breaks off.
+    /// [`StepError`]: the same again in every later call, unless the increment was broken off, by `watch` with
+    /// [`IncrementError::Interrupted`] or by a law with [`IncrementError::Law`].
     pub fn advance(
         &mut self,
         watch: &mut dyn FnMut(&str, &Iteration<'_>) -> ControlFlow<()>,
@@ -214,15 +216,11 @@ impl Simulation {
         deck.steps.truncate(begun);
         deck.expectations.clear();
         let text = format!("{}\n[[step]]\n{step}\n", deck.resolved());
-        let given = Given {
-            meshes: self.meshes.clone(),
-            ..Given::default()
-        };
-        let (deck, problem, findings) = open_with(&text, Path::new(""), &given);
+        let (deck, problem, findings) = open_with(&text, Path::new(""), &self.given);
         let Some(problem) = problem else {
             return Err(Refusal { text, findings });
         };
-        let mut next = Self::of(deck, problem, Meshes::default());
+        let mut next = Self::of(deck, problem, Given::default());
         let taken = match (&mut next.course, &self.course) {
             (Either::Plane(next), Either::Plane(course)) => next.take_over(course),
             (Either::Solid(next), Either::Solid(course)) => next.take_over(course),

@@ -1,6 +1,7 @@
 //! `moreau_fem._core`: what Python cannot do itself. Numbers go over as bytes, which arrays take as they are; what a
 //! user meets is in `python/moreau_fem`.
 
+mod law;
 mod simulation;
 
 use pyo3::prelude::*;

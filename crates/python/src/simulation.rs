@@ -1,7 +1,9 @@
 //! A simulation, and its tables and grids as columns of bytes; no column is named here.
 
-use moreau::deck::{Findings, Given, Severity};
+use crate::law::{PythonLaw, Raised};
+use moreau::deck::{Findings, Given, Laws, Severity};
 use moreau::driver::IncrementError;
+use moreau::laws::PanelLaw;
 use moreau::simulation::{Array, Grid, Simulation as Course, StepError};
 use moreau::table::{Table, Values};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -10,7 +12,7 @@ use pyo3::types::{PyByteArray, PyBytes};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 use std::time::{Duration, Instant};
 
 /// Between two looks at the signals of the interpreter, which other threads may hold.
@@ -46,11 +48,13 @@ type Bodies = (
 #[pyclass(frozen)]
 pub(crate) struct Simulation {
     course: Mutex<Course>,
+    raised: Raised,
 }
 
 #[pymethods]
 impl Simulation {
-    /// Opens a deck: the simulation unless it has errors, the findings, and these as text with the name of a file.
+    /// Opens a deck with laws in place of those of its materials: the simulation unless it has errors, the findings,
+    /// and these as text with the name of a file.
     #[staticmethod]
     fn open(
         py: Python<'_>,
@@ -58,17 +62,28 @@ impl Simulation {
         folder: PathBuf,
         file: String,
         meshes: BTreeMap<PathBuf, Vec<u8>>,
-    ) -> (Option<Self>, Vec<Found>, String) {
+        laws: BTreeMap<String, Bound<'_, PyAny>>,
+    ) -> PyResult<(Option<Self>, Vec<Found>, String)> {
+        let raised = Raised::default();
+        let law =
+            |(on, asked): (String, Bound<'_, PyAny>)| -> PyResult<(String, Arc<dyn PanelLaw>)> {
+                Ok((on, Arc::new(PythonLaw::new(&asked, &raised)?)))
+            };
         let given = Given {
             meshes,
+            laws: laws.into_iter().map(law).collect::<PyResult<Laws>>()?,
             ..Given::default()
         };
         let (course, findings) = py.detach(|| Course::open(&text, &folder, &given));
+        if let Some(error) = raised.take() {
+            return Err(error);
+        }
         let course = course.map(|course| Self {
             course: Mutex::new(course),
+            raised,
         });
         let shown = findings.render(&file, &text, false);
-        (course, found(&findings, &text), shown)
+        Ok((course, found(&findings, &text), shown))
     }
 
     /// Applies the next increment, with the interpreter free for others; whether there was one. A step that does not
@@ -95,6 +110,9 @@ impl Simulation {
         });
         match (outcome, raised) {
             (Err(StepError::Increment(IncrementError::Interrupted)), Some(signal)) => Err(signal),
+            (Err(StepError::Increment(IncrementError::Law(fault))), _) if fault.breaks_off() => {
+                Err(self.raised.or_fault(py, &fault))
+            }
             (outcome, _) => Ok(matches!(outcome, Ok(Some(_)))),
         }
     }
@@ -104,7 +122,11 @@ impl Simulation {
     fn replace_step(&self, py: Python<'_>, step: String) -> PyResult<(Vec<Found>, Option<String>)> {
         let mut course = self.course()?;
         let course = &mut *course;
-        Ok(match py.detach(|| course.replace_step(&step)) {
+        let replaced = py.detach(|| course.replace_step(&step));
+        if let Some(error) = self.raised.take() {
+            return Err(error);
+        }
+        Ok(match replaced {
             Ok(findings) => (found(&findings, ""), None),
             Err(refused) => (
                 found(&refused.findings, &refused.text),

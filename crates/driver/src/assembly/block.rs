@@ -5,6 +5,7 @@ use crate::assembly::cell_law::{CellLaw, CellOutput, Motion, Stiffness};
 use crate::assembly::cells::{Cells, MAX_POINTS};
 use crate::assembly::large::Large;
 use crate::assembly::small::Small;
+use crate::error::LawFault;
 use moreau_laws::{BulkLaw, FlowPower, Numbers};
 use moreau_mandel::{Sym2, from_matrix, to_matrix};
 use nalgebra::{Matrix3, Vector3};
@@ -86,6 +87,12 @@ pub trait Block<const D: usize>: Send + Sync {
         stiffness: Stiffness,
         sink: &mut dyn FnMut(CellResult<'_>),
     ) -> bool;
+
+    /// What the law could not answer, if it could not in the last evaluation, whose forces are then no numbers. One that
+    /// breaks off stays until it is taken, and until then there are no other forces.
+    fn take_fault(&mut self) -> Option<LawFault> {
+        None
+    }
 
     /// Whether the stiffness is that of the forces, or does for it.
     fn is_symmetric(&self) -> bool;
@@ -442,40 +449,14 @@ impl<C: CellLaw<D>, const D: usize> Block<D> for SolidBlock<C, D> {
     }
 
     fn gradients(&self, u: &[f64], sink: &mut dyn FnMut(&PointState<D>, &Matrix3<f64>)) {
-        let count = self.cells.points_per_cell();
-        let mut gradient = [Matrix3::zeros(); MAX_POINTS];
-        for k in 0..self.cells.count() {
-            self.cells.gradient(k, u, &mut gradient[..count]);
-            for (g, gradient) in gradient[..count].iter().enumerate() {
-                sink(&self.point(k * count + g, gradient), gradient);
-            }
-        }
+        visit_gradients(self.cells.as_ref(), u, &mut |point, gradient| {
+            sink(&self.point(point, gradient), gradient);
+        });
     }
 
     fn add_stress_stiffness(&self, v: &[f64], force: &mut [f64]) {
-        let count = self.cells.points_per_cell();
-        let mut gradient = [Matrix3::zeros(); MAX_POINTS];
-        let mut of_cell = [0.0; 3 * MAX_POINTS];
-        for k in 0..self.cells.count() {
-            self.cells.gradient(k, v, &mut gradient[..count]);
-            let (mut volume, mut mean, mut stress) = (0.0, Matrix3::zeros(), Sym2::zeros());
-            for (g, gradient) in gradient[..count].iter().enumerate() {
-                let point = k * count + g;
-                let weight = self.cells.weight(point);
-                volume += weight;
-                mean += gradient * weight;
-                let rest = Matrix3::zeros();
-                stress += self.of_cell.stress(&self.old[point], &rest) * weight;
-            }
-            gradient[..count].fill(mean * to_matrix(&stress) / (volume * volume));
-            let nodes = self.cells.nodes(k);
-            let own = &mut of_cell[..D * nodes.len()];
-            self.cells.gradient_force(k, &gradient[..count], own);
-            for (&a, f) in nodes.iter().zip(own.chunks_exact(D)) {
-                let at = force[D * a..D * a + D].iter_mut();
-                at.zip(f).for_each(|(sum, f)| *sum += f);
-            }
-        }
+        let stress = |point: usize| self.of_cell.stress(&self.old[point], &Matrix3::zeros());
+        add_stress_stiffness(self.cells.as_ref(), &stress, v, force);
     }
 
     fn state(&self) -> Vec<f64> {
@@ -497,6 +478,53 @@ impl<C: CellLaw<D>, const D: usize> Block<D> for SolidBlock<C, D> {
             self.new.copy_from_slice(&self.old);
         }
         count
+    }
+}
+
+/// Hands every quadrature point on with the displacement gradient there, cell by cell.
+pub(crate) fn visit_gradients<const D: usize>(
+    cells: &dyn Cells<D>,
+    u: &[f64],
+    sink: &mut dyn FnMut(usize, &Matrix3<f64>),
+) {
+    let count = cells.points_per_cell();
+    let mut gradient = [Matrix3::zeros(); MAX_POINTS];
+    for k in 0..cells.count() {
+        cells.gradient(k, u, &mut gradient[..count]);
+        for (g, gradient) in gradient[..count].iter().enumerate() {
+            sink(k * count + g, gradient);
+        }
+    }
+}
+
+/// [`Block::add_stress_stiffness`] of the stresses at quadrature points.
+pub(crate) fn add_stress_stiffness<const D: usize>(
+    cells: &dyn Cells<D>,
+    stress_at: &dyn Fn(usize) -> Sym2,
+    v: &[f64],
+    force: &mut [f64],
+) {
+    let count = cells.points_per_cell();
+    let mut gradient = [Matrix3::zeros(); MAX_POINTS];
+    let mut of_cell = [0.0; 3 * MAX_POINTS];
+    for k in 0..cells.count() {
+        cells.gradient(k, v, &mut gradient[..count]);
+        let (mut volume, mut mean, mut stress) = (0.0, Matrix3::zeros(), Sym2::zeros());
+        for (g, gradient) in gradient[..count].iter().enumerate() {
+            let point = k * count + g;
+            let weight = cells.weight(point);
+            volume += weight;
+            mean += gradient * weight;
+            stress += stress_at(point) * weight;
+        }
+        gradient[..count].fill(mean * to_matrix(&stress) / (volume * volume));
+        let nodes = cells.nodes(k);
+        let own = &mut of_cell[..D * nodes.len()];
+        cells.gradient_force(k, &gradient[..count], own);
+        for (&a, f) in nodes.iter().zip(own.chunks_exact(D)) {
+            let at = force[D * a..D * a + D].iter_mut();
+            at.zip(f).for_each(|(sum, f)| *sum += f);
+        }
     }
 }
 

@@ -25,7 +25,7 @@ impl<const D: usize> Driver<D> {
     /// Makes a converged increment the state of the driver.
     ///
     /// # Errors
-    /// [`IncrementError::NotFinite`] for what numbers do not hold; nothing has changed then.
+    /// [`IncrementError::NotFinite`] for what numbers do not hold, [`IncrementError::Law`]; nothing has changed then.
     pub(crate) fn commit(
         &mut self,
         start: &Loading<D>,
@@ -40,6 +40,7 @@ impl<const D: usize> Driver<D> {
             out_of_balance,
             counts,
         } = candidate;
+        self.check_laws()?;
         let record = |i: usize| self.record(i, &kinematics[i], &solution);
         let contacts: Vec<ContactRecord<D>> = (0..kinematics.len()).map(record).collect();
         let forces: Vec<Local<D>> = contacts.iter().map(|c| c.t).collect();

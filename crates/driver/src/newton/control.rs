@@ -94,7 +94,7 @@ impl<const D: usize> Driver<D> {
         let increment = self.begin_increment(&mut system, ends, guess, Some(control));
         let outcome = self.balance(&mut system, increment, watch);
         self.system = Some(system);
-        let candidate = outcome?;
+        let candidate = outcome.map_err(|error| self.or_fault(error))?;
         self.check_passage(&candidate.d_u, &start)?;
         self.check_bodies(&candidate.d_u)?;
         (control.factor <= 1.0)

@@ -107,15 +107,13 @@ impl<const D: usize> Driver<D> {
         let candidate = match self.balance(system, increment, watch) {
             Err(error)
                 if self.has_large_strains()
-                    && !matches!(
-                        error,
-                        IncrementError::Model(_) | IncrementError::Interrupted
-                    ) =>
+                    && !matches!(error, IncrementError::Model(_))
+                    && !error.is_broken_off() =>
             {
                 self.continued(system, (start, end), watch)
-                    .map_err(|other| match other {
-                        IncrementError::Interrupted => other,
-                        _ => error,
+                    .map_err(|other| match other.is_broken_off() {
+                        true => other,
+                        false => error,
                     })?
             }
             other => other?,
@@ -227,7 +225,7 @@ impl<const D: usize> Driver<D> {
                     length = (2.0 * length).min(PART);
                     last = Some(candidate);
                 }
-                Err(error) if length < SHORTEST || error == IncrementError::Interrupted => {
+                Err(error) if length < SHORTEST || error.is_broken_off() => {
                     return Err(error);
                 }
                 Err(_) => length *= 0.5,
@@ -303,12 +301,13 @@ impl<const D: usize> Driver<D> {
     /// Where the iterate stands, with the normals of where it is.
     ///
     /// # Errors
-    /// [`Driver::pair_at`].
+    /// [`Driver::pair_at`]; [`IncrementError::Law`].
     fn balance_of(
         &mut self,
         system: &System,
         increment: &mut Increment<'_, '_, D>,
     ) -> Result<Balance<D>, IncrementError> {
+        self.check_laws()?;
         let arrived = increment.has_arrived();
         let (iterate, end) = (&mut increment.iterate, &*increment.end);
         if self.repairs() {

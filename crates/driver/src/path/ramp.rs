@@ -287,7 +287,7 @@ impl<const D: usize> Driver<D> {
     /// [`IncrementError::Collapse`] where displacements grow at a constant load;
     /// [`IncrementError::Stopped`] when the increment has been halved as often as the settings allow;
     /// what converged before is kept. [`IncrementError::Model`] for a step that makes no sense;
-    /// [`IncrementError::Interrupted`] where `watch` breaks off.
+    /// [`IncrementError::Interrupted`] where `watch` breaks off, and [`IncrementError::Law`] where a law does.
     pub fn proceed(
         &mut self,
         ramp: &mut Ramp<D>,
@@ -302,7 +302,7 @@ impl<const D: usize> Driver<D> {
         }
         let (before, at_hand) = (ramp.clone(), self.at_hand());
         let outcome = self.attempts(ramp, watch);
-        if let Err(IncrementError::Interrupted) = outcome {
+        if outcome.as_ref().is_err_and(IncrementError::is_broken_off) {
             *ramp = before;
             self.put_back(at_hand)?;
         }
@@ -336,9 +336,8 @@ impl<const D: usize> Driver<D> {
                     ramp.converged(&report, before, self.last_work(&self.load(ramp)));
                     return Ok(report);
                 }
-                Err(error @ (IncrementError::Model(_) | IncrementError::Interrupted)) => {
-                    return Err(error);
-                }
+                Err(error @ IncrementError::Model(_)) => return Err(error),
+                Err(error) if error.is_broken_off() => return Err(error),
                 Err(cause) => {
                     // Halved exactly, and until it is not what has just failed.
                     ramp.length *= 0.5;
@@ -475,9 +474,8 @@ impl<const D: usize> Driver<D> {
                     ramp.path = Some(path);
                     return Ok(report);
                 }
-                Err(error @ (IncrementError::Model(_) | IncrementError::Interrupted)) => {
-                    return Err(error);
-                }
+                Err(error @ IncrementError::Model(_)) => return Err(error),
+                Err(error) if error.is_broken_off() => return Err(error),
                 Ok(None) => {}
                 Err(cause) => {
                     path.length *= 0.5;

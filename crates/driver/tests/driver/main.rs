@@ -13,6 +13,7 @@ mod increments;
 mod interrupted;
 mod klarbring;
 mod law;
+mod panel;
 mod passages;
 mod refusals;
 mod released;

@@ -10,9 +10,9 @@ mod parts;
 mod penetrations;
 mod slips;
 
+use super::Given;
 use super::entries::{Action, Analysis, Deck, Method};
 use super::finding::{Class, Findings};
-use crate::algebra::SharedTeam;
 use crate::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
 use crate::driver::{
     self, Driver, Increments, LeastGap, ModelError, Nesting, RigidMotion, Settings, Step, Support,
@@ -97,11 +97,12 @@ pub enum Problem {
     Solid(Box<Setup<3>>),
 }
 
-/// Builds what the deck describes, on the mesh file that is given, or else that on disk, and on a team, if there is
-/// one; `None` if that has errors.
+/// Builds what the deck describes, on its mesh file if that is not on disk, and with what is given beside its text;
+/// `None` if that has errors.
 pub(super) fn build(
     deck: &mut Deck,
-    (given, team): (Option<&[u8]>, Option<&SharedTeam>),
+    file: Option<&[u8]>,
+    given: &Given,
     findings: &mut Findings,
 ) -> Option<Problem> {
     match deck.analysis {
@@ -114,24 +115,24 @@ pub(super) fn build(
                     None
                 }
             };
-            let mesh = meshes::plane(deck, given, findings);
+            let mesh = meshes::plane(deck, file, findings);
             setup(
                 deck,
                 mesh,
                 thickness.unwrap_or_default(),
-                (parts::profile, team),
+                (parts::profile, given),
                 findings,
             )
             .map(|s| Problem::Plane(Box::new(s)))
         }
         Analysis::Axisymmetric => {
-            let mesh = meshes::meridian(deck, given, findings);
-            setup(deck, mesh, Axisymmetric, (parts::profile, team), findings)
+            let mesh = meshes::meridian(deck, file, findings);
+            setup(deck, mesh, Axisymmetric, (parts::profile, given), findings)
                 .map(|s| Problem::Plane(Box::new(s)))
         }
         Analysis::Solid => {
-            let mesh = meshes::solid(deck, given, findings);
-            setup(deck, mesh, Solid, (parts::surface, team), findings)
+            let mesh = meshes::solid(deck, file, findings);
+            setup(deck, mesh, Solid, (parts::surface, given), findings)
                 .map(|s| Problem::Solid(Box::new(s)))
         }
     }
@@ -141,7 +142,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     deck: &mut Deck,
     mesh: Option<Mesh<D>>,
     hypothesis: H,
-    (surface, team): (parts::Surface<D>, Option<&SharedTeam>),
+    (surface, given): (parts::Surface<D>, &Given),
     findings: &mut Findings,
 ) -> Option<Setup<D>> {
     let groups = mesh.map(|mesh| Groups::new(deck, mesh, findings));
@@ -151,16 +152,24 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
         }
     }
     let deck = &*deck;
-    unfinished(deck, findings);
+    unfinished(deck, given, findings);
     names::check(deck, groups.as_ref(), findings);
-    let parts = parts::parts(deck, findings);
+    names::check_laws(deck, &given.laws, findings);
+    let parts = parts::parts(deck, &given.laws, findings);
     let groups = groups?;
     if findings.errors() > 0 {
         return None;
     }
     let parts = parts?;
     let mesh = groups.mesh.clone();
-    let model = parts::assemble(deck, (mesh, team), hypothesis, &parts, surface, findings)?;
+    let model = parts::assemble(
+        deck,
+        (mesh, given.team.as_ref()),
+        hypothesis,
+        &parts,
+        surface,
+        findings,
+    )?;
     let stiffness = |part| parts::stiffness(deck, &groups.mesh, &hypothesis, part);
     let settings = settings(deck, stiffness, findings)?;
     let driver = driver(Driver::new(model, settings), deck, &groups, findings)?;
@@ -270,7 +279,7 @@ fn moments(deck: &Deck) -> bool {
 }
 
 /// What large strains do not go with.
-fn unfinished(deck: &Deck, findings: &mut Findings) {
+fn unfinished(deck: &Deck, given: &Given, findings: &mut Findings) {
     let Some(finite) = &deck.finite else { return };
     let mut refuse = |problem: &str, remedy: &str| {
         findings.error_with(
@@ -283,6 +292,12 @@ fn unfinished(deck: &Deck, findings: &mut Findings) {
     if deck.steps.iter().any(|s| s.until_collapse) {
         refuse(
             "until = \"collapse\": a limit load is that of the undeformed structure",
+            "strain = \"small\"",
+        );
+    }
+    if let Some(on) = given.laws.keys().next() {
+        refuse(
+            &format!("a law of one's own on \"{on}\": it answers for small strains"),
             "strain = \"small\"",
         );
     }

@@ -117,9 +117,7 @@ impl<const D: usize> Course<D> {
             self.ramp = Some(ramp);
             match outcome {
                 Ok(report) => return Ok(Some(self.converged(report))),
-                Err(IncrementError::Interrupted) => {
-                    return Err(IncrementError::Interrupted.into());
-                }
+                Err(error) if error.is_broken_off() => return Err(error.into()),
                 Err(IncrementError::Collapse { collapse, step }) => {
                     self.tally.collapse = Some((self.stage, collapse));
                     if !self.setup.stages[self.stage].until_collapse {

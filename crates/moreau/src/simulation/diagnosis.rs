@@ -134,6 +134,10 @@ fn suggestion(
             "in step \"{name}\" prescribe what the model can follow: displacements of its size at most, and \
              loads of the size of its strength, in the units of the deck"
         ),
+        (_, IncrementError::Law(_)) => format!(
+            "let the law of the material answer with numbers at larger strains, or in step \"{name}\" allow smaller \
+             increments"
+        ),
         (_, IncrementError::Mechanism { node, axis, .. }) => {
             format!("hold u_{axis} near node {node}, or bring it into contact: it moves freely")
         }

@@ -7,8 +7,10 @@ is installed, in the units of the deck.
 
 from importlib.metadata import version
 
+from .check_law import LawCheck, check_law
 from .deck import Deck
-from .errors import Collapse, DeckError, DeckWarning, Finding, NotConverged, RunError
+from .errors import Collapse, DeckError, DeckWarning, Finding, LawError, NotConverged, RunError
+from .law import Law
 from .mesh import Mesh, block
 from .result import Picture, Result, run, table
 from .simulation import Grid, Increment, Simulation
@@ -23,6 +25,9 @@ __all__ = [
     "Finding",
     "Grid",
     "Increment",
+    "Law",
+    "LawCheck",
+    "LawError",
     "Mesh",
     "NotConverged",
     "Picture",
@@ -30,6 +35,7 @@ __all__ = [
     "RunError",
     "Simulation",
     "block",
+    "check_law",
     "run",
     "table",
 ]

@@ -1,5 +1,8 @@
+from collections.abc import Mapping
 from os import PathLike
 from typing import Literal
+
+from .law import Asked
 
 Found = tuple[str, str, str, str, str | None, int, int]
 Values = (
@@ -18,6 +21,7 @@ class Simulation:
         folder: str | PathLike[str],
         file: str,
         meshes: dict[str, bytes],
+        laws: Mapping[str, Asked],
     ) -> tuple[Simulation | None, list[Found], str]: ...
     def advance(self) -> bool: ...
     def replace_step(self, step: str) -> tuple[list[Found], str | None]: ...

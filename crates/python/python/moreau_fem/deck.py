@@ -14,6 +14,7 @@ import numpy as np
 from . import _toml, errors
 from ._core import Simulation as Core
 from .errors import DeckError, Finding
+from .law import Law, asked
 from .mesh import Mesh
 from .tables import frame
 
@@ -161,19 +162,22 @@ class Deck:
         _, found, _ = self._open()
         return frame({name: [getattr(f, name) for f in found] for name in Finding._fields})
 
-    def _open(self) -> tuple[Core | None, list[Finding], str]:
-        core, found, shown = Core.open(self.text, self.folder, self.file, self.meshes)
+    def _open(self, laws: Mapping[str, Law] | None = None) -> tuple[Core | None, list[Finding], str]:
+        core, found, shown = Core.open(self.text, self.folder, self.file, self.meshes, asked(laws))
         return core, errors.findings(found), shown
 
-    def open(self) -> Core:
-        """The deck under way, as a simulation has it within. Doubts are warnings.
+    def open(self, laws: Mapping[str, Law] | None = None) -> Core:
+        """The deck under way, as a simulation has it within, with laws in place of those of its materials. Doubts are
+        warnings.
 
         Raises
         ------
         DeckError
             If anything is wrong.
+        LawError
+            For a law that is none. What a law raises itself goes through.
         """
-        core, found, shown = self._open()
+        core, found, shown = self._open(laws)
         if core is None:
             raise DeckError(shown.rstrip(), found)
         errors.warn(found)

@@ -53,6 +53,27 @@ class DeckError(ValueError):
         return "\n" + str(self.args[0])
 
 
+class LawError(ValueError):
+    """A law of a material in Python that is none: what it answers, and where if that is known."""
+
+    cell: int | None
+    """The cell of the mesh."""
+    point: int | None
+    """The quadrature point of the cell, from 0."""
+    position: tuple[float, ...] | None
+    """Where that is in the undeformed body."""
+
+    def __init__(
+        self,
+        message: str,
+        cell: int | None = None,
+        point: int | None = None,
+        position: tuple[float, ...] | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.cell, self.point, self.position = cell, point, position
+
+
 class RunError(RuntimeError):
     """A run that did not come to its end. What converged before is in ``result``."""
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import html
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from .deck import Deck
+from .law import Law
 from .simulation import Simulation, Source
 from .tables import frame
 
@@ -84,8 +85,9 @@ class Result:
         return f"<pre>{html.escape(str(self))}</pre>\n" + "\n".join(pictures)
 
 
-def run(deck: Source, *, quiet: bool = False) -> Result:
+def run(deck: Source, *, quiet: bool = False, laws: Mapping[str, Law] | None = None) -> Result:
     """Runs a deck to its end, in memory: nothing is written. On a terminal, progress is shown unless ``quiet``.
+    ``laws`` are those of :class:`Simulation`.
 
     Raises
     ------
@@ -93,8 +95,10 @@ def run(deck: Source, *, quiet: bool = False) -> Result:
         If the deck cannot be run.
     NotConverged, Collapse, RunError
         If it does not come to its end; ``.result`` has what converged before.
+    LawError
+        For a law that is none. What a law raises itself goes through.
     """
-    simulation = Simulation(deck)
+    simulation = Simulation(deck, laws=laws)
     shown = not quiet and sys.stderr.isatty()
     try:
         for increment in simulation:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from . import _toml, errors, tables
 from .deck import Deck, _dashed
 from .errors import DeckError
+from .law import Law
 from .tables import numbers
 
 if TYPE_CHECKING:
@@ -86,18 +87,24 @@ class Simulation:
     Ctrl-C leaves the last converged increment, also within the next one; going on ends with the same bits. All
     arrays are copies. A simulation belongs to one thread at a time, the interpreter is free for others meanwhile.
 
+    ``laws`` are laws in Python, in place of those of materials of the deck, by the group that a material is ``on``: see
+    :class:`Law`. They are for small strains. The elastic moduli and the yield stress of such a material are not used,
+    but for the stiffness of a penalty that is given as a penetration.
+
     Raises
     ------
     DeckError
-        If the deck cannot be run.
+        If the deck cannot be run, or has no material on a group that a law is given on.
+    LawError
+        For a law that is none. What a law raises itself goes through.
     """
 
     deck: Deck
     """The deck; after :attr:`step` was set the one with that step."""
 
-    def __init__(self, deck: Source) -> None:
+    def __init__(self, deck: Source, *, laws: Mapping[str, Law] | None = None) -> None:
         self.deck = deck if isinstance(deck, Deck) else Deck(deck)
-        self._core = self.deck.open()
+        self._core = self.deck.open(laws)
 
     def __iter__(self) -> Iterator[Increment]:
         return self
@@ -109,6 +116,9 @@ class Simulation:
         ------
         NotConverged, Collapse, RunError
             If there is none because the step does not go on; what converged before is kept.
+        LawError
+            If an answer of a law is none. After this, and after whatever a law raises itself, the last converged
+            increment is kept, and going on begins the next one again.
         """
         if self._core.advance():
             return self.last
@@ -237,7 +247,7 @@ class Simulation:
         return grid
 
     def save(self) -> bytes:
-        """The simulation as bytes, deck and history with it."""
+        """The simulation as bytes, deck and history with it, but not the laws that it was given."""
         deck = self.deck
         head = {
             "text": deck.text,
@@ -248,8 +258,9 @@ class Simulation:
         return json.dumps(head).encode() + b"\n" + self._core.save()
 
     @classmethod
-    def restore(cls, state: bytes) -> Simulation:
-        """A simulation that :meth:`save` has left: it goes on as if nothing had happened, to the bit.
+    def restore(cls, state: bytes, *, laws: Mapping[str, Law] | None = None) -> Simulation:
+        """A simulation that :meth:`save` has left, with the laws that it was given: it goes on as if nothing had
+        happened, to the bit.
 
         Raises
         ------
@@ -264,7 +275,7 @@ class Simulation:
             deck.meshes = {name: text.encode("latin-1") for name, text in head["meshes"].items()}
         except (ValueError, KeyError, TypeError) as error:
             raise ValueError("this is no state of a simulation") from error
-        simulation = cls(deck)
+        simulation = cls(deck, laws=laws)
         simulation._core.restore(numbers)
         return simulation
 

@@ -1,6 +1,7 @@
 //! Names: every one used exists, holds what is needed, and no name is given twice.
 
 use super::groups::Groups;
+use crate::deck::Laws;
 use crate::deck::entries::{Action, Deck};
 use crate::deck::finding::{At, Class, Findings, did_you_mean};
 use std::collections::BTreeSet;
@@ -35,6 +36,23 @@ pub(super) fn check<const D: usize>(
         }
     }
     twice(deck, groups, findings);
+}
+
+/// Every law that is given stands in place of that of a material.
+pub(super) fn check_laws(deck: &Deck, laws: &Laws, findings: &mut Findings) {
+    let materials = || deck.materials.iter().map(|m| &m.on);
+    let names = || materials().map(|on| on.value.as_str());
+    for given in laws.keys() {
+        if names().any(|name| name == given) {
+            continue;
+        }
+        let near = did_you_mean(given, names());
+        let message = format!("a law is given on \"{given}\", and no material is on that{near}");
+        let span = materials().next().map_or(0..0, |on| on.span.clone());
+        findings
+            .error(&span, message, "where there is a material")
+            .about(Class::Names);
+    }
 }
 
 /// Names that materials, contacts, conditions and groups use; errors for those that are not what is

@@ -4,6 +4,7 @@
 use super::groups::HIDDEN;
 use crate::algebra::SharedTeam;
 use crate::contact::{Ball, ContactError, Cylinder, Obstacle, Plane, Polyline, Triangulated};
+use crate::deck::Laws;
 use crate::deck::entries::{
     Adjust, Curve, Deck, FrictionEntry, Hardening, MaterialEntry, Shape, SoilEntry,
 };
@@ -11,10 +12,11 @@ use crate::deck::finding::{At, Findings};
 use crate::driver::{Analysis, Model, ModelError};
 use crate::laws::{
     AnisotropicCoulomb, Coulomb, DruckerPrager, Elastic, ElasticDruckerPrager, Friction, Isotropic,
-    LawError, LimitedCoulomb, Parameter, Tresca, VonMises,
+    LawError, LimitedCoulomb, PanelLaw, Parameter, Tresca, VonMises,
 };
 use crate::mesh::{CellKind, Integration, Mesh, MeshError};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Most terms of kinematic hardening with recall; those without are as many as there are. Fits of
 /// cyclic tests take two or three.
@@ -27,6 +29,7 @@ enum Law {
     VonMises(VonMises),
     Chaboche(VonMises<RECALLED>),
     DruckerPrager(ElasticDruckerPrager),
+    Given(Arc<dyn PanelLaw>),
 }
 
 /// What a model needs beside its mesh.
@@ -35,12 +38,15 @@ pub(super) struct Parts {
     frictions: Vec<Friction>,
 }
 
-/// The laws; `None` if some are none.
-pub(super) fn parts(deck: &Deck, findings: &mut Findings) -> Option<Parts> {
+/// The laws, those given in place of those of materials; `None` if some are none.
+pub(super) fn parts(deck: &Deck, given: &Laws, findings: &mut Findings) -> Option<Parts> {
     let mut laws = Vec::new();
     for material in &deck.materials {
         match law(material) {
-            Ok(law) => laws.push(law),
+            Ok(law) => {
+                let given = given.get(&material.on.value);
+                laws.push(given.map_or(law, |given| Law::Given(given.clone())));
+            }
             Err((span, problem)) => {
                 findings.error(&span, problem, "out of range");
             }
@@ -442,6 +448,7 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
             Law::VonMises(law) => model.material(&name, law, rule),
             Law::Chaboche(law) => model.material(&name, law, rule),
             Law::DruckerPrager(law) => model.material(&name, law, rule),
+            Law::Given(law) => model.panel_material(&name, &law, rule),
         };
         model = added.map_err(|e| note(&entry.on.span, e)).ok()?;
     }

@@ -1,0 +1,110 @@
+//! Laws that are given in place of those of materials.
+
+use super::{DECK, advance, examples, finish, simulation};
+use moreau::deck::{Findings, Given, Laws};
+use moreau::driver::{IncrementError, LawFault};
+use moreau::laws::{NoAnswer, Panel, PanelLaw, PointByPoint, VonMises};
+use moreau::simulation::{RunStatus, Simulation, StepError};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// That of the deck.
+fn steel() -> PointByPoint<VonMises> {
+    PointByPoint(VonMises::new(210e3, 0.3, 300.0).expect("valid"))
+}
+
+fn open(text: &str, on: &str, law: impl PanelLaw + 'static) -> (Option<Simulation>, Findings) {
+    let law: Arc<dyn PanelLaw> = Arc::new(law);
+    let given = Given {
+        laws: Laws::from([(on.to_owned(), law)]),
+        ..Given::default()
+    };
+    Simulation::open(text, &examples(), &given)
+}
+
+#[test]
+fn a_law_that_is_given_stands_in_place_of_that_of_the_deck() {
+    let softer = DECK.replace("yield-stress = 300.0", "yield-stress = 200.0");
+    assert_ne!(softer, DECK);
+    let (given, findings) = open(&softer, "block", steel());
+    let mut given = given.unwrap_or_else(|| panic!("{}", findings.render("deck", &softer, false)));
+    let mut own = simulation(DECK);
+    for _ in 0..10 {
+        assert!(advance(&mut given) && advance(&mut own));
+    }
+    // Also for a step that follows.
+    let release =
+        "name = \"release\"\nincrements = 2\nfix = [{ on = \"block.left\", u = [\"x\"] }]";
+    for simulation in [&mut given, &mut own] {
+        simulation.replace_step(release).expect("a step");
+    }
+    let (given, own) = (finish(given), finish(own));
+    assert_eq!(given.displacements(), own.displacements());
+    let load = |s: &Simulation| s.history().numbers("force.punch.y");
+    assert_eq!(load(&given), load(&own));
+}
+
+#[test]
+fn a_law_must_be_on_a_material_and_for_small_strains() {
+    let told = |text: &str, on: &str| {
+        let (simulation, findings) = open(text, on, steel());
+        assert!(simulation.is_none());
+        findings.render("deck", text, false)
+    };
+    let text = told(DECK, "blok");
+    assert!(
+        text.contains(
+            "a law is given on \"blok\", and no material is on that; did you mean \"block\"?"
+        ),
+        "{text}"
+    );
+    let large = DECK.replacen("analysis", "strain = \"finite\"\nanalysis", 1);
+    let text = told(&large, "block");
+    assert!(
+        text.contains("it answers for small strains") && text.contains("strain = \"small\""),
+        "{text}"
+    );
+}
+
+/// Refuses one call.
+#[derive(Debug)]
+struct Refusing(AtomicUsize);
+
+impl PanelLaw for Refusing {
+    fn initial(&self) -> Vec<f64> {
+        steel().initial()
+    }
+
+    fn respond(&self, panel: Panel<'_>) -> Result<(), NoAnswer> {
+        match self.0.fetch_add(1, Ordering::Relaxed) {
+            9 => Err(NoAnswer("not now".into())),
+            _ => steel().respond(panel),
+        }
+    }
+}
+
+#[test]
+fn a_law_that_refuses_is_no_end() {
+    let (simulation_of, _) = open(DECK, "block", Refusing(AtomicUsize::new(0)));
+    let mut simulation_of = simulation_of.expect("a deck");
+    let refused = loop {
+        match simulation_of.advance(&mut |_, _| ControlFlow::Continue(())) {
+            Ok(_) => {}
+            Err(error) => break error,
+        }
+    };
+    let problem = "not now".to_owned();
+    let fault = IncrementError::Law(LawFault::NoAnswer { problem });
+    assert_eq!(refused, StepError::Increment(fault));
+    let increments = simulation_of.increments();
+    assert_eq!(
+        simulation_of.outcome().status,
+        RunStatus::Interrupted(increments)
+    );
+    let whole = finish(simulation_of);
+    assert_eq!(
+        whole.displacements(),
+        finish(simulation(DECK)).displacements()
+    );
+}
