@@ -3,6 +3,7 @@
 mod benchmarks;
 mod docs;
 mod markdown;
+mod page;
 mod tidy;
 mod verify;
 
@@ -33,6 +34,8 @@ enum Task {
     Tidy,
     /// Write the pages of docs/reference from what they describe
     Docs(docs::Args),
+    /// Write the page that computes in a browser, as one file
+    Page(page::Args),
     /// A benchmark and its arguments
     #[command(external_subcommand)]
     Benchmark(Vec<OsString>),
@@ -43,6 +46,7 @@ fn main() -> ExitCode {
         Task::Verify(args) => verify::run(&args),
         Task::Tidy => tidy::run(),
         Task::Docs(args) => docs::run(&args),
+        Task::Page(args) => page::run(&args),
         Task::Benchmark(arguments) => benchmarks::run(&arguments),
     };
     match done {

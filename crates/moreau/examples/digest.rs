@@ -24,9 +24,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
                 .render(&path.to_string_lossy(), &text, false)
                 .into());
         };
-        let mut on = |_: &str, _: &_| ControlFlow::Continue(());
         // Where it does not go on, its state is that of what converged.
-        while let Ok(Some(_)) = simulation.advance(&mut on) {}
+        while let Ok(Some(_)) = simulation.advance(&mut |_, _| ControlFlow::Continue(())) {}
         let digest = simulation
             .save()
             .iter()
