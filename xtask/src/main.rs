@@ -3,6 +3,7 @@
 mod benchmarks;
 mod docs;
 mod markdown;
+mod package;
 mod page;
 mod tidy;
 mod verify;
@@ -36,6 +37,8 @@ enum Task {
     Docs(docs::Args),
     /// Write the page that computes in a browser, as one file
     Page(page::Args),
+    /// Pack every crate, build what was packed, and run a deck with it
+    Package,
     /// A benchmark and its arguments
     #[command(external_subcommand)]
     Benchmark(Vec<OsString>),
@@ -47,6 +50,7 @@ fn main() -> ExitCode {
         Task::Tidy => tidy::run(),
         Task::Docs(args) => docs::run(&args),
         Task::Page(args) => page::run(&args),
+        Task::Package => package::run(),
         Task::Benchmark(arguments) => benchmarks::run(&arguments),
     };
     match done {
