@@ -7,9 +7,12 @@ mod compared;
 
 use std::error::Error;
 use std::fs;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use verification::workspace;
 
 /// What the module is compiled for.
@@ -92,6 +95,13 @@ fn module(root: &Path, built: &Path) -> Result<Vec<u8>, Box<dyn Error>> {
     }
 }
 
+/// Bytes as gzip has them, which browsers take apart by themselves.
+fn compressed(bytes: &[u8]) -> io::Result<Vec<u8>> {
+    let mut writer = GzEncoder::new(Vec::new(), Compression::best());
+    writer.write_all(bytes)?;
+    writer.finish()
+}
+
 /// The page with all its parts in it.
 fn assembled(root: &Path, module: &[u8]) -> Result<String, Box<dyn Error>> {
     let folder = root.join("crates/browser/page");
@@ -99,7 +109,7 @@ fn assembled(root: &Path, module: &[u8]) -> Result<String, Box<dyn Error>> {
     let deck = fs::read_to_string(root.join("docs/examples/punched-block.toml"))?;
     let parts = [
         ("{{style}}", part("style.css")?),
-        ("{{module}}", base64::encoded(module)),
+        ("{{module}}", base64::encoded(&compressed(module)?)),
         ("{{worker}}", part("worker.js")?),
         ("{{deck}}", deck),
         ("{{page}}", part("page.js")?),

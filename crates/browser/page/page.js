@@ -54,8 +54,9 @@ const show = () => {
 // One run at a time: another choice ends it.
 let module, worker, states = [], outcome = null, deck = "";
 const modulePromise = (async () => {
-  const text = atob($("module").textContent.trim());
-  module = await WebAssembly.compile(Uint8Array.from(text, (c) => c.charCodeAt(0)));
+  const packed = Uint8Array.from(atob($("module").textContent.trim()), (c) => c.charCodeAt(0));
+  const unpacked = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+  module = await WebAssembly.compile(await new Response(unpacked).arrayBuffer());
 })();
 const source = URL.createObjectURL(new Blob([$("worker").textContent], { type: "text/javascript" }));
 

@@ -1,5 +1,5 @@
-//! Runs decks in memory and prints a number for each that stands for every bit of its state: two builds that print the
-//! same computed the same. With threads and without,
+//! Runs decks in memory and prints a number for each that stands for every bit of its displacements, of the fields at
+//! its points and of its tables: two builds that print the same computed the same. With threads and without,
 //!
 //! ```text
 //! cargo run --release -p moreau --example digest -- docs/examples/*.toml
@@ -26,12 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         };
         // Where it does not go on, its state is that of what converged.
         while let Ok(Some(_)) = simulation.advance(&mut |_, _| ControlFlow::Continue(())) {}
-        let digest = simulation
-            .save()
-            .iter()
-            .fold(0xcbf2_9ce4_8422_2325, |h: u64, b| {
-                (h ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3)
-            });
+        let digest = digest(&simulation);
         println!(
             "{digest:016x} {:4} increments {}",
             simulation.increments(),
@@ -39,4 +34,19 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         );
     }
     Ok(())
+}
+
+/// By the sum of Fowler, Noll and Vo.
+fn digest(simulation: &Simulation) -> u64 {
+    let points = simulation.points().point_data;
+    let values = points.iter().flat_map(|field| &field.values);
+    let numbers = simulation.displacements().iter().chain(values);
+    let mut bytes: Vec<u8> = numbers.flat_map(|number| number.to_le_bytes()).collect();
+    for table in [simulation.history(), &simulation.contacts()] {
+        for row in 0..table.rows() {
+            bytes.extend(table.line(row).into_bytes());
+        }
+    }
+    let add = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, add)
 }

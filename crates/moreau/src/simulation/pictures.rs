@@ -1,6 +1,7 @@
 //! The pictures of a simulation, from its tables and grids: forces or displacements over time, tractions along the
 //! contact, the deformed body with a field.
 
+#[cfg(feature = "command")]
 mod conditions;
 mod tools;
 
@@ -241,6 +242,7 @@ pub(crate) fn deformed(
 
 /// What a step of a plane deck is to do, before anything is computed: the mesh, the tools where they are at first, supports,
 /// motions, loads and contacts.
+#[cfg(feature = "command")]
 pub(crate) fn planned(deck: &Deck, setup: &Setup<2>, step: usize) -> Option<String> {
     let entry = deck.steps.get(step)?;
     let mesh = setup.driver.mesh();
