@@ -27,6 +27,9 @@ pub struct Args {
     /// Open it from disk in a browser without a window, and compare its loads with those of the command
     #[arg(long)]
     test: bool,
+    /// With --test: pictures of the page in a wide and in a narrow window, as files in this folder
+    #[arg(long, value_name = "DIR", requires = "test")]
+    pictures: Option<PathBuf>,
 }
 
 /// Builds the page, and tests it if that is asked for; `Ok(false)` where a load differs. A test is left out, and says so,
@@ -52,7 +55,7 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
         page.len() as f64 / 1e6
     );
     match args.test {
-        true => compared::run(&root, &fs::canonicalize(&out)?),
+        true => compared::run(&root, &fs::canonicalize(&out)?, args.pictures.as_deref()),
         false => Ok(true),
     }
 }

@@ -16,9 +16,24 @@ pub(super) fn encoded(bytes: &[u8]) -> String {
     text
 }
 
+/// The bytes of a text in base 64; what is no digit is left aside.
+pub(super) fn decoded(text: &str) -> Vec<u8> {
+    let digits = text
+        .bytes()
+        .filter_map(|c| DIGITS.iter().position(|d| *d == c));
+    let digits: Vec<usize> = digits.collect();
+    let mut bytes = Vec::with_capacity(digits.len() * 3 / 4);
+    for four in digits.chunks(4) {
+        let digit = |k: usize| four.get(k).copied().unwrap_or(0);
+        let bits = digit(0) << 18 | digit(1) << 12 | digit(2) << 6 | digit(3);
+        bytes.extend((1..four.len()).map(|k| (bits >> (24 - 8 * k)) as u8));
+    }
+    bytes
+}
+
 #[cfg(test)]
 mod tests {
-    use super::encoded;
+    use super::{decoded, encoded};
 
     /// The examples of the RFC.
     #[test]
@@ -33,6 +48,7 @@ mod tests {
             ("foobar", "Zm9vYmFy"),
         ] {
             assert_eq!(encoded(bytes.as_bytes()), text);
+            assert_eq!(decoded(text), bytes.as_bytes());
         }
         assert_eq!(encoded(&[0xfb, 0xff]), "+/8=");
     }

@@ -3,8 +3,11 @@
 use std::error::Error;
 use std::fs;
 use std::path::Path;
+use std::thread;
+use std::time::{Duration, Instant};
 
-use super::browser::Browser;
+use super::base64;
+use super::browser::{self, Browser};
 use verification::scratch::Scratch;
 
 /// Choices, as the address of the page has them: the paper's, and one for each way that differs.
@@ -15,35 +18,71 @@ const CHOICES: [&str; 4] = [
     "friction=0.3&algorithm=outside",
 ];
 
-/// Compares; `Ok(false)` where a load differs.
-pub(super) fn run(root: &Path, page: &Path) -> Result<bool, Box<dyn Error>> {
-    let Some(browser) = Browser::found() else {
+/// Time that a page may take for its load.
+const PATIENCE: Duration = Duration::from_secs(120);
+/// Between two looks at it.
+const PAUSE: Duration = Duration::from_millis(50);
+/// Windows that pictures are taken of \[pixels\].
+const WINDOWS: [(u32, u32); 2] = [(1280, 900), (420, 900)];
+
+/// Compares, and takes pictures of the first choice into a folder; `Ok(false)` where a load differs.
+pub(super) fn run(
+    root: &Path,
+    page: &Path,
+    pictures: Option<&Path>,
+) -> Result<bool, Box<dyn Error>> {
+    let Some(program) = browser::found() else {
         println!(
             "– page: not opened, there is no Chromium; CHROMIUM names one that is not on the path"
         );
         return Ok(true);
     };
     let scratch = Scratch::new()?;
+    let mut browser = Browser::start(&program, &scratch.path().join("browser"))?;
+    let address = |choice: &str| format!("file://{}#{choice}", page.display());
     let mut good = true;
     for (k, choice) in CHOICES.into_iter().enumerate() {
-        let dom = browser.opened(page, choice, &scratch.path().join(format!("browser-{k}")))?;
-        let state = between(&dom, "data-state=\"", "\"").unwrap_or("not begun");
+        let opened = browser.open(&address(choice), WINDOWS[0])?;
+        let state = rested(&mut browser, &opened)?;
         if state != "done" {
             println!("✗ page #{choice}: {state}");
             good = false;
             continue;
         }
-        let told = between(&dom, "id=\"load\" data-value=\"", "\"");
-        let deck = between(&dom, "<pre id=\"deck\">", "</pre>");
-        let (told, deck) = told.zip(deck).ok_or("the page shows no load")?;
-        scratch.write(&format!("{k}.toml"), &unescaped(deck))?;
+        let told = browser.value(&opened, "document.getElementById('load').dataset.value")?;
+        let deck = browser.value(&opened, "document.getElementById('deck').textContent")?;
+        scratch.write(&format!("{k}.toml"), &deck)?;
         let native = native(root, scratch.path(), k)?;
         let equal = told.parse::<f64>()?.to_bits() == native.to_bits();
         let sign = if equal { '✓' } else { '✗' };
         println!("{sign} page #{choice}: load {told}, of the command {native}");
         good &= equal;
     }
+    for (folder, window) in pictures.into_iter().flat_map(|f| WINDOWS.map(|w| (f, w))) {
+        let opened = browser.open(&address(CHOICES[0]), window)?;
+        rested(&mut browser, &opened)?;
+        let picture = base64::decoded(&browser.picture(&opened)?);
+        fs::create_dir_all(folder)?;
+        fs::write(folder.join(format!("page-{}.png", window.0)), picture)?;
+    }
     Ok(good)
+}
+
+/// Waits until a page has computed and drawn; how that ended.
+fn rested(browser: &mut Browser, page: &browser::Page) -> Result<String, Box<dyn Error>> {
+    let start = Instant::now();
+    loop {
+        thread::sleep(PAUSE);
+        let state = browser.value(page, "document.documentElement.dataset.state")?;
+        if !["", "running"].contains(&state.as_str()) {
+            // What is told last is drawn a little later.
+            thread::sleep(4 * PAUSE);
+            return Ok(state);
+        }
+        if start.elapsed() > PATIENCE {
+            return Ok("not done in time".to_owned());
+        }
+    }
 }
 
 /// The load that the command finds for a deck.
@@ -70,35 +109,4 @@ fn native(root: &Path, folder: &Path, k: usize) -> Result<f64, Box<dyn Error>> {
         .position(|name| name.starts_with("force.punch.y"));
     let value = at.and_then(|at| lines.last()?.split(',').nth(at));
     Ok(value.ok_or("the command shows no load")?.parse()?)
-}
-
-/// What stands between two texts.
-fn between<'a>(text: &'a str, before: &str, after: &str) -> Option<&'a str> {
-    let rest = text.split_once(before)?.1;
-    Some(rest.split_once(after)?.0)
-}
-
-/// Text as it was before it became that of an element.
-fn unescaped(text: &str) -> String {
-    let signs = [
-        ("&lt;", "<"),
-        ("&gt;", ">"),
-        ("&nbsp;", "\u{a0}"),
-        ("&amp;", "&"),
-    ];
-    let replaced = |text: String, (name, sign): (&str, &str)| text.replace(name, sign);
-    signs.into_iter().fold(text.to_owned(), replaced)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn text_is_taken_out_of_elements() {
-        let dom = "<pre id=\"deck\">a &lt; b &amp;amp; c</pre>";
-        let deck = between(dom, "<pre id=\"deck\">", "</pre>").map(unescaped);
-        assert_eq!(deck.as_deref(), Some("a < b &amp; c"));
-        assert_eq!(between(dom, "<p>", "</p>"), None);
-    }
 }
