@@ -24,7 +24,7 @@ pub struct Args {
     /// Where the page is written [default: moreau.html in the folder of what is built]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Open it from disk in a browser without a window, and compare its loads with those of the command
+    /// Open it from disk in a browser without a window, and compare its loads with those of the command, to 1e-9 of them
     #[arg(long)]
     test: bool,
     /// With --test: pictures of the page in a wide and in a narrow window, as files in this folder

@@ -2,7 +2,7 @@
 "use strict";
 const $ = (id) => document.getElementById(id);
 const example = $("example").textContent;
-// The same numbers read to the right digits: as they are printed, not rounded.
+// In all digits, which are read back to the same number.
 const exact = (x) => (x === null || x === undefined ? "–" : String(x));
 const short = (x, digits = 3) => {
   if (x === null || x === undefined || !Number.isFinite(x)) return "–";
@@ -60,9 +60,11 @@ const modulePromise = (async () => {
 })();
 const source = URL.createObjectURL(new Blob([$("worker").textContent], { type: "text/javascript" }));
 
-const say = (text, wrong = false) => {
+// One sentence in the colour of what is wrong, and below it what is more.
+const say = (text, wrong = false, more = "") => {
   $("state").textContent = text;
   $("state").className = wrong ? "wrong" : "";
+  $("more").textContent = more;
 };
 
 async function run() {
@@ -75,7 +77,7 @@ async function run() {
   try {
     await modulePromise;
   } catch (error) {
-    end("failed", String(error));
+    end("failed", String(error), true);
     return;
   }
   worker?.terminate();
@@ -91,10 +93,12 @@ async function run() {
       outcome = JSON.parse(data.text);
       [states] = [fresh];
       const whole = outcome.status === "done";
-      const warned = outcome.warnings.map((w) => `\nNote: ${w}`).join("");
+      const warned = outcome.warnings.map((w) => `Note: ${w}`);
+      const [what, ...why] = (outcome.error ?? "").split(/(?<=\.) (?=[A-Z])/);
       const took = `${outcome.increments} increments in ${short(data.computing / 1000, 3)} s`;
       follow();
-      end(outcome.status, whole ? took + warned : `${outcome.status}: ${outcome.error}${warned}`, !whole);
+      const more = [why.join(" "), ...warned].join("\n").trim();
+      end(outcome.status, whole ? took : `${outcome.status}: ${what}`, !whole, more);
     } else {
       end(data.kind, data.text, true);
     }
@@ -103,8 +107,8 @@ async function run() {
   worker.postMessage({ module, deck });
 }
 
-function end(state, text, wrong = false) {
-  say(text, wrong);
+function end(state, text, wrong = false, more = "") {
+  say(text, wrong, more);
   document.documentElement.dataset.state = state;
 }
 
@@ -180,7 +184,7 @@ function body(state) {
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   const place = ([x, y]) => [(x - sides[0]) * scale, (over - y) * scale];
   const least = Math.min(...field), most = Math.max(...field), range = most - least || 1;
-  const parts = state.cells.length > 300 ? 2 : 4;
+  const count = state.cells.length, parts = count > 300 ? 2 : count > 80 ? 4 : 8;
   const grid = [];
   for (let j = 0; j <= parts; j++)
     for (let i = 0; i <= parts; i++) grid.push(shapes((2 * i) / parts - 1, (2 * j) / parts - 1));
@@ -211,23 +215,30 @@ function body(state) {
     [a, e, b, f, c, g, d, h, a].forEach((p) => pen.lineTo(...place(at[p])));
     pen.stroke();
   }
-  supports(pen, place, sides);
+  rigid(pen, place([sides[0], 0]), place([sides[1], 0]), 1);
+  const top = 20 + times * state.history["u.punch.y"];
+  rigid(pen, place([0, top]), place([25, top]), -1);
   arrows(pen, place, state, times);
   $("least").textContent = short(least);
   $("most").textContent = `${short(most)} ${unit}`.trim();
   $("body-note").textContent = `Displacements ${short(times)} times as large; arrows are the forces of the foundation on ` +
-    "the block. The left side is the plane of symmetry, the line above the punch.";
+    "the block. The left side is the plane of symmetry; the punch is above, the foundation below.";
 }
 
-// The foundation, and the punch over half of the top.
-function supports(pen, place, [left, right]) {
+// The face of something rigid, with strokes on the side of it: 1 below, -1 above.
+function rigid(pen, [from, y], [to], side) {
   pen.strokeStyle = css("--ink");
-  pen.lineWidth = 1.5;
+  pen.lineWidth = 2;
   pen.beginPath();
-  pen.moveTo(...place([left, 0]));
-  pen.lineTo(...place([right, 0]));
-  pen.moveTo(...place([0, 21.5]));
-  pen.lineTo(...place([25, 21.5]));
+  pen.moveTo(from, y);
+  pen.lineTo(to, y);
+  pen.stroke();
+  pen.lineWidth = 0.8;
+  pen.beginPath();
+  for (let x = from + 6; x <= to; x += 7) {
+    pen.moveTo(x, y);
+    pen.lineTo(x - 6, y + 6 * side);
+  }
   pen.stroke();
 }
 
@@ -264,7 +275,7 @@ const shear = (state, k) => state.contacts.t_1[k];
 
 // A chart in a box of 400 by 210, its axes labelled at round numbers.
 function chart(xs, ys, [xLabel, yLabel], draw) {
-  const [l, r, t, b] = [56, 390, 12, 172];
+  const [l, r, t, b] = [62, 390, 12, 172];
   const ticks = (least, most) => {
     const step = 10 ** Math.floor(Math.log10((most - least) / 4));
     const by = step * [1, 2, 5, 10].find((f) => (most - least) / (f * step) <= 5);
@@ -276,7 +287,8 @@ function chart(xs, ys, [xLabel, yLabel], draw) {
     const [least, most] = [Math.min(0, ...all), Math.max(0, ...all)];
     return most > least ? [least, most] : [0, 1];
   };
-  const [x0, x1] = range(xs), [y0, y1] = range(ys);
+  // With room above for what is written there.
+  const [x0, x1] = range(xs), [y0, y1] = range([...ys, 1.15 * Math.max(0, ...ys)]);
   const X = (x) => l + ((x - x0) / (x1 - x0)) * (r - l), Y = (y) => b - ((y - y0) / (y1 - y0)) * (b - t);
   const grid = ticks(y0, y1).map((v) =>
     `<line x1="${l}" x2="${r}" y1="${Y(v)}" y2="${Y(v)}" stroke="var(--rule)"/>` +
@@ -315,8 +327,8 @@ function course(state) {
     path([[X(0), Y(0)], ...down.map((d, k) => [X(d), Y(load[k])])], 'stroke="var(--accent)" stroke-width="2"') +
     `<circle cx="${X(down[at])}" cy="${Y(load[at])}" r="4.5" fill="var(--accent)"/>`);
   const shown = state.history["force.punch.y"];
-  $("load").textContent = exact(shown).replace("-", "−");
-  $("load").dataset.value = exact(shown);
+  $("load").textContent = shown.toFixed(2).replace("-", "−");
+  $("load").title = $("load").dataset.value = exact(shown);
 }
 
 const rows = (id, list) => {
@@ -341,7 +353,10 @@ function numbers(state) {
     ...(h.penalty_energy ? [["springs of the penalty", `${short(h.penalty_energy, 6)} N·mm`]] : []),
     ["Newton iterations", states.reduce((s, t) => s + t.history.newton_iterations, 0)],
     ["iterations for contact", states.reduce((s, t) => s + t.history.contact_iterations, 0)],
-    ["points that stick, slip, are open", `${h.stick}, ${h.slip}, ${h.open}`],
+    ["contact points that stick", h.stick],
+    ["that slip", h.slip],
+    ["that are open", h.open],
+    ["that symmetry holds along the foundation", state.contacts.x.length - h.stick - h.slip - h.open],
   ]);
 }
 
