@@ -6,6 +6,9 @@
 //! cargo run --release -p moreau --no-default-features --features decks --example digest -- docs/examples/*.toml
 //! ```
 
+// A program, not a library: it prints.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
 use moreau::deck::Given;
 use moreau::driver::threads;
 use moreau::simulation::Simulation;

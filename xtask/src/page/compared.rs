@@ -1,5 +1,5 @@
 //! What comes of the page beside what comes of the command, for the decks that the page says it ran: how they end, and
-//! their loads. Equal bits are not asked for: processors fuse a product into a sum, and WebAssembly does not.
+//! their loads. Equal bits are not asked for: libraries of dense algebra choose their instructions by the processor.
 
 use std::error::Error;
 use std::fs;
