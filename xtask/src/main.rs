@@ -3,6 +3,8 @@
 mod benchmarks;
 mod docs;
 mod markdown;
+mod package;
+mod page;
 mod tidy;
 mod verify;
 
@@ -33,6 +35,10 @@ enum Task {
     Tidy,
     /// Write the pages of docs/reference from what they describe
     Docs(docs::Args),
+    /// Write the page that computes in a browser, as one file
+    Page(page::Args),
+    /// Pack every crate, build what was packed, and run a deck with it
+    Package,
     /// A benchmark and its arguments
     #[command(external_subcommand)]
     Benchmark(Vec<OsString>),
@@ -43,6 +49,8 @@ fn main() -> ExitCode {
         Task::Verify(args) => verify::run(&args),
         Task::Tidy => tidy::run(),
         Task::Docs(args) => docs::run(&args),
+        Task::Page(args) => page::run(&args),
+        Task::Package => package::run(),
         Task::Benchmark(arguments) => benchmarks::run(&arguments),
     };
     match done {

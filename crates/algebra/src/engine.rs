@@ -190,7 +190,7 @@ pub(crate) fn check_columns(x: &[f64], size: usize) -> Result<(), EngineError> {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "parallel"))]
 mod tests {
     use super::*;
     use crate::common::laplacian;

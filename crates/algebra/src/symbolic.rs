@@ -13,6 +13,15 @@ use crate::pattern::Pattern;
 /// wait for each other, and on a busy machine long.
 const PARALLEL: f64 = 1e11;
 
+/// All threads of the pool, where there are threads.
+fn all() -> Par {
+    #[cfg(feature = "parallel")]
+    let par = Par::rayon(0);
+    #[cfg(not(feature = "parallel"))]
+    let par = Par::Seq;
+    par
+}
+
 /// Elimination tree of a pattern, and the number of entries of every column of its factor.
 struct Columns<'a> {
     upper: SymbolicSparseColMat<u32>,
@@ -141,10 +150,9 @@ impl Symbolic {
 
     /// Threads for a numeric factorisation.
     pub(crate) fn par(&self) -> Par {
-        if self.cost.operations > PARALLEL {
-            Par::rayon(0)
-        } else {
-            Par::Seq
+        match self.cost.operations > PARALLEL {
+            true => all(),
+            false => Par::Seq,
         }
     }
 

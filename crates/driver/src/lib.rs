@@ -40,6 +40,7 @@ mod recovery;
 mod report;
 mod saved;
 mod settings;
+mod threads;
 mod timings;
 mod vector;
 
@@ -66,5 +67,6 @@ pub use report::collapse::{Collapse, UpperBound};
 pub use report::{ContactRecord, Energies, IncrementReport, Iteration};
 pub use saved::{Numbers, Saved};
 pub use settings::{Nesting, Seam, Settings};
-pub use timings::Timings;
+pub use threads::threads;
+pub use timings::{Clock, Timings};
 pub use vector::SparseVector;

@@ -1,7 +1,9 @@
 //! Where the time of a run goes; no part of a result.
 
 use std::ops::AddAssign;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+#[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+use std::time::Instant;
 
 /// Time spent since the driver was made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -35,9 +37,38 @@ impl AddAssign for Timings {
     }
 }
 
+/// A clock that has run since it was started. WebAssembly on its own knows no time: no time passes there.
+#[derive(Debug, Clone, Copy)]
+pub struct Clock {
+    #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+    started: Instant,
+}
+
+impl Clock {
+    /// Starts it.
+    pub fn start() -> Self {
+        Self {
+            #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+            started: Instant::now(),
+        }
+    }
+
+    /// Time since it was started.
+    #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+    pub fn elapsed(&self) -> Duration {
+        self.started.elapsed()
+    }
+
+    /// Time since it was started: none that is known.
+    #[cfg(all(target_family = "wasm", target_os = "unknown"))]
+    pub fn elapsed(&self) -> Duration {
+        Duration::ZERO
+    }
+}
+
 /// Adds the time that `work` takes to `total`.
 pub(crate) fn timed<T>(total: &mut Duration, work: impl FnOnce() -> T) -> T {
-    let start = Instant::now();
+    let start = Clock::start();
     let result = work();
     *total += start.elapsed();
     result

@@ -6,10 +6,10 @@ use crate::assembly::cells::{Cells, MAX_POINTS};
 use crate::assembly::large::Large;
 use crate::assembly::small::Small;
 use crate::error::LawFault;
+use crate::threads::prelude::*;
 use moreau_laws::{BulkLaw, FlowPower, Numbers};
 use moreau_mandel::{Sym2, from_matrix, to_matrix};
 use nalgebra::{Matrix3, Vector3};
-use rayon::prelude::*;
 
 /// Forces of a cell and, if asked for, its stiffness.
 #[derive(Debug, Clone, Copy)]

@@ -9,7 +9,7 @@ use crate::error::ModelError;
 use crate::linear::coarse::Coarse;
 use crate::linear::others::Others;
 use crate::settings::Seam;
-use crate::timings::{Timings, timed};
+use crate::timings::{Clock, Timings, timed};
 use crate::vector::SparseVector;
 use crate::vector::residual;
 use moreau_algebra::{
@@ -17,7 +17,6 @@ use moreau_algebra::{
 };
 use moreau_mesh::Mesh;
 use std::collections::BTreeSet;
-use std::time::Instant;
 
 mod solve;
 
@@ -143,7 +142,7 @@ fn engine(
 }
 
 /// Time since a clock was started, of the ordering.
-fn ordered(clock: Instant) -> Timings {
+fn ordered(clock: Clock) -> Timings {
     Timings {
         ordering: clock.elapsed(),
         ..Timings::default()
@@ -262,7 +261,7 @@ impl System {
         memory: (Option<u64>, Option<&SharedTeam>),
     ) -> Result<Self, ModelError> {
         let (bytes, team) = memory;
-        let clock = Instant::now();
+        let clock = Clock::start();
         let &Contacts {
             nodes: interface_nodes,
             pivot,
@@ -405,7 +404,7 @@ impl System {
         missing: &SparseVector,
         stiffness: Stiffness,
     ) -> Assembly {
-        let clock = Instant::now();
+        let clock = Clock::start();
         let stiffness = match stiffness {
             Stiffness::Plastic(part) if !self.keeps_elastic => Stiffness::Total(part),
             other => other,
@@ -471,7 +470,7 @@ impl System {
         from: &[f64],
         shifted: bool,
     ) {
-        let clock = Instant::now();
+        let clock = Clock::start();
         let by = vec![0.0; from.len()];
         let keeps = self.keeps_elastic;
         if let Some(others) = &mut self.others {

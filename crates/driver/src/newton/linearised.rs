@@ -9,13 +9,13 @@ use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::model::points::Kinematics;
 use crate::newton::candidate::Counts;
+use crate::timings::Clock;
 use crate::vector::SparseVector;
 use crate::vector::largest;
 use moreau_algebra::Interface;
 use moreau_contact::{ContactError, ContactSolution, Springs, TiedFactor, TiedProblem, solve_tied};
 use moreau_laws::Local;
 use nalgebra::DVector;
-use std::time::Instant;
 
 /// Stiffness against motions that the statuses leave free, over that of the interface: softer than any
 /// body and stiffer than rounding; more of it where forces that are as small keep the statuses from
@@ -163,7 +163,7 @@ impl<const D: usize> Driver<D> {
         });
         let iteration = counts.newton;
         let contact = |source: ContactError| IncrementError::Contact { iteration, source };
-        let clock = Instant::now();
+        let clock = Clock::start();
         let points = (self.points.as_slice(), self.footing.rows.as_slice());
         let seam = (std::mem::take(&mut condensed.stiffness), &condensed.load);
         let previous = self.previous_forces(kinematics);

@@ -5,18 +5,18 @@ use super::files::{Mark, Stream, replace_file, write_file};
 use super::vtu::{Collection, LIST};
 use super::{RUN, Resumable, RunError, Watch, log};
 use crate::deck::Vtu;
-use crate::driver::{IncrementError, IncrementReport, Numbers};
+use crate::driver::{Clock, IncrementError, IncrementReport, Numbers};
 use crate::simulation::{Converged, Outcome, Simulation, StepError};
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// A run under way.
 pub(super) struct Run<'a> {
     simulation: Simulation,
     directory: &'a Path,
     resolved: String,
-    started: Instant,
+    started: Clock,
     /// Seconds spent before the checkpoint that the run goes on from.
     before: f64,
     out: Out,
@@ -122,7 +122,7 @@ impl<'a> Run<'a> {
             simulation,
             directory,
             resolved,
-            started: Instant::now(),
+            started: Clock::start(),
             before,
             out,
         }

@@ -7,12 +7,11 @@ use super::trace::Trace;
 use super::{Converged, Diagnosis, StepError, contact, grids};
 use crate::deck::{Deck, Setup, Stage};
 use crate::driver::{
-    Driver, IncrementError, IncrementReport, Iteration, ModelError, Numbers, Ramp, Saved,
+    Clock, Driver, IncrementError, IncrementReport, Iteration, ModelError, Numbers, Ramp, Saved,
 };
 use crate::table::Table;
 use crate::vtu::Grid;
 use std::ops::ControlFlow;
-use std::time::Instant;
 
 /// Who sees every iterate, with the name of the step, and may break the increment off.
 pub(super) type Watch<'a> = dyn FnMut(&str, &Iteration<'_>) -> ControlFlow<()> + 'a;
@@ -84,7 +83,7 @@ impl<const D: usize> Course<D> {
         deck: &Deck,
         watch: &mut Watch<'_>,
     ) -> Result<Option<Converged>, StepError> {
-        let started = Instant::now();
+        let started = Clock::start();
         let outcome = self.next(deck, watch);
         self.seconds += started.elapsed().as_secs_f64();
         outcome

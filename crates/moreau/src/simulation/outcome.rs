@@ -9,7 +9,7 @@ use crate::contact::Certificate;
 use crate::deck::{Deck, Setup, Units};
 use crate::driver::{
     Collapse, Driver, Energies, IncrementError, IncrementReport, ModelError, Numbers, Saved,
-    UpperBound,
+    UpperBound, threads,
 };
 use crate::laws::Status;
 use crate::numbers::shown;
@@ -304,7 +304,7 @@ pub(super) fn conclude<const D: usize>(
         contact_solves: tally.solves,
         cuts: tally.cuts,
         dofs: D * driver.mesh().nodes().len(),
-        threads: rayon::current_num_threads(),
+        threads: threads(),
         certificate: tally.certificate,
         relative_gap: tally.relative_gap,
         criticality: tally.criticality.map(|c| c.1),

@@ -1,10 +1,11 @@
 //! The pictures of a simulation, from its tables and grids: forces or displacements over time, tractions along the
 //! contact, the deformed body with a field.
 
+#[cfg(feature = "command")]
 mod conditions;
 mod tools;
 
-use crate::deck::{Deck, Setup, Units};
+use crate::deck::{Deck, Units};
 use crate::mesh::Mesh;
 use crate::plot::{Chart, MeshPicture, Style};
 use crate::table::Table;
@@ -241,7 +242,8 @@ pub(crate) fn deformed(
 
 /// What a step of a plane deck is to do, before anything is computed: the mesh, the tools where they are at first, supports,
 /// motions, loads and contacts.
-pub(crate) fn planned(deck: &Deck, setup: &Setup<2>, step: usize) -> Option<String> {
+#[cfg(feature = "command")]
+pub(crate) fn planned(deck: &Deck, setup: &crate::deck::Setup<2>, step: usize) -> Option<String> {
     let entry = deck.steps.get(step)?;
     let mesh = setup.driver.mesh();
     let title = match deck.title.as_str() {

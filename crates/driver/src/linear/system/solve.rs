@@ -3,12 +3,11 @@
 
 use super::System;
 use crate::error::Inaccurate;
-use crate::timings::timed;
+use crate::timings::{Clock, timed};
 use crate::vector::SparseVector;
 use crate::vector::largest;
 use moreau_algebra::{ConjugateGradients, EngineError, Interface, Stop};
 use nalgebra::{DMatrix, DVector};
-use std::time::Instant;
 
 /// Residual of a solve with the factor, over the size of the terms that it is a difference of, up
 /// to which the factor is right: a thousand times what rounding leaves.
@@ -65,7 +64,7 @@ impl System {
         timed(&mut self.timings.solution, || {
             told(self.engine.condense(&mut inner), &mut inner)
         });
-        let clock = Instant::now();
+        let clock = Clock::start();
         let first = inner.len() - self.interface;
         let size = self.interface;
         let unknown = |_| DMatrix::from_element(size, size, f64::NAN);
@@ -150,7 +149,7 @@ impl System {
     pub(crate) fn solve(&mut self, load: &[f64], d_u: &mut [f64]) -> Result<(), Inaccurate> {
         let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
         let mut solution = self.restricted(&applied);
-        let clock = Instant::now();
+        let clock = Clock::start();
         told(self.engine.solve(&mut solution), &mut solution);
         let mut solution = self.prolonged(solution);
         let outcome = self.improve(&applied, &mut solution, Interface::Free);
@@ -177,7 +176,7 @@ impl System {
         let mut solution = condensed.inner;
         let first = solution.len() - self.interface;
         solution[first..].copy_from_slice(x.as_slice());
-        let clock = Instant::now();
+        let clock = Clock::start();
         told(self.engine.expand(&mut solution), &mut solution);
         let mut solution = self.prolonged(solution);
         let mut applied = condensed.applied;
@@ -194,7 +193,7 @@ impl System {
 
     /// x ← (K + what is tied)⁻¹ x, at the unknowns.
     pub(crate) fn solve_tied(&mut self, x: &mut [f64]) {
-        let clock = Instant::now();
+        let clock = Clock::start();
         told(self.engine.solve(x), x);
         self.timings.solution += clock.elapsed();
     }

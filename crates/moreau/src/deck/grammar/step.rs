@@ -99,7 +99,7 @@ fn amplitude(value: Value<'_>, log: &Log) -> Option<At<Vec<[f64; 2]>>> {
     let rows: Vec<[f64; 2]> = rows.into_iter().map(row).collect::<Option<_>>()?;
     let times = || rows.iter().map(|row| row[0]);
     let rises = rows.windows(2).all(|pair| pair[0][0] < pair[1][0]);
-    if rows.len() < 2 || !rises || [times().next(), times().last()] != [Some(0.0), Some(1.0)] {
+    if rows.len() < 2 || !rises || [times().next(), times().next_back()] != [Some(0.0), Some(1.0)] {
         let given: Vec<String> = times().map(|time| time.to_string()).collect();
         log.borrow_mut().error(
             &value.span(),
