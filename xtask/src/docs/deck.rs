@@ -204,6 +204,7 @@ fn kind(part: &Value) -> String {
                 "range" => "[from, to]".into(),
                 "grid" => "[from, to] or table".into(),
                 "turn" => "number or table".into(),
+                "amplitude" => "list of [time, share]".into(),
                 other => other.to_owned(),
             },
         };
