@@ -76,7 +76,14 @@ fn loads(key: &str) -> bool {
     ["move", "load"].map(is).contains(&true) || (is("tools") && is("move"))
 }
 
-/// Changes all numbers of a table but counts, each told by the keys on the way to it.
+/// Whether a number has no unit and no place: a count, or a share of a motion or load over the time of its step.
+fn is_pure(keys: &str, key: &str) -> bool {
+    let of_a_value = ["move", "load", "tools"];
+    let is_share = key == "table" && keys.split('.').any(|k| of_a_value.contains(&k));
+    is_share || ["cells", "increments", "checkpoint"].contains(&key)
+}
+
+/// Changes all numbers of a table but pure ones, each told by the keys on the way to it.
 fn numbers(table: &mut Table, change: &impl Fn(&str, f64) -> f64) {
     fn walk(value: &mut Value, keys: &str, change: &impl Fn(&str, f64) -> f64) {
         match value {
@@ -93,7 +100,7 @@ fn numbers(table: &mut Table, change: &impl Fn(&str, f64) -> f64) {
     }
     fn inside(table: &mut Table, keys: &str, change: &impl Fn(&str, f64) -> f64) {
         for (key, value) in table.iter_mut() {
-            if !["cells", "increments", "checkpoint"].contains(&key.as_str()) {
+            if !is_pure(keys, key) {
                 walk(value, &format!("{keys}{key}"), change);
             }
         }
