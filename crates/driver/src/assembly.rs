@@ -9,3 +9,4 @@ pub(crate) mod panel;
 pub(crate) mod scatter;
 pub(crate) mod small;
 pub(crate) mod spread;
+pub(crate) mod turned;

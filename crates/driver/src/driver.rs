@@ -304,14 +304,17 @@ impl<const D: usize> Driver<D> {
 
     /// Force that the prescribed displacements of a node exert on it \[N\].
     pub fn nodal_reaction(&self, node: usize) -> SVector<f64, D> {
-        let state = &self.state;
-        SVector::from_fn(|i, _| {
+        let State {
+            internal,
+            loading,
+            contact,
+            ..
+        } = &self.state;
+        let left = SVector::from_fn(|i, _| {
             let dof = D * node + i;
-            match state.loading.displacement.contains_key(&dof) {
-                true => state.internal[dof] - state.loading.force.at(dof) - state.contact.at(dof),
-                false => 0.0,
-            }
-        })
+            internal[dof] - loading.force.at(dof) - contact.at(dof)
+        });
+        loading.held_at(node).part(&left)
     }
 
     /// Sum of the forces that a tool exerts on the body \[N\].
@@ -461,6 +464,7 @@ impl<const D: usize> Driver<D> {
         if let Some(system) = self.system.take_if(|s| {
             s.pivot == pivot
                 && (0..dofs).all(|d| s.is_free(d) != fixed(d))
+                && s.prescribed().directions == loading.directions
                 && (!s.is_tied() || s.paired == paired)
         }) {
             return Ok(system);
@@ -495,7 +499,7 @@ impl<const D: usize> Driver<D> {
         let mut system = System::new(
             &self.mesh,
             &self.blocks,
-            fixed,
+            (fixed, &loading.directions),
             &Contacts {
                 nodes: &interface,
                 pivot,

@@ -178,6 +178,43 @@ pub enum ModelError {
         /// The second value \[mm\].
         second: f64,
     },
+    /// Conditions at a node that prescribe its displacement along a direction differently.
+    #[error(
+        "step {step:?} prescribes the displacement of node {node} along {} as {first} and as {second} mm, by the \
+         conditions on {}: remove one",
+        list(direction),
+        names(groups)
+    )]
+    ContradictingDisplacements {
+        /// The step.
+        step: String,
+        /// The node.
+        node: usize,
+        /// The unit vector of the last of these conditions.
+        direction: Vec<f64>,
+        /// What the others make of it \[mm\].
+        first: f64,
+        /// What it prescribes \[mm\].
+        second: f64,
+        /// Groups of the node whose displacements are prescribed.
+        groups: Vec<String>,
+    },
+    /// A direction at the axis of symmetry, where nothing moves but along that.
+    #[error(
+        "step {step:?} prescribes the displacement of {group:?} along {}, but its node {node} is on the axis of \
+         symmetry, where nothing moves across it: prescribe x and y there, and keep the node out of the group",
+        list(direction)
+    )]
+    DirectionAtAxis {
+        /// The step.
+        step: String,
+        /// The group.
+        group: String,
+        /// The node.
+        node: usize,
+        /// The unit vector.
+        direction: Vec<f64>,
+    },
     /// Of a law that is given from outside.
     #[error(transparent)]
     Law(#[from] LawFault),
@@ -224,6 +261,17 @@ pub enum ModelError {
         /// What there is room for \[GB\]: the memory that is free, or what the index counts.
         room: f64,
     },
+}
+
+/// A vector as people write one.
+pub(crate) fn list(vector: &[f64]) -> String {
+    let all: Vec<String> = vector.iter().map(|x| format!("{:?}", *x as f32)).collect();
+    format!("({})", all.join(", "))
+}
+
+fn names(names: &[String]) -> String {
+    let all: Vec<String> = names.iter().map(|name| format!("{name:?}")).collect();
+    all.join(" and ")
 }
 
 fn nearest_hint(nearest: &Option<String>) -> String {
@@ -359,6 +407,43 @@ pub enum IncrementError {
         what: &'static str,
         /// Its value.
         value: f64,
+    },
+    /// Conditions at a node that prescribe its displacement along a direction differently.
+    #[error(
+        "step {step:?} prescribes the displacement of node {node} along {} as {first} and as {second} mm, by the \
+         conditions on {}: remove one",
+        list(direction),
+        names(groups)
+    )]
+    ContradictingDisplacements {
+        /// The step.
+        step: String,
+        /// The node.
+        node: usize,
+        /// The unit vector of the last of these conditions.
+        direction: Vec<f64>,
+        /// What the others make of it \[mm\].
+        first: f64,
+        /// What it prescribes \[mm\].
+        second: f64,
+        /// Groups of the node whose displacements are prescribed.
+        groups: Vec<String>,
+    },
+    /// A direction at the axis of symmetry, where nothing moves but along that.
+    #[error(
+        "step {step:?} prescribes the displacement of {group:?} along {}, but its node {node} is on the axis of \
+         symmetry, where nothing moves across it: prescribe x and y there, and keep the node out of the group",
+        list(direction)
+    )]
+    DirectionAtAxis {
+        /// The step.
+        step: String,
+        /// The group.
+        group: String,
+        /// The node.
+        node: usize,
+        /// The unit vector.
+        direction: Vec<f64>,
     },
     /// Of a law that is given from outside.
     #[error(transparent)]

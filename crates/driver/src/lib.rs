@@ -70,3 +70,4 @@ pub use settings::{Nesting, Seam, Settings};
 pub use threads::threads;
 pub use timings::{Clock, Timings};
 pub use vector::SparseVector;
+pub use vector::directions::Directions;

@@ -6,6 +6,7 @@ use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::report::ContactRecord;
 use crate::settings::Seam;
+use crate::vector::directions::Directions;
 use moreau_contact::ContactSolution;
 use moreau_laws::{Local, Status};
 
@@ -189,6 +190,13 @@ impl Numbers<'_> {
 impl<const D: usize> Saved for Loading<D> {
     fn visit(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
         numbers.sparse(&mut self.displacement)?;
+        let (dofs, along) = self.directions.numbers();
+        let mut dofs: Vec<f64> = dofs.into_iter().map(f64::from).collect();
+        let mut along = along;
+        numbers.list(&mut dofs)?;
+        numbers.list(&mut along)?;
+        let dofs = dofs.into_iter().map(|dof| dof as usize);
+        self.directions = Directions::from_numbers(D, dofs, &along);
         numbers.sparse(&mut self.force)?;
         numbers.sparse(&mut self.pressure)?;
         numbers.sparse(&mut self.turn)

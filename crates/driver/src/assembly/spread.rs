@@ -30,7 +30,7 @@ pub(crate) mod ask {
     pub(crate) const STATE: u8 = 10;
     /// States from numbers.
     pub(crate) const RESTORE: u8 = 11;
-    /// Which displacement is which unknown.
+    /// Which displacement is which unknown, and along which direction.
     pub(crate) const NUMBER: u8 = 12;
     /// The share is zero again, and so much is missing of prescribed displacements.
     pub(crate) const RESET: u8 = 13;

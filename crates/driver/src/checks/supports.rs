@@ -7,9 +7,10 @@
 use crate::checks::rigid::{NOTHING, RigidModes, Rows, Stopper, null_space};
 use crate::driver::Driver;
 use crate::error::ModelError;
-use crate::model::load::{Axis, Condition, Loading, Step};
+use crate::model::load::{Axis, Condition, Loading, Step, axis_letter};
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, turned};
+use crate::path::along::unit;
 use moreau_laws::Status;
 use nalgebra::SVector;
 
@@ -20,8 +21,8 @@ pub struct RigidMotion {
     pub name: String,
     /// What it takes to stop it; `None` if nothing does.
     pub stopper: Option<Stopper>,
-    /// Groups that resist it by prescribed displacements, with the directions.
-    pub groups: Vec<(String, Vec<Axis>)>,
+    /// Groups that resist it by prescribed displacements, with the directions in words: `x`, or `(0.6, 0.8)`.
+    pub groups: Vec<(String, Vec<String>)>,
     /// Contacts that resist it, where displacements do not stop it by themselves.
     pub contacts: Vec<usize>,
 }
@@ -46,6 +47,23 @@ fn resists<const D: usize>(status: Status) -> usize {
     }
 }
 
+/// The place of an item in a list, at the end of which it is put if it is new.
+fn place<T: PartialEq>(list: &mut Vec<T>, item: T) -> usize {
+    let found = list.iter().position(|other| *other == item);
+    found.unwrap_or_else(|| {
+        list.push(item);
+        list.len() - 1
+    })
+}
+
+/// The letter of an axis, or the components of another direction.
+fn in_words<const D: usize>(n: &SVector<f64, D>) -> String {
+    match (0..D).find(|&i| n[i].abs() == 1.0) {
+        Some(i) => axis_letter(i).into(),
+        None => crate::error::list(n.as_slice()),
+    }
+}
+
 impl<const D: usize> Driver<D> {
     /// What stops every rigid motion of every body in a step; nothing is solved.
     ///
@@ -54,17 +72,18 @@ impl<const D: usize> Driver<D> {
     pub fn supports(&self, step: &Step<D>) -> Result<Vec<Support>, ModelError> {
         let loading = self.loading(step)?;
         let mut groups: Vec<&str> = Vec::new();
+        let axes = [Axis::X, Axis::Y, Axis::Z].into_iter().take(D);
+        let mut directions: Vec<SVector<f64, D>> = axes.map(Axis::unit).collect();
         let mut held = Vec::new();
         for condition in &step.conditions {
-            let Condition::Displace { on, axis, .. } = condition else {
-                continue;
+            let (on, n) = match condition {
+                Condition::Displace { on, axis, .. } => (on, axis.unit()),
+                Condition::DisplaceAlong { on, direction, .. } => (on, unit(on, direction)?),
+                _ => continue,
             };
-            let index = groups.iter().position(|g| g == on).unwrap_or_else(|| {
-                groups.push(on);
-                groups.len() - 1
-            });
+            let source = (place(&mut groups, on.as_str()), place(&mut directions, n));
             let nodes = self.mesh().node_group(on)?;
-            held.extend(nodes.iter().map(|n| (D * n + axis.index(), index)));
+            held.extend(nodes.iter().map(|&node| (node, n, source)));
         }
         let rows = self.rows(held.into_iter(), &loading, Self::may_resist);
         let kinds = [Stopper::Displacement, Stopper::Contact, Stopper::Friction];
@@ -81,15 +100,15 @@ impl<const D: usize> Driver<D> {
                     contacts: Vec::new(),
                 };
                 let mode = rows.modes * body + k;
-                for (&(kind, index, axis), effect) in &rows.effect {
+                for (&(kind, index, direction), effect) in &rows.effect {
                     if Some(kind) > stopper || effect[mode] < NOTHING * NOTHING {
                         continue;
                     }
                     if kind == Stopper::Displacement {
-                        let axis = [Axis::X, Axis::Y, Axis::Z][axis];
+                        let along = in_words(&directions[direction]);
                         match motion.groups.last_mut() {
-                            Some((name, axes)) if name == groups[index] => axes.push(axis),
-                            _ => motion.groups.push((groups[index].to_owned(), vec![axis])),
+                            Some((name, all)) if name == groups[index] => all.push(along),
+                            _ => motion.groups.push((groups[index].to_owned(), vec![along])),
                         }
                     } else if !motion.contacts.contains(&index) {
                         motion.contacts.push(index);
@@ -144,7 +163,8 @@ impl<const D: usize> Driver<D> {
 
     fn resisted(&self, loading: &Loading<D>, components: impl Fn(&Self, usize) -> usize) -> Rows {
         let held = loading.displacement.range(..self.mesh_dofs());
-        self.rows(held.map(|(&dof, _)| (dof, 0)), loading, components)
+        let held = held.map(|(&dof, _)| (dof / D, loading.directions.along(dof), (0, 0)));
+        self.rows(held, loading, components)
     }
 
     /// The rigid motions that nothing resists in the committed state, in words: of what touches, the
@@ -171,20 +191,19 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// What resists, with the degrees of freedom that are held and by which of the groups, and the number
-    /// of components, the normal first, in which each contact point does.
+    /// What resists, with the nodes that are held and in which directions, by which of the groups and directions, and the
+    /// number of components, the normal first, in which each contact point does.
     fn rows(
         &self,
-        held: impl Iterator<Item = (usize, usize)>,
+        held: impl Iterator<Item = (usize, SVector<f64, D>, (usize, usize))>,
         loading: &Loading<D>,
         components: impl Fn(&Self, usize) -> usize,
     ) -> Rows {
         let modes = RigidModes::new(self, loading);
         let mut rows = modes.rows();
-        for (dof, group) in held {
-            let axis = SVector::from_fn(|i, _| f64::from(u8::from(i == dof % D)));
-            let source = (Stopper::Displacement, group, dof % D);
-            rows.add(source, &modes.row(&[(dof / D, 1.0)], &axis));
+        for (node, n, (group, direction)) in held {
+            let source = (Stopper::Displacement, group, direction);
+            rows.add(source, &modes.row(&[(node, 1.0)], &n));
         }
         for (c, (point, motion_row)) in self.points.iter().zip(&self.footing.rows).enumerate() {
             let Some(normal) = self.normal_at(point, motion_row) else {

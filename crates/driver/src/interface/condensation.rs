@@ -5,6 +5,7 @@ use crate::linear::suspension::Suspended;
 use crate::linear::system::System;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Kinematics};
+use crate::vector::directions::Directions;
 use moreau_algebra::DenseCholesky;
 use moreau_contact::{CondensedProblem, ContactError};
 use moreau_laws::{Local, Status};
@@ -43,7 +44,8 @@ impl<const D: usize> Condensation<D> {
         let mut suspended = Vec::new();
         for (c, k) in kinematics.iter().enumerate() {
             for j in (0..D).filter(|&j| k.active[j]) {
-                let row = row(&motion_rows[c], k, j, |dof| system.interface_index(dof));
+                let given = (&motion_rows[c], &system.prescribed().directions);
+                let row = row(given, k, j, |dof| system.interface_index(dof));
                 let own = (0..D).filter_map(|i| system.interface_index(D * points[c].node + i));
                 let own: Vec<usize> = own.collect();
                 if row.is_empty() {
@@ -156,7 +158,7 @@ impl<const D: usize> Yielding<'_, D> {
 /// A component of the relative displacement as a combination of unknowns, those that a degree of
 /// freedom is given by.
 pub(crate) fn row<const D: usize>(
-    motion_row: &RelativeMotionRow<D>,
+    (motion_row, directions): (&RelativeMotionRow<D>, &Directions),
     kinematics: &Kinematics<D>,
     component: usize,
     unknown: impl Fn(usize) -> Option<usize>,
@@ -164,7 +166,8 @@ pub(crate) fn row<const D: usize>(
     let mut row = BTreeMap::new();
     for (a, w) in motion_row.weights() {
         for i in 0..D {
-            let coefficient = w * kinematics.axes[(i, component)];
+            let along = |dof: usize| kinematics.axes[(dof - D * a, component)];
+            let coefficient = w * directions.component(D * a + i, along);
             if let Some(dof) = unknown(D * a + i)
                 && coefficient != 0.0
             {

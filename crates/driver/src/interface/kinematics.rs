@@ -57,7 +57,7 @@ impl<const D: usize> Driver<D> {
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
         let size = self.mesh.size();
         let at = |(p, motion_row): (&ContactPoint<D>, &RelativeMotionRow<D>)| {
-            let free = motion_row.free(p.node, |dof| system.is_free(dof));
+            let free = &motion_row.free(p.node, |a| system.free_at(a));
             let slip = motion_row.relative(moved);
             let Some(tool) = p.tool else {
                 let since = motion_row.relative(|a| moved(a) - self.footing.moved(a));
@@ -106,7 +106,7 @@ impl<const D: usize> Driver<D> {
             kinematics
         };
         let mut all: Vec<_> = self.points.iter().zip(&self.footing.rows).map(at).collect();
-        self.stop_once(|dof| system.is_free(dof), &mut all);
+        self.stop_once(|a| system.free_at(a), &mut all);
         all
     }
 

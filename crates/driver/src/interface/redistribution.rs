@@ -14,6 +14,7 @@ use crate::interface::condensation::{Elimination, row};
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::Kinematics;
+use crate::vector::subspace::Subspace;
 use moreau_mesh::Facet;
 use nalgebra::SVector;
 use std::collections::{BTreeMap, BTreeSet};
@@ -33,9 +34,8 @@ impl<const D: usize> Driver<D> {
         (contact, surface): (usize, &[Facet]),
         loading: &Loading<D>,
     ) {
-        let is_free = |dof: usize| !loading.displacement.contains_key(&dof);
         let own = |c: usize| self.points[c].node;
-        let is_held = |&c: &usize| (0..D).any(|i| !is_free(D * own(c) + i));
+        let is_held = |&c: &usize| loading.free_at(own(c)).dimension() < D;
         let meets = |c: &usize| self.points[*c].contact == contact;
         let all: Vec<usize> = (0..self.points.len())
             .filter(|c| meets(c) && motion_rows[*c].plane(&SVector::zeros()).is_some())
@@ -47,7 +47,7 @@ impl<const D: usize> Driver<D> {
         // Those that cannot give way to a pressure, next to others that can.
         let stiff = |&c: &usize| {
             let normal = motion_rows[c].plane(&SVector::zeros()).map(|(n, _)| n);
-            let free = from_free(own(c), is_free);
+            let free = &loading.free_at(own(c));
             normal.is_none_or(|n| {
                 !Kinematics::new(&self.points[c], &n, 0.0, &SVector::zeros(), free).active[0]
             })
@@ -65,7 +65,7 @@ impl<const D: usize> Driver<D> {
         kept.extend(stranded);
         // Those about which the others say all.
         loop {
-            let spare = self.spare(motion_rows, &kept, is_free);
+            let spare = self.spare(motion_rows, &kept, loading);
             if spare.is_empty() {
                 return;
             }
@@ -91,7 +91,7 @@ impl<const D: usize> Driver<D> {
     /// the tool: then neither is first for long, and the increment does not converge.
     pub(crate) fn stop_once(
         &self,
-        is_free: impl Fn(usize) -> bool,
+        free_at: impl Fn(usize) -> Subspace<D>,
         kinematics: &mut [Kinematics<D>],
     ) {
         // By tool, the point and the way to it.
@@ -102,9 +102,7 @@ impl<const D: usize> Driver<D> {
                 continue;
             };
             let n = k.axes.column(0);
-            let along = |node: usize| {
-                SVector::<f64, D>::from_fn(|i, _| if is_free(D * node + i) { n[i] } else { 0.0 })
-            };
+            let along = |node: usize| free_at(node).part(&n.into_owned());
             if p.own.iter().any(|&(a, _)| along(a).norm() > 0.0) {
                 continue;
             }
@@ -172,8 +170,9 @@ impl<const D: usize> Driver<D> {
         &self,
         motion_rows: &[RelativeMotionRow<D>],
         kept: &BTreeSet<usize>,
-        is_free: impl Fn(usize) -> bool + Copy,
+        loading: &Loading<D>,
     ) -> Vec<usize> {
+        let is_free = |dof: usize| !loading.displacement.contains_key(&dof);
         let own = |c: usize| (0..D).map(move |i| D * self.points[c].node + i);
         let alone = |c: usize| {
             let opposite = motion_rows[c].opposite.iter().map(|o| o.1);
@@ -191,12 +190,13 @@ impl<const D: usize> Driver<D> {
             let Some((n, gap)) = motion_row.plane(&SVector::zeros()) else {
                 continue;
             };
-            let free = motion_row.free(self.points[c].node, is_free);
-            let k = Kinematics::new(&self.points[c], &n, gap, &SVector::zeros(), free);
+            let free = motion_row.free(self.points[c].node, |a| loading.free_at(a));
+            let k = Kinematics::new(&self.points[c], &n, gap, &SVector::zeros(), &free);
             let unknown = |dof: usize| is_free(dof).then_some(dof);
             let active = (0..D).filter(|&j| k.active[j]);
+            let given = (motion_row, &loading.directions);
             let all: Vec<_> = active
-                .map(|j| (D * c + j, row(motion_row, &k, j, unknown)))
+                .map(|j| (D * c + j, row(given, &k, j, unknown)))
                 .collect();
             let distinct = all
                 .iter()
@@ -213,10 +213,6 @@ impl<const D: usize> Driver<D> {
         }
         spare
     }
-}
-
-fn from_free<const D: usize>(node: usize, is_free: impl Fn(usize) -> bool) -> [bool; D] {
-    std::array::from_fn(|i| is_free(D * node + i))
 }
 
 /// Adds parts of the multiplier of a point to those of others; it has none then.

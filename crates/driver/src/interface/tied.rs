@@ -60,12 +60,13 @@ fn are_near(a: &Rows, b: &Rows) -> bool {
 /// The rows of all contacts.
 fn rows<const D: usize>(driver: &Driver<D>, system: &System, kinematics: &[Kinematics<D>]) -> Rows {
     let unknown = |dof: usize| system.unknown(dof).map(|p| p as usize);
+    let directions = &system.prescribed().directions;
     let mut rows = Vec::with_capacity(D * kinematics.len());
     for (motion_row, k) in driver.footing.rows.iter().zip(kinematics) {
         for j in 0..D {
             rows.push(match k.active[j] {
                 true => {
-                    let row = row(motion_row, k, j, unknown).into_iter();
+                    let row = row((motion_row, directions), k, j, unknown).into_iter();
                     row.map(|(p, c)| (p as u32, c)).collect()
                 }
                 false => Vec::new(),
@@ -188,7 +189,7 @@ impl<'a, const D: usize> Tied<'a, D> {
         let pivot = system.pivot.map_or(0..0, |a| D * a..D * a + D);
         let pivot = pivot.filter_map(|dof| system.unknown(dof));
         let border = border.map(|(load, compliance, missing)| Border {
-            load: system.unknowns().map(|dof| load.at(dof)).collect(),
+            load: system.at_unknowns(|dof| load.at(dof)),
             compliance,
             missing,
             pivot: pivot.map(|p| p as usize).collect(),
@@ -197,7 +198,7 @@ impl<'a, const D: usize> Tied<'a, D> {
             equations: DMatrix::zeros(0, 0).lu(),
         });
         Self {
-            load: system.unknowns().map(|dof| load[dof]).collect(),
+            load: system.at_unknowns(|dof| load[dof]),
             rows,
             tied_rows,
             stiffness,

@@ -3,6 +3,7 @@
 
 use crate::assembly::numbering::Numbering;
 use crate::assembly::scatter::FIXED;
+use crate::vector::directions::Directions;
 use moreau_algebra::{CoarseSpace, Pattern};
 use moreau_mesh::Mesh;
 
@@ -28,7 +29,7 @@ impl Coarse {
     /// between others.
     pub(crate) fn new<const D: usize>(
         mesh: &Mesh<D>,
-        fixed: impl Fn(usize) -> bool,
+        (fixed, directions): (impl Fn(usize) -> bool, &Directions),
         (interface, pivot, tools): (&[usize], Option<usize>, usize),
         (dofs, pattern): (&[usize], &Pattern),
     ) -> Option<Self> {
@@ -53,10 +54,20 @@ impl Coarse {
             let (node, axis) = (dof / D, dof % D);
             let own = [(node, 1.0)];
             let of: &[(usize, f64)] = if kept[node] { &own } else { &followed[node] };
-            let unknowns = of
-                .iter()
-                .map(|&(a, part)| (coarse.position[D * a + axis], part));
-            let unknowns = unknowns.filter(|&(unknown, _)| unknown != FIXED);
+            // What a component of a node beside makes of this one.
+            let along =
+                |other: usize| match directions.is_turned(dof) || directions.is_turned(other) {
+                    _ if other == dof => 1.0,
+                    _ if kept[node] => 0.0,
+                    false => f64::from(u8::from(other % D == axis)),
+                    true => directions.along::<D>(dof).dot(&directions.along(other)),
+                };
+            let all =
+                |&(a, part): &(usize, f64)| (D * a..D * a + D).map(move |other| (other, part));
+            let unknowns = of.iter().flat_map(all);
+            let unknowns =
+                unknowns.map(|(other, part)| (coarse.position[other], part * along(other)));
+            let unknowns = unknowns.filter(|&(unknown, part)| unknown != FIXED && part != 0.0);
             unknowns.collect::<Vec<(u32, f64)>>()
         };
         // Positions are those of its own unknowns, and the interface is among them.

@@ -3,6 +3,7 @@
 
 use crate::assembly::spread::ask;
 use crate::vector::SparseVector;
+use crate::vector::directions::Directions;
 use moreau_algebra::{Parcel, SharedTeam, Unpacked};
 
 /// Entries of K with other processes.
@@ -17,9 +18,11 @@ pub(crate) struct Others {
 }
 
 impl Others {
-    /// Tells them the unknown of every degree of freedom.
-    pub(crate) fn new(team: &SharedTeam, position: &[u32]) -> Self {
-        team.order(Parcel::order(ask::NUMBER).indices(position).bytes());
+    /// Tells them the unknown of every degree of freedom, and its direction.
+    pub(crate) fn new(team: &SharedTeam, (position, directions): (&[u32], &Directions)) -> Self {
+        let (turned, along) = directions.numbers();
+        let order = Parcel::order(ask::NUMBER).indices(position);
+        team.order(order.indices(&turned).reals(&along).bytes());
         let rows = |from: usize| Unpacked::new(&team.receive(from)).indices();
         Self {
             rows: (1..team.size()).map(rows).collect(),

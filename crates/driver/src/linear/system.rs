@@ -5,13 +5,16 @@ use crate::assembly::block::Block;
 use crate::assembly::cell_law::{Motion, Stiffness};
 use crate::assembly::numbering::{Numbering, pattern_of};
 use crate::assembly::scatter::{FIXED, Scatter, prescribed_columns};
+use crate::assembly::turned::Turned;
 use crate::error::ModelError;
 use crate::linear::coarse::Coarse;
 use crate::linear::others::Others;
 use crate::settings::Seam;
 use crate::timings::{Clock, Timings, timed};
 use crate::vector::SparseVector;
+use crate::vector::directions::{Directions, Prescribed};
 use crate::vector::residual;
+use crate::vector::subspace::Subspace;
 use moreau_algebra::{
     Cholesky, Cost, Either, Engine, EngineError, Matrix, Pattern, SharedTeam, TooLarge,
 };
@@ -35,8 +38,8 @@ pub(crate) struct System {
     position: Vec<u32>,
     /// Degree of freedom at a position.
     dofs: Vec<usize>,
-    /// The degrees of freedom without one, ascending.
-    prescribed: Vec<usize>,
+    /// The degrees of freedom without one.
+    prescribed: Prescribed,
     /// Number of interface unknowns: the last of the system.
     interface: usize,
     /// A node of the interface that no contact point needs.
@@ -100,7 +103,7 @@ pub(crate) struct Assembly {
 impl Assembly {
     /// The load of a Newton step under forces, at every degree of freedom \[N\].
     pub(crate) fn load(&self, forces: &[&SparseVector]) -> Vec<f64> {
-        let mut load = residual(&self.internal, forces, &[]);
+        let mut load = residual(&self.internal, forces, &Prescribed::default());
         let pairs = load.iter_mut().zip(&self.prescribed_load);
         pairs.for_each(|(f, prescribed)| *f -= prescribed);
         load
@@ -247,7 +250,7 @@ pub(crate) struct Contacts<'a> {
 }
 
 impl System {
-    /// Numbers the free degrees of freedom, orders them and does the symbolic factorisation. The
+    /// Numbers the free degrees of freedom, along their directions, orders them and does the symbolic factorisation. The
     /// interface is that of the contacts, the pivot if there is one, and the tools. The factor may take
     /// `memory` \[bytes\].
     ///
@@ -256,7 +259,7 @@ impl System {
     pub(crate) fn new<const D: usize>(
         mesh: &Mesh<D>,
         blocks: &[Box<dyn Block<D>>],
-        fixed: impl Fn(usize) -> bool,
+        (fixed, directions): (impl Fn(usize) -> bool, &Directions),
         contacts: &Contacts<'_>,
         memory: (Option<u64>, Option<&SharedTeam>),
     ) -> Result<Self, ModelError> {
@@ -297,7 +300,7 @@ impl System {
             Some(team) => {
                 let numbered = (&*position, &*dofs, interface);
                 let here = here::<D>((mesh, blocks), numbered, coupled);
-                (here, Some(Others::new(team, &position)))
+                (here, Some(Others::new(team, (&position, directions))))
             }
         };
         let scatter = blocks
@@ -306,7 +309,8 @@ impl System {
             .collect();
         let coarse = || {
             let space = (interface_nodes, pivot, tools);
-            let coarse = Coarse::new(mesh, &fixed, space, (&dofs, &pattern))?;
+            let held = (&fixed, directions);
+            let coarse = Coarse::new(mesh, held, space, (&dofs, &pattern))?;
             let made = engine(&coarse.space.matrix().pattern, memory, is_definite);
             Some(made.map(|engine| (engine, Some(coarse))))
         };
@@ -332,9 +336,12 @@ impl System {
         let chosen = other.unwrap_or_else(own);
         let (engine, coarse) = chosen.map_err(|error| no_room(dofs.len(), error))?;
         Ok(Self {
-            prescribed: (0..position.len())
-                .filter(|&dof| position[dof] == FIXED)
-                .collect(),
+            prescribed: Prescribed {
+                dofs: (0..position.len())
+                    .filter(|&dof| position[dof] == FIXED)
+                    .collect(),
+                directions: directions.clone(),
+            },
             position,
             dofs,
             interface,
@@ -378,6 +385,11 @@ impl System {
         self.position[dof] != FIXED
     }
 
+    /// Directions in which a node is free.
+    pub(crate) fn free_at<const D: usize>(&self, node: usize) -> Subspace<D> {
+        Subspace::of_node(node, &self.prescribed.directions, |dof| self.is_free(dof))
+    }
+
     /// Index of a degree of freedom among the interface unknowns; `None` if it is prescribed.
     pub(crate) fn interface_index(&self, dof: usize) -> Option<usize> {
         let first = self.size() - self.interface;
@@ -385,8 +397,8 @@ impl System {
             .then(|| self.position[dof] as usize - first)
     }
 
-    /// The degrees of freedom that are prescribed, ascending.
-    pub(crate) fn prescribed(&self) -> &[usize] {
+    /// The degrees of freedom that are prescribed, with the directions of all.
+    pub(crate) fn prescribed(&self) -> &Prescribed {
         &self.prescribed
     }
 
@@ -396,7 +408,8 @@ impl System {
     }
 
     /// Internal forces at the end of a motion, and the stiffness if asked for.
-    /// `missing` are the prescribed increments still to come.
+    /// `missing` are the prescribed increments still to come, along the axes as all vectors are that are given or
+    /// returned.
     pub(crate) fn assemble<const D: usize>(
         &mut self,
         blocks: &mut [Box<dyn Block<D>>],
@@ -416,7 +429,10 @@ impl System {
             self.matrix.reset();
         }
         let mut prescribed_load = Vec::new();
-        let missing = (!missing.is_zero()).then_some(missing);
+        let directions = &self.prescribed.directions;
+        let missing = directions.components(missing);
+        let missing = (!missing.is_zero()).then_some(&*missing);
+        let mut turned = Turned::of(directions);
         if let Some(missing) = missing {
             prescribed_load.resize(motion.by.len(), 0.0);
             for &(unknown, prescribed, k) in &self.prescribed_columns {
@@ -434,6 +450,7 @@ impl System {
                     let at = internal[D * a..D * a + D].iter_mut();
                     at.zip(force).for_each(|(sum, f)| *sum += f);
                 }
+                let cell = turned.cell::<D>(cell);
                 scatter.add::<D>(&cell, position, pattern, values);
                 if let Some(missing) = missing {
                     prescribed_columns::<D>(&cell, position, &mut |unknown, prescribed, k| {
@@ -445,6 +462,7 @@ impl System {
         if let (Some(others), Some(_)) = (&self.others, missing) {
             others.add_prescribed(&self.dofs, &mut prescribed_load);
         }
+        directions.restore(&mut prescribed_load);
         if with_stiffness {
             self.current = self.elastic_factor && !flows;
             let size = self.size();
@@ -477,12 +495,14 @@ impl System {
             others.reset(true, None);
         }
         let (position, all) = (&self.position, &mut self.prescribed_columns);
+        let mut turned = Turned::of(&self.prescribed.directions);
         let (pattern, values) = self.matrix.values_mut();
         for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
             block.evaluate(
                 Motion { from, by: &by },
                 Stiffness::Total(0.0),
                 &mut |cell| {
+                    let cell = turned.cell::<D>(cell);
                     scatter.add::<D>(&cell, position, pattern, values);
                     if keeps {
                         prescribed_columns::<D>(&cell, position, &mut |unknown, prescribed, k| {
@@ -606,13 +626,18 @@ impl System {
     /// and of unknowns that a cell or a contact couples.
     pub(crate) fn add(&mut self, entries: impl Iterator<Item = (usize, usize, f64)>) {
         let (pattern, values) = self.matrix.values_mut();
+        let directions = &self.prescribed.directions;
         for (row, column, k) in entries {
-            let (row, column) = (self.position[row], self.position[column]);
-            if row < column || row == FIXED || column == FIXED {
-                continue;
-            }
-            if let Some(slot) = pattern.slot(row, column) {
-                values[slot as usize] += k;
+            for (row, part) in directions.parts(row) {
+                for (column, other) in directions.parts(column) {
+                    let (row, column) = (self.position[row], self.position[column]);
+                    if row < column || row == FIXED || column == FIXED {
+                        continue;
+                    }
+                    if let Some(slot) = pattern.slot(row, column) {
+                        values[slot as usize] += part * other * k;
+                    }
+                }
             }
         }
     }
@@ -656,6 +681,13 @@ impl System {
     pub(crate) fn begin(&mut self) {
         self.tied.iter_mut().for_each(Vec::clear);
         self.unstable = false;
+    }
+
+    /// What a vector has along the unknowns, by its entries at degrees of freedom.
+    pub(crate) fn at_unknowns(&self, at: impl Fn(usize) -> f64) -> Vec<f64> {
+        let directions = &self.prescribed.directions;
+        let own = self.dofs.iter();
+        own.map(|&dof| directions.component(dof, &at)).collect()
     }
 
     /// Position of a degree of freedom among the unknowns; `None` if it is prescribed.

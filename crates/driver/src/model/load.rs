@@ -4,7 +4,10 @@ use crate::error::ModelError;
 use crate::model::amplitude::Amplitude;
 use crate::model::points::Turn;
 use crate::vector::SparseVector;
+use crate::vector::directions::Directions;
+use crate::vector::subspace::Subspace;
 use moreau_mesh::{Facet, Mesh};
+use nalgebra::SVector;
 use std::collections::BTreeMap;
 
 /// A coordinate direction.
@@ -23,6 +26,11 @@ impl Axis {
     pub fn index(self) -> usize {
         self as usize
     }
+
+    /// Its unit vector.
+    pub(crate) fn unit<const D: usize>(self) -> SVector<f64, D> {
+        SVector::from_fn(|i, _| f64::from(u8::from(i == self.index())))
+    }
 }
 
 /// Letter of a coordinate direction.
@@ -36,6 +44,11 @@ pub(crate) enum Condition<const D: usize> {
     Displace {
         on: String,
         axis: Axis,
+        value: f64,
+    },
+    DisplaceAlong {
+        on: String,
+        direction: [f64; D],
         value: f64,
     },
     Force {
@@ -76,6 +89,7 @@ impl<const D: usize> Condition<D> {
         let mut scaled = self.clone();
         match &mut scaled {
             Self::Displace { value, .. }
+            | Self::DisplaceAlong { value, .. }
             | Self::Pressure {
                 pressure: value, ..
             }
@@ -134,6 +148,21 @@ impl<const D: usize> Step<D> {
         self.with(Condition::Displace {
             on: on.into(),
             axis,
+            value,
+        })
+    }
+
+    /// Holds the displacement of a group along a direction at zero, u·n = 0 with n the unit vector of a direction of
+    /// any length; across it the group is free.
+    pub fn fix_along(self, on: &str, direction: [f64; D]) -> Self {
+        self.displace_along(on, direction, 0.0)
+    }
+
+    /// Prescribes the displacement of a group along a direction of any length, u·n with n its unit vector \[mm\].
+    pub fn displace_along(self, on: &str, direction: [f64; D], value: f64) -> Self {
+        self.with(Condition::DisplaceAlong {
+            on: on.into(),
+            direction,
             value,
         })
     }
@@ -284,8 +313,10 @@ pub(crate) fn facet_of(entry: usize) -> Facet {
 /// after those of the mesh.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Loading<const D: usize> {
-    /// Prescribed displacements by degree of freedom, `D·node + axis` \[mm\].
+    /// Prescribed displacements by degree of freedom, `D·node + axis`, along its direction \[mm\].
     pub displacement: BTreeMap<usize, f64>,
+    /// The directions of these, where they are not the axes.
+    pub directions: Directions,
     /// Applied forces \[N\].
     pub force: SparseVector,
     /// Pressures that follow their surface, under large strains \[MPa\]: on side s of cell c the entry 6c + s.
@@ -314,10 +345,29 @@ impl<const D: usize> Loading<D> {
                     )
                 })
                 .collect(),
+            directions: end.directions.clone(),
             force: self.force.with(&end.force, mix),
             pressure: self.pressure.with(&end.pressure, mix),
             turn: self.turn.with(&end.turn, mix),
         }
+    }
+
+    /// Whether a prescribed component of displacements `u` is off by no more than what the product with its direction
+    /// rounds.
+    pub(crate) fn is_rounding(&self, dof: usize, off: f64, u: &[f64]) -> bool {
+        let size = || self.directions.entries(dof).map(|(j, _)| u[j].abs());
+        self.directions.is_turned(dof) && off.abs() <= 4.0 * f64::EPSILON * size().sum::<f64>()
+    }
+
+    /// Directions in which a node is held.
+    pub(crate) fn held_at(&self, node: usize) -> Subspace<D> {
+        let is_held = |dof: usize| self.displacement.contains_key(&dof);
+        Subspace::of_node(node, &self.directions, is_held)
+    }
+
+    /// Directions in which a node is free.
+    pub(crate) fn free_at(&self, node: usize) -> Subspace<D> {
+        self.held_at(node).complement()
     }
 
     /// Adds a multiple of a vector to the force on a node.
@@ -357,6 +407,13 @@ impl<const D: usize> Loading<D> {
                 what: "degree of freedom of a load".into(),
                 value: dof as f64,
                 expected: "one of the model",
+            });
+        }
+        if !self.directions.are_sound::<D>(D * tools) {
+            return Err(ModelError::OutOfRange {
+                what: "directions of prescribed displacements".into(),
+                value: f64::NAN,
+                expected: "orthonormal ones, as many as a node of the mesh has displacements",
             });
         }
         for (&dof, &u) in &self.displacement {
@@ -421,6 +478,7 @@ impl<const D: usize> Loading<D> {
         let own = self.displacement.iter();
         Self {
             displacement: own.map(|(dof, &u)| (*dof, u + of(dof))).collect(),
+            directions: self.directions.clone(),
             force: self.force.with(&more.force, sum),
             pressure: self.pressure.with(&more.pressure, sum),
             turn: self.turn.with(&more.turn, sum),
@@ -435,6 +493,7 @@ impl<const D: usize> Loading<D> {
                 .iter()
                 .map(|(d, &u)| (*d, u - start.displacement.get(d).copied().unwrap_or(u)))
                 .collect(),
+            directions: self.directions.clone(),
             force: self.force.with(&start.force, |b, a| b - a),
             pressure: self.pressure.with(&start.pressure, |b, a| b - a),
             turn: self.turn.with(&start.turn, |b, a| b - a),

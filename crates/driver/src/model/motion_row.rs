@@ -1,6 +1,7 @@
 //! Whose displacements make the relative displacement of a contact point; not its gap on a tool, nor the law.
 
 use crate::model::points::ContactPoint;
+use crate::vector::subspace::Subspace;
 use moreau_contact::frame;
 use moreau_mesh::MortarRow;
 use nalgebra::{DMatrix, DVector, SVector};
@@ -151,17 +152,21 @@ impl<const D: usize> RelativeMotionRow<D> {
         Some((normal, gap + normal.dot(slip)))
     }
 
-    /// Directions in which the relative displacement is free: those of the own node, and those in
-    /// which no node opposite is held.
-    pub(crate) fn free(&self, node: usize, is_free: impl Fn(usize) -> bool) -> [bool; D] {
-        let opposite = |i: usize| self.opposite.iter().all(|&(b, _)| is_free(D * b + i));
-        std::array::from_fn(|i| is_free(D * node + i) || (!self.opposite.is_empty() && opposite(i)))
+    /// Where the relative displacement is free, from where nodes are: as the own node is, and as all of those opposite
+    /// are.
+    pub(crate) fn free(&self, node: usize, of: impl Fn(usize) -> Subspace<D>) -> Subspace<D> {
+        let opposite = self.opposite.iter().map(|&(b, _)| of(b));
+        match opposite.reduce(|all, other| all.common(&other)) {
+            Some(opposite) => of(node).with(&opposite),
+            None => of(node),
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vector::directions::Directions;
     use moreau_mesh::{
         CellKind, Hypothesis, Mesh, Pairing, PlaneStrain, Solid, block2, block3, uniform,
     };
@@ -178,11 +183,28 @@ mod tests {
         let same = motion_row.relative(|_| SVector::<f64, 2>::new(0.5, 0.1));
         assert!(same.norm() < 1e-15, "carried along: {same}");
         // A direction is free if the own node is, or all of those opposite are.
-        assert_eq!(motion_row.free(0, |dof| dof != 0), [true, true]);
-        assert_eq!(
-            motion_row.free(0, |dof| dof != 0 && dof != 4),
-            [false, true]
-        );
+        let none = Directions::default();
+        let free = |held: &[usize]| {
+            let of = |a| Subspace::of_node(a, &none, |dof| !held.contains(&dof));
+            motion_row.free(0, of).within
+        };
+        assert_eq!(free(&[0]), [true, true]);
+        assert_eq!(free(&[0, 4]), [false, true]);
+        // Held along 37°, and opposite along −20°, and both along 37°.
+        let held_along = |own: f64, opposite: f64| {
+            let at = |degrees: f64| SVector::from(<[f64; 2]>::from(degrees.to_radians().sin_cos()));
+            let of = |a: usize| match a {
+                0 => Subspace::spanned(&[at(own)]).complement(),
+                2 => Subspace::spanned(&[at(opposite)]).complement(),
+                _ => Subspace::all(),
+            };
+            motion_row.free(0, of)
+        };
+        assert_eq!(held_along(37.0, -20.0).dimension(), 2);
+        let left = held_along(37.0, 37.0);
+        let along = SVector::from(<[f64; 2]>::from(37.0f64.to_radians().sin_cos()));
+        assert_eq!(left.dimension(), 1);
+        assert!(left.part(&along).norm() < 1e-15);
     }
 
     #[test]

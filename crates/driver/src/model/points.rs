@@ -1,6 +1,7 @@
 //! The contact points of a model: their frames, gaps and slips; not the law that holds there.
 
 use crate::error::ModelError;
+use crate::vector::subspace::Subspace;
 use moreau_contact::{Obstacle, frame};
 use moreau_laws::{Friction, Local};
 use moreau_mesh::{NodeKind, nearest};
@@ -150,16 +151,11 @@ impl<const D: usize> Kinematics<D> {
         n: &SVector<f64, D>,
         gap: f64,
         slip: &SVector<f64, D>,
-        free: [bool; D],
+        free: &Subspace<D>,
     ) -> Self {
-        let mut projected = *n;
-        for i in 0..D {
-            if !free[i] {
-                projected[i] = 0.0;
-            }
-        }
+        let projected = free.part(n);
         let length = projected.norm();
-        let dimension = free.iter().filter(|f| **f).count();
+        let dimension = free.dimension();
         if dimension == 0 || length < PRESCRIBED {
             // Nothing left to decide, whatever the prescribed motion does.
             return Self::apart(point.law, gap);
@@ -249,16 +245,14 @@ fn frame_along<const D: usize>(
 /// Length of the projection of a unit axis on a surface below which it has no direction there.
 pub(crate) const ALONG_NORMAL: f64 = 1e-3;
 
-/// Orthonormal basis of the free coordinate subspace, first vector `e`.
-fn frame_in<const D: usize>(e: &SVector<f64, D>, free: [bool; D]) -> SMatrix<f64, D, D> {
+/// Orthonormal basis of the free subspace, first vector `e`.
+fn frame_in<const D: usize>(e: &SVector<f64, D>, free: &Subspace<D>) -> SMatrix<f64, D, D> {
     let mut q = SMatrix::<f64, D, D>::zeros();
     q.set_column(0, e);
     let mut k = 1;
-    let mut axes: Vec<usize> = (0..D).filter(|&i| free[i]).collect();
-    axes.sort_by(|&a, &b| e[a].abs().total_cmp(&e[b].abs()));
-    for i in axes {
-        let mut v = SVector::<f64, D>::zeros();
-        v[i] = 1.0;
+    let mut others: Vec<SVector<f64, D>> = free.vectors().collect();
+    others.sort_by(|a, b| a.dot(e).abs().total_cmp(&b.dot(e).abs()));
+    for mut v in others {
         for j in 0..k {
             let c = q.column(j).into_owned();
             v -= c * c.dot(&v);
@@ -274,8 +268,14 @@ fn frame_in<const D: usize>(e: &SVector<f64, D>, free: [bool; D]) -> SMatrix<f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vector::directions::Directions;
     use moreau_contact::Ball;
     use moreau_laws::{AnisotropicCoulomb, Coulomb};
+
+    /// The axes that are free.
+    fn axes<const D: usize>(free: [bool; D]) -> Subspace<D> {
+        Subspace::of_node(0, &Directions::default(), |dof| free[dof])
+    }
 
     fn point<const D: usize>() -> ContactPoint<D> {
         ContactPoint {
@@ -299,7 +299,7 @@ mod tests {
             &n,
             0.15,
             &SVector::<f64, 2>::new(0.0, -0.1),
-            [false, true],
+            &axes([false, true]),
         );
         assert_eq!(k.active, [true, false]);
         assert_eq!(k.u, Local::<2>::new(0.15, 0.0));
@@ -311,7 +311,7 @@ mod tests {
         let (s, c) = 0.5f64.sin_cos();
         let n = SVector::<f64, 2>::new(-s, c);
         let d_u = SVector::<f64, 2>::new(0.0, 0.3);
-        let k = Kinematics::new(&point(), &n, 0.3 * c, &d_u, [false, true]);
+        let k = Kinematics::new(&point(), &n, 0.3 * c, &d_u, &axes([false, true]));
         // Moving up by 0.3 opens the gap by 0.3 cos; the force n t_n does the same work.
         assert!((k.local_force(&d_u) - k.u).norm() < 1e-15);
         let t = Local::<2>::new(2.0, 0.0);
@@ -322,7 +322,7 @@ mod tests {
     fn one_held_axis_in_space_leaves_two_components() {
         let n = SVector::<f64, 3>::new(0.0, 1.0, 0.0);
         let slip = SVector::<f64, 3>::new(0.0, 0.0, 0.2);
-        let k = Kinematics::new(&point(), &n, 0.0, &slip, [false, true, true]);
+        let k = Kinematics::new(&point(), &n, 0.0, &slip, &axes([false, true, true]));
         assert_eq!(k.active, [true, true, false]);
         assert!((k.u[1].abs() - 0.2).abs() < 1e-15 && k.u[2] == 0.0);
     }
@@ -356,7 +356,7 @@ mod tests {
             ..point()
         };
         let n = SVector::<f64, 3>::new(0.0, 0.6, 0.8);
-        let k = Kinematics::new(&point, &n, 0.0, &SVector::zeros(), [true; 3]);
+        let k = Kinematics::new(&point, &n, 0.0, &SVector::zeros(), &axes([true; 3]));
         let q = k.axes;
         assert!((q.transpose() * q - SMatrix::identity()).norm() < 1e-14);
         assert!((q.determinant() - 1.0).abs() < 1e-14);
@@ -372,8 +372,8 @@ mod tests {
                 axis: Some(SVector::<f64, 3>::new(c, s, 0.0)),
                 ..point.clone()
             };
-            let held_across = [true, false, true];
-            let k = Kinematics::new(&point, &floor, 0.0, &SVector::zeros(), held_across);
+            let held_across = axes([true, false, true]);
+            let k = Kinematics::new(&point, &floor, 0.0, &SVector::zeros(), &held_across);
             assert!(
                 (k.law.coefficient() - expected).abs() < 1e-14,
                 "{:?}",

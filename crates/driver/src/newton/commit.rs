@@ -172,7 +172,7 @@ impl<const D: usize> Driver<D> {
         let pairs = self.state.displacement.iter().zip(d_u);
         let mut displacement: Vec<f64> = pairs.map(|(u, d)| u + d).collect();
         for (&dof, &u) in &end.displacement {
-            displacement[dof] = u;
+            end.directions.set(dof, u, &mut displacement);
         }
         displacement
     }
@@ -235,10 +235,11 @@ impl<const D: usize> Driver<D> {
         let mut work = start.force.with(&end.force, mean).dot(d_u);
         let at_start = self.pressure_force(start, &vec![0.0; d_u.len()]);
         work += at_start.with(&self.pressure_force(end, d_u), mean).dot(d_u);
+        let before = |dof: usize| state.internal[dof] - start.force.at(dof) - state.contact.at(dof);
+        let after = |dof: usize| internal[dof] - end.force.at(dof) - contact.at(dof);
         for &dof in end.displacement.keys() {
-            let before = state.internal[dof] - start.force.at(dof) - state.contact.at(dof);
-            let after = internal[dof] - end.force.at(dof) - contact.at(dof);
-            work += 0.5 * (before + after) * d_u[dof];
+            let along = |at: &dyn Fn(usize) -> f64| end.directions.component(dof, at);
+            work += 0.5 * (along(&before) + along(&after)) * along(&|dof| d_u[dof]);
         }
         work
     }

@@ -59,6 +59,7 @@ impl<const D: usize> Control<'_, D> {
             pressure: start.pressure.with(&self.grows.pressure, grown),
             turn: start.turn.clone(),
             displacement: start.displacement.clone(),
+            directions: start.directions.clone(),
             force: start.force.with(&self.grows.force, grown),
         }
     }

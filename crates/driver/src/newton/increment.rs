@@ -603,7 +603,8 @@ impl<const D: usize> Driver<D> {
             return zero();
         };
         let ratio = end.increment_from(start).ratio(before);
-        let same = end.displacement.keys().eq(before.displacement.keys());
+        let same = end.displacement.keys().eq(before.displacement.keys())
+            && end.directions == before.directions;
         if same && ratio > 0.0 && ratio <= 4.0 {
             last.iter().map(|u| ratio * u).collect()
         } else {
@@ -621,7 +622,11 @@ impl<const D: usize> Driver<D> {
         let mut missing = SparseVector::default();
         for (&dof, &u) in &end.displacement {
             let increment = u - start.displacement.get(&dof).copied().unwrap_or(u);
-            missing.add(dof, increment - d_u[dof]);
+            let left = increment - end.directions.component(dof, |j| d_u[j]);
+            if !end.is_rounding(dof, left, d_u) {
+                let entries = end.directions.entries(dof);
+                entries.for_each(|(j, c)| missing.add(j, c * left));
+            }
         }
         missing
     }

@@ -4,6 +4,7 @@
 use crate::linear::system::Assembly;
 use crate::model::load::Loading;
 use crate::vector::SparseVector;
+use crate::vector::directions::Prescribed;
 use crate::vector::{largest, residual};
 
 /// Where Newton's iteration stands.
@@ -22,7 +23,7 @@ impl Iterate {
     pub(crate) fn residual<const D: usize>(
         &self,
         end: &Loading<D>,
-        prescribed: &[usize],
+        prescribed: &Prescribed,
     ) -> Vec<f64> {
         residual(
             &self.assembly.internal,

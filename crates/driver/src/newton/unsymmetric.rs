@@ -4,6 +4,7 @@
 use crate::driver::Driver;
 use crate::linear::system::System;
 use crate::newton::iterate::Iterate;
+use crate::vector::directions::Prescribed;
 use crate::vector::largest;
 use moreau_contact::Anderson;
 use nalgebra::DVector;
@@ -98,7 +99,7 @@ impl<const D: usize> Driver<D> {
         unsymmetric: &mut Option<Unsymmetric>,
         now: &Iterate,
         step: &[f64],
-        held: &[usize],
+        held: &Prescribed,
     ) -> bool {
         let settled = |u: &mut Unsymmetric| u.settles(self.lacking(&now.d_u, step, held));
         unsymmetric.as_mut().is_none_or(settled)
@@ -117,7 +118,7 @@ impl<const D: usize> Driver<D> {
     }
 
     /// A v at the displacement increments `d_u`, at every degree of freedom \[N\]; zero at those held.
-    fn lacking(&self, d_u: &[f64], v: &[f64], held: &[usize]) -> Vec<f64> {
+    fn lacking(&self, d_u: &[f64], v: &[f64], held: &Prescribed) -> Vec<f64> {
         let mut forces = vec![0.0; v.len()];
         for block in &self.blocks {
             block.lacking(self.motion(d_u), v, &mut |nodes, force| {
@@ -127,7 +128,7 @@ impl<const D: usize> Driver<D> {
                 }
             });
         }
-        held.iter().for_each(|&dof| forces[dof] = 0.0);
+        held.clear(&mut forces);
         forces
     }
 }

@@ -78,7 +78,7 @@ impl<const D: usize> Driver<D> {
     fn compliance(&self, system: &mut System, force: Vec<f64>) -> Option<DVector<f64>> {
         let mut v = vec![0.0; force.len()];
         if system.is_tied() {
-            let mut x: Vec<f64> = system.unknowns().map(|dof| force[dof]).collect();
+            let mut x = system.at_unknowns(|dof| force[dof]);
             system.solve_tied(&mut x);
             system.spread(&x, &mut v);
         } else {

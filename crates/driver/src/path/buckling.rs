@@ -99,7 +99,7 @@ impl<const D: usize> Driver<D> {
             }
             drop(tied);
             return self.instability(system, &mut |system, force| {
-                let mut x: Vec<f64> = system.unknowns().map(|dof| force[dof]).collect();
+                let mut x = system.at_unknowns(|dof| force[dof]);
                 system.solve_tied(&mut x);
                 let mut v = vec![0.0; force.len()];
                 system.spread(&x, &mut v);

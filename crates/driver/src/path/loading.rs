@@ -6,7 +6,7 @@ use crate::error::ModelError;
 use crate::model::load::{Axis, Condition, Loading, Step, axis_letter};
 use crate::model::points::{Turn, tool_index};
 use crate::vector::SparseVector;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 impl<const D: usize> Driver<D> {
     /// The loading at the end of a step.
@@ -24,6 +24,7 @@ impl<const D: usize> Driver<D> {
                 Condition::Displace { on, axis, value } => {
                     self.displace(&step.name, (on, *axis, *value), &mut moved)?;
                 }
+                Condition::DisplaceAlong { .. } => {}
                 Condition::Force { on, force } => {
                     let nodes = mesh.node_group(on)?;
                     for &node in &nodes {
@@ -53,6 +54,7 @@ impl<const D: usize> Driver<D> {
                 Condition::Tool { .. } | Condition::Turn { .. } | Condition::Push { .. } => {}
             }
         }
+        loading.directions = self.displace_along(step, &mut moved)?;
         self.move_tools(step, &mut moved)?;
         loading.turn = self.turns(step)?;
         for condition in &step.conditions {
@@ -190,17 +192,21 @@ impl<const D: usize> Driver<D> {
     pub(crate) fn start_of(&self, end: &Loading<D>) -> Loading<D> {
         let state = &self.state;
         let mut start = state.loading.clone();
-        for dof in state.loading.displacement.keys() {
-            if !end.displacement.contains_key(dof) {
-                let reaction = self.nodal_reaction(dof / D)[dof % D];
-                start.force.add(*dof, reaction);
-            }
+        let held = state.loading.displacement.keys().map(|dof| dof / D);
+        let held: BTreeSet<usize> = held.collect();
+        for node in held {
+            let released = end.free_at(node).part(&self.nodal_reaction(node));
+            start.push(node, 1.0, &released.into());
         }
-        start.displacement = end
-            .displacement
-            .keys()
-            .map(|&dof| (dof, state.displacement[dof]))
-            .collect();
+        let at = |(&dof, &u): (&usize, &f64)| {
+            let here = end.directions.component(dof, |j| state.displacement[j]);
+            match end.is_rounding(dof, here - u, &state.displacement) {
+                true => (dof, u),
+                false => (dof, here),
+            }
+        };
+        start.displacement = end.displacement.iter().map(at).collect();
+        start.directions = end.directions.clone();
         start
     }
 }

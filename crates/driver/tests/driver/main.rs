@@ -1,5 +1,6 @@
 //! Contracts of the driver's public items.
 
+mod along;
 mod amplitudes;
 mod anisotropic;
 mod axis;

@@ -4,7 +4,7 @@ use super::{INPUT_ERROR, folder, read, report, say, tell};
 use crate::deck::{
     Action, Deck, Given, MaterialEntry, Method, Problem, Setup, Shape, SoilEntry, open_with,
 };
-use crate::driver::{Axis, RigidMotion, Stopper};
+use crate::driver::{RigidMotion, Stopper};
 use crate::numbers::{place, shown};
 use crate::simulation::pictures::planned;
 use std::path::Path;
@@ -261,9 +261,8 @@ fn motions(deck: &Deck, steps: &[Vec<RigidMotion>]) {
 }
 
 fn stopping(deck: &Deck, motion: &RigidMotion) -> String {
-    let group = |(name, axes): &(String, Vec<Axis>)| {
-        let axes: Vec<&str> = axes.iter().map(|a| AXES[a.index()]).collect();
-        format!("{name} along {}", axes.join(", "))
+    let group = |(name, directions): &(String, Vec<String>)| {
+        format!("{name} along {}", directions.join(", "))
     };
     let what = match motion.stopper {
         Some(Stopper::Friction) => "friction",
@@ -311,6 +310,10 @@ fn conditions(deck: &Deck) {
                         .map(|(i, v)| format!("u_{} = {v} {length}", AXES[*i]))
                         .collect();
                     u.join(", ")
+                }
+                Action::FixAlong(n) => format!("fixed along {}", place(n, DIGITS)),
+                Action::MoveAlong(n, u) => {
+                    format!("moved by {u} {length} along {}", place(n, DIGITS))
                 }
                 Action::Pressure(p) => format!("pressure {p} {stress}"),
                 Action::Traction(t) => format!("traction {t:?} {stress}"),

@@ -251,6 +251,8 @@ fn lists(conditions: &[ConditionEntry], dimension: usize) -> [(&'static str, Vec
                     .collect();
                 (1, format!("{{ on = {on}, u = {{ {} }} }}", u.join(", ")))
             }
+            Action::FixAlong(n) => (0, format!("{{ on = {on}, along = {n:?} }}")),
+            Action::MoveAlong(n, u) => (1, format!("{{ on = {on}, along = {n:?}, u = {u:?} }}")),
             Action::Pressure(p) => (2, format!("{{ on = {on}, pressure = {p:?} }}")),
             Action::Traction(v) => (2, format!("{{ on = {on}, traction = {v:?} }}")),
             Action::Force(v) => (2, format!("{{ on = {on}, force = {v:?} }}")),

@@ -314,8 +314,12 @@ pub struct TurnEntry {
 pub enum Action {
     /// Holds components of the displacement at zero.
     Fix(Vec<usize>),
+    /// Holds the displacement along a direction of any length at zero.
+    FixAlong(Vec<f64>),
     /// Prescribes components of the displacement.
     Move(Vec<(usize, f64)>),
+    /// Prescribes the displacement along a direction of any length.
+    MoveAlong(Vec<f64>, f64),
     /// Pressure.
     Pressure(f64),
     /// Traction.

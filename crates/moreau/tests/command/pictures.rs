@@ -239,6 +239,24 @@ fn a_deck_is_drawn_before_it_is_run() {
     }
     assert_eq!(drawn("tube-blown-up").0, Some(0));
     assert!(read("plan.svg").contains(">pressure 400 MPa<"));
+    // The base of a support is across its direction, (−1/2, √3/2); on paper y points downwards.
+    assert_eq!(drawn("sector-of-tube").0, Some(0));
+    let svg = read("plan.svg");
+    let across = |path: &&str| {
+        let path = path.split(" d=\"m").nth(1).expect("a path");
+        let path = path.split('z').next().expect("an end");
+        let path = path.replace('-', " -").replace('l', " ");
+        let x: Vec<f64> = path
+            .split_whitespace()
+            .filter_map(|x| x.parse().ok())
+            .collect();
+        // Each from the place before.
+        let base = [x[4], x[5]];
+        (base[1] + base[0] / 3f64.sqrt()).abs() < 0.05 * base[0].abs()
+    };
+    let supports = || svg.split("<path").filter(|path| path.contains("#1a7f4b"));
+    let skew = supports().filter(across).count();
+    assert!(skew > 3 && skew < supports().count(), "{skew} in {svg}");
     let (status, err) = drawn("punch-in-space");
     assert!(
         status == Some(1) && err.contains("a solid is not drawn"),

@@ -1,5 +1,6 @@
 //! What is said about a deck that is wrong or doubtful, and that nothing said about it is a panic.
 
+mod along;
 mod amplitudes;
 mod keys;
 mod laws;

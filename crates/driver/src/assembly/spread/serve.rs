@@ -5,6 +5,7 @@ use super::share::Entries;
 use crate::assembly::block::{Block, BlockEnergy};
 use crate::assembly::cell_law::{Motion, Stiffness};
 use crate::vector::SparseVector;
+use crate::vector::directions::Directions;
 use moreau_algebra::{ENGINE, Parcel, Share, Team, Unpacked};
 use moreau_laws::FlowPower;
 
@@ -116,7 +117,10 @@ impl<const D: usize> Served<'_, D> {
         let (kind, mut order) = Unpacked::order(order);
         match kind {
             ask::NUMBER => {
-                let entries = Entries::new(&self.blocks, &order.indices());
+                let (unknown, turned) = (order.indices(), order.indices());
+                let turned = turned.into_iter().map(|dof| dof as usize);
+                let directions = Directions::from_numbers(D, turned, &order.reals());
+                let entries = Entries::new(&self.blocks, (&unknown, directions));
                 self.answer(&Parcel::default().indices(entries.rows()));
                 self.entries = Some(entries);
             }
@@ -230,7 +234,7 @@ impl<const D: usize> Served<'_, D> {
         let flows = self.blocks[k].evaluate(motion, stiffness, &mut |cell| {
             forces.extend(cell.force);
             if let Some(entries) = entries {
-                entries.add::<D>(k, &cell);
+                entries.add::<D>(k, cell);
             }
         });
         let parcel = Parcel::default().count(usize::from(flows));

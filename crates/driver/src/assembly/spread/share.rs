@@ -3,7 +3,9 @@
 use crate::assembly::block::{Block, CellResult};
 use crate::assembly::numbering::pattern_of;
 use crate::assembly::scatter::{FIXED, Scatter, prescribed_columns};
+use crate::assembly::turned::Turned;
 use crate::vector::SparseVector;
+use crate::vector::directions::Directions;
 use moreau_algebra::{Matrix, Share};
 
 /// Entries of the cells of this process.
@@ -13,6 +15,7 @@ pub(crate) struct Entries {
     position: Vec<u32>,
     /// Unknown of the whole system of each own number, ascending.
     rows: Vec<u32>,
+    directions: Directions,
     scatter: Vec<Scatter>,
     matrix: Matrix,
     missing: SparseVector,
@@ -21,8 +24,11 @@ pub(crate) struct Entries {
 }
 
 impl Entries {
-    /// Of the cells of some blocks, by the unknown of every degree of freedom.
-    pub(crate) fn new<const D: usize>(blocks: &[Box<dyn Block<D>>], unknown: &[u32]) -> Self {
+    /// Of the cells of some blocks, by the unknown of every degree of freedom and its direction.
+    pub(crate) fn new<const D: usize>(
+        blocks: &[Box<dyn Block<D>>],
+        (unknown, directions): (&[u32], Directions),
+    ) -> Self {
         let of = |b: &'_ dyn Block<D>| 0..b.cells().len();
         let groups: Vec<&[usize]> = blocks
             .iter()
@@ -45,6 +51,7 @@ impl Entries {
                 .map(|b| Scatter::new(b.as_ref(), &position, &pattern))
                 .collect(),
             position,
+            directions,
             matrix: Matrix::new(pattern),
             missing: SparseVector::default(),
             prescribed_load: Vec::new(),
@@ -72,8 +79,10 @@ impl Entries {
     }
 
     /// Adds a cell of a block.
-    pub(crate) fn add<const D: usize>(&mut self, block: usize, cell: &CellResult<'_>) {
+    pub(crate) fn add<const D: usize>(&mut self, block: usize, cell: CellResult<'_>) {
         let (pattern, values) = self.matrix.values_mut();
+        let mut turned = Turned::of(&self.directions);
+        let cell = &turned.cell::<D>(cell);
         self.scatter[block].add::<D>(cell, &self.position, pattern, values);
         if !self.prescribed_load.is_empty() {
             let (load, missing) = (&mut self.prescribed_load, &self.missing);

@@ -58,7 +58,7 @@ fn told(outcome: Result<(), EngineError>, x: &mut [f64]) {
 impl System {
     /// Condenses the factorised system under a load given at every degree of freedom \[N\].
     pub(crate) fn condense(&mut self, load: Vec<f64>) -> Condensed {
-        let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
+        let applied = self.at_unknowns(|dof| load[dof]);
         drop(load);
         let mut inner = self.restricted(&applied);
         timed(&mut self.timings.solution, || {
@@ -91,7 +91,7 @@ impl System {
         load: &SparseVector,
         (compliance, missing): (f64, f64),
     ) -> Border {
-        let applied: Vec<f64> = self.dofs.iter().map(|&dof| load.at(dof)).collect();
+        let applied = self.at_unknowns(|dof| load.at(dof));
         let restricted = self.restricted(&applied);
         let mut inner = restricted.clone();
         let first = inner.len() - self.interface;
@@ -147,16 +147,14 @@ impl System {
     /// # Errors
     /// [`Inaccurate`] where the factor does not solve the system.
     pub(crate) fn solve(&mut self, load: &[f64], d_u: &mut [f64]) -> Result<(), Inaccurate> {
-        let applied: Vec<f64> = self.dofs.iter().map(|&dof| load[dof]).collect();
+        let applied = self.at_unknowns(|dof| load[dof]);
         let mut solution = self.restricted(&applied);
         let clock = Clock::start();
         told(self.engine.solve(&mut solution), &mut solution);
         let mut solution = self.prolonged(solution);
         let outcome = self.improve(&applied, &mut solution, Interface::Free);
         self.timings.solution += clock.elapsed();
-        for (&dof, u) in self.dofs.iter().zip(solution) {
-            d_u[dof] = u;
-        }
+        self.spread(&solution, d_u);
         outcome
     }
 
@@ -180,14 +178,15 @@ impl System {
         told(self.engine.expand(&mut solution), &mut solution);
         let mut solution = self.prolonged(solution);
         let mut applied = condensed.applied;
-        for (dof, f) in contact.iter().filter(|&(dof, _)| self.is_free(dof)) {
-            applied[self.position[dof] as usize] += f;
+        for (dof, f) in contact.iter() {
+            let parts = self.prescribed.directions.parts(dof);
+            for (dof, part) in parts.filter(|&(dof, _)| self.is_free(dof)) {
+                applied[self.position[dof] as usize] += part * f;
+            }
         }
         let outcome = self.improve(&applied, &mut solution, interface);
         self.timings.solution += clock.elapsed();
-        for (&dof, u) in self.dofs.iter().zip(solution) {
-            d_u[dof] = u;
-        }
+        self.spread(&solution, d_u);
         outcome
     }
 
@@ -198,21 +197,16 @@ impl System {
         self.timings.solution += clock.elapsed();
     }
 
-    /// The degrees of freedom of the unknowns, in their order.
-    pub(crate) fn unknowns(&self) -> impl Iterator<Item = usize> {
-        self.dofs.iter().copied()
-    }
-
     /// f − K u at the unknowns, and what rounding leaves of it, with f a sum of forces as large as `given`.
     pub(crate) fn left(&self, f: &[f64], u: &[f64], given: f64) -> (Vec<f64>, f64) {
         let rounding = given + self.stiffest * largest(u.iter().copied());
         (self.residual(u, f), ACCURATE * rounding)
     }
 
-    /// Writes displacements of the unknowns to `d_u` at every degree of freedom.
+    /// Writes displacements of the unknowns to `d_u` at every degree of freedom; prescribed ones are left as they are.
     pub(crate) fn spread(&self, u: &[f64], d_u: &mut [f64]) {
-        for (&dof, u) in self.dofs.iter().zip(u) {
-            d_u[dof] = *u;
+        for (&dof, &u) in self.dofs.iter().zip(u) {
+            self.prescribed.directions.set(dof, u, d_u);
         }
     }
 

@@ -3,8 +3,21 @@
 use crate::deck::entries::{Action, ConditionEntry, Deck, StepEntry};
 use crate::deck::finding::{Class, Findings};
 
-/// What a part of a condition acts as, and along which axis.
-type Part = (&'static str, usize);
+/// What a part of a condition acts as, and along which axis, or which unit vector.
+type Part = (&'static str, Way);
+
+#[derive(PartialEq)]
+enum Way {
+    Axis(usize),
+    Along(Vec<f64>),
+}
+
+impl Way {
+    fn along(direction: &[f64]) -> Self {
+        let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+        Self::Along(direction.iter().map(|x| x / length).collect())
+    }
+}
 
 /// Tables in steps until collapse, and those that begin with another value than the step before ended with.
 pub(super) fn check(deck: &Deck, findings: &mut Findings) {
@@ -40,7 +53,7 @@ fn jumps(before: &[StepEntry], condition: &ConditionEntry, findings: &mut Findin
     };
     for (part, value) in parts(&condition.action) {
         let starts = value * share;
-        let Some(held) = held(before, &condition.on.value, part) else {
+        let Some(held) = held(before, &condition.on.value, &part) else {
             continue;
         };
         if (starts - held).abs() <= 1e-9 * value.abs().max(held.abs()) {
@@ -65,7 +78,7 @@ fn jumps(before: &[StepEntry], condition: &ConditionEntry, findings: &mut Findin
 
 /// What acts at the end of the steps so far; `None` for a displacement that nothing prescribes then. Loads are released
 /// by a step that does not list them, and tools stay.
-fn held(before: &[StepEntry], on: &str, part: Part) -> Option<f64> {
+fn held(before: &[StepEntry], on: &str, part: &Part) -> Option<f64> {
     let of = |step: &StepEntry| -> Option<f64> {
         let own = step.conditions.iter().filter(|c| c.on.value == on);
         let values = own.flat_map(|c| {
@@ -75,7 +88,7 @@ fn held(before: &[StepEntry], on: &str, part: Part) -> Option<f64> {
                 .into_iter()
                 .map(move |(p, v)| (p, v * share))
         });
-        let values: Vec<f64> = values.filter(|(p, _)| *p == part).map(|(_, v)| v).collect();
+        let values: Vec<f64> = values.filter(|(p, _)| p == part).map(|(_, v)| v).collect();
         (!values.is_empty()).then(|| values.iter().sum())
     };
     match part.0 {
@@ -92,22 +105,27 @@ const TURN: &str = "turn";
 /// The numbers of a condition.
 fn parts(action: &Action) -> Vec<(Part, f64)> {
     let vector = |what: &'static str, v: &[f64]| -> Vec<(Part, f64)> {
-        let of = |(axis, &value)| ((what, axis), value);
+        let of = |(axis, &value)| ((what, Way::Axis(axis)), value);
         v.iter().enumerate().map(of).collect()
     };
     let motion = |u: &Option<Vec<f64>>| u.as_ref().map_or(Vec::new(), |u| vector(MOTION, u));
     match action {
-        Action::Fix(axes) => axes.iter().map(|&i| ((DISPLACEMENT, i), 0.0)).collect(),
+        Action::Fix(axes) => axes
+            .iter()
+            .map(|&i| ((DISPLACEMENT, Way::Axis(i)), 0.0))
+            .collect(),
+        Action::FixAlong(n) => vec![((DISPLACEMENT, Way::along(n)), 0.0)],
         Action::Move(u) => u
             .iter()
-            .map(|&(i, value)| ((DISPLACEMENT, i), value))
+            .map(|&(i, value)| ((DISPLACEMENT, Way::Axis(i)), value))
             .collect(),
-        Action::Pressure(p) => vec![(("pressure", 0), *p)],
+        Action::MoveAlong(n, u) => vec![((DISPLACEMENT, Way::along(n)), *u)],
+        Action::Pressure(p) => vec![(("pressure", Way::Axis(0)), *p)],
         Action::Traction(t) => vector("traction", t),
         Action::Force(f) => vector("force", f),
         Action::BodyForce(f) => vector("body force", f),
         Action::Tool(u, turn) => {
-            let turn = turn.iter().map(|turn| ((TURN, 0), turn.angle));
+            let turn = turn.iter().map(|turn| ((TURN, Way::Axis(0)), turn.angle));
             motion(u).into_iter().chain(turn).collect()
         }
         Action::Push(f, u) => [vector("force", f), motion(u)].concat(),

@@ -25,6 +25,8 @@ pub(super) fn stages<const D: usize>(deck: &Deck, groups: &Groups<D>) -> Vec<Sta
                     let axes: Vec<Axis> = axes.iter().map(|&i| AXES[i]).collect();
                     step.fix(nodes, &axes)
                 }
+                Action::FixAlong(n) => step.fix_along(nodes, fixed(n)),
+                Action::MoveAlong(n, u) => step.displace_along(nodes, fixed(n), *u),
                 Action::Move(components) => components
                     .iter()
                     .fold(step, |s, &(i, value)| s.displace(nodes, AXES[i], value)),
@@ -71,11 +73,14 @@ fn drives(deck: &Deck, tool: &str, axis: usize) -> bool {
     own.any(|c| matches!(&c.action, Action::Push(force, _) if force.get(axis).is_some_and(|f| *f != 0.0)))
 }
 
-/// Directions in which a condition prescribes displacements.
+/// Axes along which what a condition prescribes of displacements has a part.
 pub(super) fn directions(action: &Action) -> Vec<usize> {
     match action {
         Action::Fix(axes) => axes.clone(),
         Action::Move(components) => components.iter().map(|(axis, _)| *axis).collect(),
+        Action::FixAlong(n) | Action::MoveAlong(n, _) => {
+            (0..n.len()).filter(|&i| n[i] != 0.0).collect()
+        }
         _ => Vec::new(),
     }
 }
@@ -85,7 +90,7 @@ pub(super) fn held<const D: usize>(deck: &Deck, groups: &Groups<D>) -> Vec<[Stri
     let mut held: Vec<[String; 2]> = Vec::new();
     for condition in deck.steps.iter().flat_map(|s| &s.conditions) {
         let name = &condition.on.value;
-        let holds = matches!(condition.action, Action::Fix(_) | Action::Move(_));
+        let holds = !directions(&condition.action).is_empty();
         if holds && !held.iter().any(|[n, _]| n == name) {
             held.push([name.clone(), groups.nodes_of(name).to_owned()]);
         }
@@ -98,7 +103,8 @@ pub(super) fn doubts(deck: &Deck, findings: &mut Findings) {
     let size = |action: &Action| -> Option<f64> {
         let largest = |v: &[f64]| v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         match action {
-            Action::Fix(_) => None,
+            Action::Fix(_) | Action::FixAlong(_) => None,
+            Action::MoveAlong(_, u) => Some(u.abs()),
             Action::Move(components) => Some(components.iter().fold(0.0, |m, c| c.1.abs().max(m))),
             Action::Pressure(p) => Some(p.abs()),
             Action::Traction(v) | Action::Force(v) | Action::BodyForce(v) => Some(largest(v)),
@@ -117,7 +123,7 @@ pub(super) fn doubts(deck: &Deck, findings: &mut Findings) {
         |name: &str| all().any(|c| c.on.value == name && size(&c.action).is_some_and(|s| s > 0.0));
     for condition in all().filter(|c| size(&c.action) == Some(0.0)) {
         // A load that returns to zero is an unloading.
-        let held = matches!(condition.action, Action::Move(_));
+        let held = matches!(condition.action, Action::Move(_) | Action::MoveAlong(..));
         if !held && !loaded(&condition.on.value) {
             findings.warning(
                 &condition.span,

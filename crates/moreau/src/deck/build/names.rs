@@ -92,7 +92,11 @@ fn used<const D: usize>(
 fn needed(action: &Action) -> Option<Needed> {
     match action {
         Action::Tool(..) | Action::Push(..) => None,
-        Action::Fix(_) | Action::Move(_) | Action::Force(_) => Some(Needed::Nodes),
+        Action::Fix(_)
+        | Action::FixAlong(_)
+        | Action::Move(_)
+        | Action::MoveAlong(..)
+        | Action::Force(_) => Some(Needed::Nodes),
         Action::Pressure(_) | Action::Traction(_) => Some(Needed::Facets),
         Action::BodyForce(_) => Some(Needed::Cells),
     }

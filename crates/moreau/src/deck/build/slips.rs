@@ -97,10 +97,11 @@ fn rough(deck: &Deck, findings: &mut Findings) {
 fn far<const D: usize>(deck: &Deck, groups: &Groups<D>, findings: &mut Findings) {
     let (size, unit) = (groups.mesh.size(), deck.units.length());
     for condition in deck.steps.iter().flat_map(|s| &s.conditions) {
-        let Action::Move(components) = &condition.action else {
-            continue;
+        let largest = match &condition.action {
+            Action::Move(components) => components.iter().fold(0.0, |m: f64, c| c.1.abs().max(m)),
+            Action::MoveAlong(_, u) => u.abs(),
+            _ => continue,
         };
-        let largest = components.iter().fold(0.0, |m: f64, c| c.1.abs().max(m));
         if largest > size {
             let message = format!(
                 "\"{}\" is moved by {} {unit}, but the whole mesh is {size:.3} {unit} in size: both are in \

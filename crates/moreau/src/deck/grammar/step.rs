@@ -111,9 +111,26 @@ fn amplitude(value: Value<'_>, log: &Log) -> Option<At<Vec<[f64; 2]>>> {
     Some(At::new(rows, value.span()))
 }
 
+/// The components of a direction, which has a length.
+fn direction(value: Value<'_>, dimension: usize, log: &Log) -> Option<Vec<f64>> {
+    let direction = reader::vector(value, "along", dimension, log)?.value;
+    match direction.iter().any(|x| *x != 0.0) {
+        true => Some(direction),
+        false => reader::wrong(value, "along", "a direction, with a length", log),
+    }
+}
+
 fn fix(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
     let log = table.log();
     let on = table.text("on");
+    if let Some(value) = table.get("along") {
+        if let Some(u) = table.get("u") {
+            let expected = "u or along, not both: along is the direction in which u is zero";
+            return reader::wrong(u, "u", expected, log);
+        }
+        let direction = direction(value, dimension, log)?;
+        return condition(on, Action::FixAlong(direction), table);
+    }
     let value = table.need("u", "[\"x\", …]")?;
     let axes: Option<Vec<usize>> = reader::items(value, "u", "[\"x\", …]", log)?
         .into_iter()
@@ -132,9 +149,20 @@ fn fix(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
 fn shift(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
     let log = table.log();
     let on = table.text("on");
+    let along = table.get("along");
     let value = table.need("u", "{ x = …, y = … }")?;
+    if let Some(along) = along {
+        let direction = direction(along, dimension, log);
+        if value.get_ref().is_table() {
+            let expected = "the displacement along that direction, a number";
+            return reader::wrong(value, "u", expected, log);
+        }
+        let u = reader::number(value, "u", log)?.value;
+        return condition(on, Action::MoveAlong(direction?, u), table);
+    }
     if !value.get_ref().is_table() {
-        return reader::wrong(value, "u", "the components, as in { y = -0.2 }", log);
+        let expected = "the components, as in { y = -0.2 }, or a number beside along = [ … ]";
+        return reader::wrong(value, "u", expected, log);
     }
     let inner = reader::table(value, "u", "u", log)?;
     let components: Vec<(usize, f64)> = AXES[..dimension]

@@ -7,11 +7,11 @@ use std::fmt::Write;
 /// A mark on a picture, at places of the body.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Mark {
-    /// A point that is held along an axis, from the side that `from` points to.
+    /// A point that is held along a direction, from the side that `from` points to.
     Support {
         /// Where \[mm\].
         at: [f64; 2],
-        /// Unit vector along the axis, out of the body.
+        /// Unit vector along it, out of the body.
         from: [f64; 2],
     },
     /// A motion or a force.

@@ -149,6 +149,13 @@ impl<'a> Scene<'a> {
                 let places: Vec<_> = self.places(on).into_iter().map(|x| (x, [0.0; 2])).collect();
                 self.arrows(&places, u, units.length(), MOTION, marks);
             }
+            Action::FixAlong(n) => self.held_along(on, n, marks),
+            Action::MoveAlong(n, u) if *u == 0.0 => self.held_along(on, n, marks),
+            Action::MoveAlong(n, u) => {
+                let n = Vector2::from(components(n.iter().copied().enumerate())).normalize();
+                let places: Vec<_> = self.places(on).into_iter().map(|x| (x, [0.0; 2])).collect();
+                self.arrows(&places, (n * *u).into(), units.length(), MOTION, marks);
+            }
             Action::Pressure(pressure) => {
                 let facets = self.facets(on);
                 for &(at, n) in &facets {
@@ -210,6 +217,16 @@ impl<'a> Scene<'a> {
                 from[axis] = out;
                 marks.push(Mark::Support { at, from });
             }
+        }
+    }
+
+    /// Supports along a direction, from the side that leads out of the body.
+    fn held_along(&self, group: &str, direction: &[f64], marks: &mut Vec<Mark>) {
+        let n = Vector2::from(components(direction.iter().copied().enumerate())).normalize();
+        for at in self.places(group) {
+            let out = n.dot(&(Vector2::from(at) - self.centre)).signum();
+            let from = (n * out).into();
+            marks.push(Mark::Support { at, from });
         }
     }
 
