@@ -3,6 +3,7 @@
 
 pub mod cases;
 mod csv;
+pub mod curves;
 pub mod outcome;
 pub mod paper;
 pub mod problems;

@@ -217,6 +217,8 @@ pub struct Case {
     pub title: &'static str,
     /// What is computed and why: one paragraph.
     pub description: &'static str,
+    /// Decks and notebooks of this problem or near it, as paths in `docs`.
+    pub decks: &'static [&'static str],
     /// Runs the case. An error is a failure of the case: the solver did not do what it should.
     pub run: fn(&Options<'_>) -> Result<Outcome, Box<dyn std::error::Error>>,
 }

@@ -1,5 +1,5 @@
-//! `cargo xtask docs`: the pages that are written from what they describe, and the check that they are as that is now; not
-//! the pages that people write.
+//! `cargo xtask docs`: the pages and pictures that are written from what they describe, and the check that they are as
+//! that is now; not the pages that people write.
 
 mod command;
 mod deck;
@@ -25,8 +25,8 @@ pub struct Args {
 
 /// A page, and what keeps it from being complete.
 struct Page {
-    /// Name of the file.
-    name: &'static str,
+    /// The file, from the folder of the pages.
+    name: String,
     text: String,
     /// What the page is written from, for whoever has to mend it.
     of: &'static str,
@@ -36,7 +36,7 @@ struct Page {
 /// Writes the pages, or checks them; `Ok(false)` where one is not as it should be.
 pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     let root = workspace::root();
-    let folder = root.join("docs/reference");
+    let folder = root.join("docs");
     let pages = pages(&root, args.described.as_deref())?;
     let mut good = true;
     for page in &pages {
@@ -44,18 +44,18 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
             println!("{}: {lack}", page.of);
             good = false;
         }
-        let path = folder.join(page.name);
+        let path = folder.join(&page.name);
         if !args.check {
-            fs::create_dir_all(&folder)?;
+            fs::create_dir_all(path.parent().unwrap_or(&folder))?;
             fs::write(&path, &page.text)?;
         } else if fs::read_to_string(&path).unwrap_or_default() != page.text {
-            let (name, of) = (page.name, page.of);
-            println!("docs/reference/{name} is not that of {of}: run `cargo xtask docs`");
+            let (name, of) = (&page.name, page.of);
+            println!("docs/{name} is not that of {of}: run `cargo xtask docs`");
             good = false;
         }
     }
     if good {
-        println!("✓ docs: {} pages", pages.len());
+        println!("✓ docs: {} pages and pictures", pages.len());
     }
     Ok(good)
 }
@@ -63,14 +63,22 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
 /// All pages.
 fn pages(root: &Path, printed: Option<&Path>) -> Result<Vec<Page>, Box<dyn Error>> {
     let told = described::described(printed)?;
-    let of_results =
-        |name, of, entries: &[described::Entry], text: fn(&[described::Entry]) -> String| Page {
-            name,
-            text: text(entries),
-            of,
-            lacks: results::lacks(entries),
-        };
-    Ok(vec![
+    let of_results = |name: &str,
+                      of,
+                      entries: &[described::Entry],
+                      text: fn(&[described::Entry]) -> String| Page {
+        name: format!("reference/{name}"),
+        text: text(entries),
+        of,
+        lacks: results::lacks(entries),
+    };
+    let curves = verification::curves::all()?.into_iter().map(|figure| Page {
+        name: format!("theory/{}.svg", figure.name),
+        text: figure.svg,
+        of: "the curves of the laws, tests/src/curves.rs",
+        lacks: Vec::new(),
+    });
+    let mut pages = vec![
         of_deck(root)?,
         of_results(
             "history.md",
@@ -91,12 +99,14 @@ fn pages(root: &Path, printed: Option<&Path>) -> Result<Vec<Page>, Box<dyn Error
             results::run,
         ),
         Page {
-            name: "command.md",
+            name: "reference/command.md".to_owned(),
             text: command::page(&told.command),
             of: "the command line",
             lacks: command::lacks(&told.command),
         },
-    ])
+    ];
+    pages.extend(curves);
+    Ok(pages)
 }
 
 /// The page of the keys of decks.
@@ -117,7 +127,7 @@ fn of_deck(root: &Path) -> Result<Page, Box<dyn Error>> {
     decks.sort_by(|a: &(String, toml::Table), b| a.0.cmp(&b.0));
     let keys = deck::keys(&schema, &decks);
     Ok(Page {
-        name: "deck.md",
+        name: "reference/deck.md".to_owned(),
         text: deck::page(&schema, &keys),
         of,
         lacks: deck::lacks(&keys),

@@ -25,6 +25,7 @@ pub(super) const CASE: Case = Case {
         (semismooth Newton, Uzawa, Gauss–Seidel) and under the paper's own nesting, Uzawa around \
         the nonlinear solve. The paper's regularisation took 25 s and its Uzawa 30 min, a ratio of \
         72; the ratios here are measured in one run, on the fastest of several repetitions each.",
+    decks: &["examples/punched-block.toml"],
     run,
 };
 

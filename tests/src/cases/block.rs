@@ -26,6 +26,7 @@ pub(super) const CASE: Case = Case {
         compared with an independent implementation digit by digit. With the paper's friction \
         nearly all points slip forward, so two variants follow: a friction of 0.3, where points \
         stick, and a withdrawal of the punch, where they stick, slip back and open.",
+    decks: &["examples/punched-block.toml", "gallery/punched-block.py"],
     run,
 };
 

@@ -21,6 +21,10 @@ pub(super) const CASE: Case = Case {
         back until the drag is nil: the edge slips back, and shear tractions that balance each \
         other remain. Between like materials pressure and drag are uncoupled and all tractions \
         are known in closed form.",
+    decks: &[
+        "examples/block-dragged-on-block.toml",
+        "gallery/hertz-cattaneo-mindlin.py",
+    ],
     run,
 };
 

@@ -23,6 +23,11 @@ pub(super) const CASE: Case = Case {
         is followed along the plateau, and its mechanism yields a kinematic bound: load and bound \
         enclose the limit load of the mesh, which tends to the exact one from above. A table shows \
         the limit loads of every plane element under every rule.",
+    decks: &[
+        "examples/cylinder-to-collapse.toml",
+        "examples/strip-between-rough-platens.toml",
+        "gallery/limit-load.py",
+    ],
     run,
 };
 

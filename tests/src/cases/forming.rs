@@ -19,6 +19,7 @@ pub(super) const ROLLING: Case = Case {
     description: "A strip of 2 mm is rolled to 1.6 mm by rolls of radius 60 mm with friction 0.15, which turn by 15°. \
         Force and moment of the steady state are compared with the theories of slabs of von Kármán and Orowan, \
         which know of no elastic zones at the ends of the contact: the stiffer the strip, the nearer the force.",
+    decks: &["examples/strip-rolled.toml"],
     run: rolling,
 };
 
@@ -31,6 +32,7 @@ pub(super) const DRAWING: Case = Case {
     description: "A strip of perfectly plastic metal is drawn through a die of half angle α = 7.2° without friction, which \
         takes a fifth of its thickness: r = 2 sin α / (1 + 2 sin α), for which the lines of slip are a fan, and the \
         stress of drawing is 2k (1 + α) r.",
+    decks: &["examples/strip-drawn.toml"],
     run: drawing,
 };
 
@@ -42,6 +44,7 @@ pub(super) const HARDNESS: Case = Case {
     title: "Brinell's ball and Tabor's rule",
     description: "A ball of 10 mm is pressed by 0.3 mm into a plate of steel that hardens by a power of 0.2. The mean \
         pressure over the yield stress at a plastic strain of 0.2 a/R is between 2.8 and 3 for all metals.",
+    decks: &["examples/ball-pressed-into-plate.toml"],
     run: hardness,
 };
 

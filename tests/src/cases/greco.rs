@@ -23,6 +23,7 @@ pub(super) const CASE: Case = Case {
         from the side, with a coefficient of friction of one: the reference of two-dimensional \
         friction, where points are open, slip and stick at once and neither a step size nor a \
         penalty can influence the answer.",
+    decks: &["examples/block-opening-sliding-sticking.toml"],
     run,
 };
 

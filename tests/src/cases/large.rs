@@ -23,6 +23,7 @@ pub(super) const UPSETTING: Case = Case {
         cylinder to half of its height, between parallel platens with friction. The sides fold onto the \
         platens. Loads, positions, contact forces and statuses are compared with an independent \
         implementation in every increment.",
+    decks: &["examples/cube-upset.toml"],
     run: upsetting,
 };
 
@@ -34,6 +35,7 @@ pub(super) const RING: Case = Case {
     title: "Ring compression to half of the height",
     description: "A ring of the proportions 6:3:2 is squeezed to half of its height between platens with \
         Coulomb friction. Its bore over its height is the chart by which friction is measured.",
+    decks: &["examples/ring-squeezed.toml"],
     run: ring,
 };
 
@@ -45,6 +47,7 @@ pub(super) const NECK: Case = Case {
     title: "Necking of a bar",
     description: "A bar of 53.3 mm with hardening that saturates, two hundredths thinner in its middle, is drawn \
         by 14 mm: beyond the largest load it necks.",
+    decks: &["examples/bar-necks.toml"],
     run: neck,
 };
 
@@ -56,6 +59,7 @@ pub(super) const INDENTATION: Case = Case {
     title: "Indentation by a disc",
     description: "A disc of radius 10 mm is pressed by 3 mm into a block of 40 mm × 20 mm: contact spreads, and \
         normals turn as points slide along the disc.",
+    decks: &["examples/ball-pressed-into-plate.toml"],
     run: indentation,
 };
 
@@ -68,6 +72,7 @@ pub(super) const TURNING: Case = Case {
     description: "The block between two platens with friction 0.3, which come together by 6 mm, straight or \
         while they turn by 90° about its middle: contact is found where the bodies are, slips are those along the \
         platens, and both runs end in the same load.",
+    decks: &["examples/cube-upset.toml", "examples/strip-rolled.toml"],
     run: turning,
 };
 

@@ -21,6 +21,7 @@ pub(super) const CASE: Case = Case {
         10⁵–10⁸). Here every factor converges, on every mesh, because the penalty is a spring in \
         series with the exact law and not a stiffness that multiplies rounding; a small factor \
         converges to a useless answer. The error against exact contact falls as 1/k.",
+    decks: &["examples/punched-block.toml"],
     run,
 };
 

@@ -30,6 +30,7 @@ pub(super) const CASE: Case = Case {
         uniform refinements, with reduced (2×2) and full (3×3) quadrature, and with an independent \
         implementation digit by digit. At 0.4 mm the curve still creeps up: loads are compared at \
         equal travel, and the table says how steep the curve still is.",
+    decks: &["examples/indentation-flat-punch.toml"],
     run,
 };
 

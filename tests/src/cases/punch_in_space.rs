@@ -21,6 +21,7 @@ pub(super) const CASE: Case = Case {
         solution: a quarter between planes of symmetry answers as the whole; the base carries what \
         the punch applies; forces stay in the circular cone of friction, with no bipotential gap; \
         more friction makes the block stiffer and a finer mesh softer.",
+    decks: &["examples/punch-in-space.toml"],
     run,
 };
 

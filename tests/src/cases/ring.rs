@@ -21,6 +21,7 @@ pub(super) const CASE: Case = Case {
         little friction the bore opens, with much it closes: its rate at collapse, and the mean \
         pressure, are compared with the upper bound of a velocity field without bulging. The \
         pressure must lie below that bound and above that without friction.",
+    decks: &["examples/ring-squeezed.toml", "gallery/ring-test.py"],
     run,
 };
 

@@ -25,6 +25,7 @@ pub(super) const CASE: Case = Case {
         commercial codes is that of linear cells as coarse as theirs; finer linear cells and \
         quadratic ones agree on a displacement 2.5 % beyond it, with the multipliers on either \
         side.",
+    decks: &["examples/cylinder-pressed-into-block.toml"],
     run,
 };
 

@@ -86,6 +86,17 @@ fn page(run: &Run<'_>, figure: Option<&Figure>, setting: Setting) -> String {
             false => "All meshes and variants",
         },
     );
+    let decks = case.decks.iter().map(|path| {
+        let name = Path::new(path).file_stem().unwrap_or_default();
+        format!("[{}](../{path})", name.display())
+    });
+    let decks = decks.collect::<Vec<_>>().join(", ");
+    if !decks.is_empty() {
+        let _ = write!(
+            page,
+            "\nTo begin with, of this problem or near it: {decks}.\n"
+        );
+    }
     if let Some(error) = run.error() {
         let _ = write!(page, "\nNo outcome: {}\n", cell(error));
     }
@@ -191,6 +202,7 @@ mod tests {
         for text in [
             "# A made-up &lt;case&gt;",
             "Why & how.",
+            "near it: [a-case](../examples/a-case.toml), [a-case](../gallery/a-case.py).",
             "](sound/curve.svg)",
             "3 of 3 checks hold",
             "| force | 100.004 N | = | 100 N | ±0.1 % | closed form [12] | ✓ |",

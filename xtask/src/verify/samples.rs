@@ -13,6 +13,7 @@ pub fn cases() -> Vec<Case> {
         chapter: Chapter::Paper,
         title: "A made-up <case>",
         description: "Why & how.",
+        decks: &["examples/a-case.toml", "gallery/a-case.py"],
         run,
     };
     vec![

@@ -189,7 +189,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     let gaps = driver.least_gaps();
     penetrations::warn(deck, &driver, &gaps, findings);
     let supports = supports(&driver, (deck, &gaps), &stages, &groups, findings);
-    conditions::doubts(deck, findings);
+    conditions::doubts(deck, &gaps, findings);
     amplitudes::check(deck, findings);
     conditions::inner_surfaces(deck, &groups, findings);
     slips::warn(deck, &groups, surface, findings);

@@ -51,4 +51,13 @@ impl Units {
     pub fn energy(self) -> &'static str {
         ["N·mm", "N·m", "lbf·in"][self as usize]
     }
+
+    /// Unit of a force, moment or displacement by its column of `history.csv`.
+    pub(crate) fn of_value(self, column: &str) -> &'static str {
+        match column.split('.').next() {
+            Some("force") => self.force(),
+            Some("moment") => self.energy(),
+            _ => self.length(),
+        }
+    }
 }

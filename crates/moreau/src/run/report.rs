@@ -85,10 +85,7 @@ fn results(run: &serde_json::Value, deck: &Deck) -> Rows {
     .filter_map(|(name, key)| Some([name.to_owned(), shown(collapse[key].as_f64()?, 6)]))
     .collect();
     for (name, value) in run["values"].as_object().into_iter().flatten() {
-        let unit = match name.starts_with("force.") {
-            true => units.force(),
-            false => units.length(),
-        };
+        let unit = units.of_value(name);
         let value = value.as_f64().unwrap_or(f64::NAN);
         rows.push([format!("{name} [{unit}]"), shown(value, 9)]);
     }

@@ -118,7 +118,7 @@ const RUN: &[Key<Outcome>] = &[
     key(
         "values",
         Unit::None,
-        "Final forces and displacements, by their columns of `history.csv` and in the units of these.",
+        "Final forces, moments and displacements, by their columns of `history.csv` and in the units of these.",
         |o| json!(o.values.iter().cloned().collect::<BTreeMap<_, _>>()),
     ),
     key(

@@ -231,7 +231,7 @@ pub struct Outcome {
     pub contacts: [usize; 3],
     /// Energies at the end.
     pub energies: Energies,
-    /// Final forces and displacements by column of `history.csv`.
+    /// Final forces, moments and displacements by column of `history.csv`.
     pub values: Vec<(String, f64)>,
     /// What came of the expectations.
     pub verdicts: Vec<Verdict>,
@@ -287,7 +287,11 @@ pub(super) fn conclude<const D: usize>(
     warnings.extend(tally.criticality.and_then(critical));
     let names = history.table().columns().iter().map(|c| c.name.as_str());
     let values = names
-        .filter(|n| n.starts_with("force.") || n.starts_with("u."))
+        .filter(|n| {
+            ["force.", "u.", "moment."]
+                .iter()
+                .any(|of| n.starts_with(of))
+        })
         .filter_map(|n| Some((n.to_owned(), last(n)?)))
         .collect();
     Outcome {
@@ -434,11 +438,7 @@ impl Outcome {
     /// Values at the end, and those that were expected.
     fn write_values(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (name, value) in &self.values {
-            let unit = if name.starts_with("force.") {
-                self.units.force()
-            } else {
-                self.units.length()
-            };
+            let unit = self.units.of_value(name);
             writeln!(f, "  {name:<24} {:>16} {unit}", shown(*value, 9))?;
         }
         for v in &self.verdicts {

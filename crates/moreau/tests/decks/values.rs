@@ -328,3 +328,45 @@ fn a_surface_has_one_contact() {
         assert!(flat(&out).contains(word), "{out}");
     }
 }
+
+/// What is pressed on by its interference is loaded, and meant; a tool that just touches is not inside of the body,
+/// whatever the facets.
+#[test]
+fn fits_and_touching_tools_are_not_doubted() {
+    let fit = r#"
+units = "mm-N-MPa"
+analysis = "axisymmetric"
+mesh.block = [
+  { name = "shaft", element = "quad8", x = [0, 20], y = [0, 10], cells = [2, 2] },
+  { name = "hub", element = "quad8", x = [20, 40], y = [0, 10], cells = [2, 3] },
+]
+material = [{ on = "shaft", young = 210e3, poisson = 0.3 }, { on = "hub", young = 210e3, poisson = 0.3 }]
+contact = [{ surface = "hub.left", against = "shaft.right", friction = 0.1, gap-offset = 0.02 }]
+step = [{ name = "fit", increments = 1, fix = [{ on = "shaft.bottom", u = ["y"] }, { on = "hub.bottom", u = ["y"] }] }]
+"#;
+    let said =
+        |deck: &str| -> Vec<String> { open(deck).2.iter().map(|f| f.message.clone()).collect() };
+    assert_eq!(said(fit), Vec::<String>::new());
+    let overlap = fit.replace("x = [20, 40]", "x = [19.99, 40]");
+    let told = said(&overlap);
+    assert!(
+        told.len() == 1 && told[0].contains("overlap, by 0.03 mm"),
+        "{told:?}"
+    );
+    let touching = r#"
+units = "mm-N-MPa"
+analysis = "solid"
+mesh.block = [{ name = "b", element = "tet10", x = [0, 10], y = [0, 5], z = [0, 10], cells = [2, 1, 2] }]
+material = [{ on = "b", young = 210e3, poisson = 0.3 }]
+tool = [{ name = "ball", sphere = { center = [5, 25, 5], radius = 20 } }]
+contact = [{ surface = "b.top", against = "ball", friction = 0.1 }]
+step = [{ name = "s", increments = 1, fix = [{ on = "b.bottom", u = ["x", "y", "z"] }], tools = [{ name = "ball", move = [0, -0.01, 0] }] }]
+"#;
+    assert_eq!(said(touching), Vec::<String>::new());
+    let within = touching.replace("[5, 25, 5]", "[5, 24.9, 5]");
+    let told = said(&within);
+    assert!(
+        told.len() == 1 && told[0].contains("begins inside of the body"),
+        "{told:?}"
+    );
+}

@@ -4,7 +4,7 @@ use super::Stage;
 use super::groups::Groups;
 use crate::deck::entries::{Action, Deck, TurnEntry};
 use crate::deck::finding::Findings;
-use crate::driver::{Axis, Step};
+use crate::driver::{Axis, LeastGap, Step};
 use crate::mesh::Facet;
 use std::collections::HashSet;
 
@@ -99,7 +99,7 @@ pub(super) fn held<const D: usize>(deck: &Deck, groups: &Groups<D>) -> Vec<[Stri
 }
 
 /// Loads that are zero throughout, and a deck that loads nothing.
-pub(super) fn doubts(deck: &Deck, findings: &mut Findings) {
+pub(super) fn doubts<const D: usize>(deck: &Deck, gaps: &[LeastGap<D>], findings: &mut Findings) {
     let size = |action: &Action| -> Option<f64> {
         let largest = |v: &[f64]| v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         match action {
@@ -135,7 +135,9 @@ pub(super) fn doubts(deck: &Deck, findings: &mut Findings) {
             );
         }
     }
-    if !all().any(|c| size(&c.action).is_some_and(|s| s > 0.0)) {
+    // What begins within something else is loaded by that, as a ring on its shaft.
+    let fits = gaps.iter().any(|g| g.inside > 0);
+    if !fits && !all().any(|c| size(&c.action).is_some_and(|s| s > 0.0)) {
         let span = deck.steps.first().map_or(0..0, |s| s.name.span.clone());
         findings.warning(
             &span,

@@ -15,6 +15,7 @@ use crate::laws::{
     LawError, LimitedCoulomb, PanelLaw, Parameter, Tresca, VonMises,
 };
 use crate::mesh::{CellKind, Integration, Mesh, MeshError};
+use crate::numbers::shown;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -216,7 +217,18 @@ fn hardening(
         Curve::Voce([saturation, rate]) => Isotropic::voce(*saturation, *rate).map_err(wrong),
         Curve::Swift([strength, offset, exponent]) => {
             let law = Isotropic::swift(*strength, *offset, *exponent).map_err(wrong)?;
-            law.initial().map_or(Ok(()), |s| start(s, &given.span))?;
+            // k e0ⁿ is the yield stress.
+            let fits = (yield_stress.value / strength).powf(1.0 / exponent);
+            let told = |(at, what): (Range<usize>, String)| match fits.is_finite() {
+                true => (
+                    at,
+                    format!("{what}, which it does with e0 = {}", shown(fits, 6)),
+                ),
+                false => (at, what),
+            };
+            law.initial()
+                .map_or(Ok(()), |s| start(s, &given.span))
+                .map_err(told)?;
             Ok(law)
         }
         Curve::Table(rows) => {

@@ -34,7 +34,7 @@ pub(super) fn sentence<const D: usize>(
     )
 }
 
-/// Warns of every contact that begins with a penetration.
+/// Warns of every contact that begins with a penetration which its `gap-offset` does not ask for.
 pub(super) fn warn<const D: usize>(
     deck: &Deck,
     driver: &Driver<D>,
@@ -42,7 +42,11 @@ pub(super) fn warn<const D: usize>(
     findings: &mut Findings,
 ) {
     for gap in gaps.iter().filter(|g| g.inside > 0) {
-        if let Some(entry) = deck.contacts.get(gap.contact) {
+        let Some(entry) = deck.contacts.get(gap.contact) else {
+            continue;
+        };
+        let asked = entry.gap_offset.as_ref().map_or(0.0, |o| o.value);
+        if !gap.met || -gap.gap > asked + driver.rounding_of_gaps() {
             let message = sentence(deck, driver, gap);
             findings.warning(&entry.surface.span, message, "inside from the first");
         }
