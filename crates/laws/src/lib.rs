@@ -39,6 +39,7 @@
 //! | its isotropic hardening | [`Isotropic`] | stored energy |
 //! | soils | [`ElasticDruckerPrager`] | bulk |
 //! | their plastic part | [`DruckerPrager`] | bipotential |
+//! | any of these under plane stress | [`InPlaneStress`] | bulk |
 //! | contact with Tresca friction | [`Tresca`] | superpotential |
 //! | contact with Coulomb friction | [`Coulomb`], [`AnisotropicCoulomb`] | bipotential |
 //! | contact with friction limited by a shear | [`LimitedCoulomb`] | neither |
@@ -65,6 +66,7 @@ mod isotropic;
 mod large;
 mod local;
 mod panel;
+mod plane_stress;
 pub mod textbook;
 mod von_mises;
 
@@ -84,4 +86,5 @@ pub use isotropic::Isotropic;
 pub use large::{LargeResponse, Turned, respond_large, volume_change};
 pub use local::{Local, Status};
 pub use panel::{NoAnswer, Panel, PanelLaw, PointByPoint};
+pub use plane_stress::{InPlaneStress, PlaneStressState};
 pub use von_mises::{VonMises, VonMisesState};

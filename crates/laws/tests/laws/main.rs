@@ -16,6 +16,7 @@ mod lemaitre;
 mod material_point;
 mod natural_map;
 mod panel;
+mod plane_stress;
 mod potential;
 mod projection;
 mod regularised;
