@@ -20,8 +20,8 @@ use moreau_contact::Obstacle;
 use moreau_laws::{BulkLaw, Friction, InPlaneStress, PanelLaw};
 use moreau_mesh::{
     Axisymmetric, CellKind, Element, Facet, Hex8, Hex20, Hex27, Hypothesis, Integration, Mesh,
-    MortarRow, Pairing, PlaneStrain, PlaneStress, PositiveShare, Pressed, Quad4, Quad8, Quad9, Share, Solid,
-    Tet4, Tet10, Tri3, Tri6, nearest,
+    MortarRow, Pairing, PlaneStrain, PlaneStress, PositiveShare, Pressed, Quad4, Quad8, Quad9,
+    Share, Solid, Tet4, Tet10, Tri3, Tri6, nearest,
 };
 use nalgebra::SVector;
 use std::collections::BTreeMap;

@@ -260,7 +260,10 @@ impl BulkLaw for ElasticDruckerPrager {
         given[2] = 0.0;
         // ‖e‖² = ‖ε̇‖² − e_v²/3 with ε̇₃₃ = e_v − a: a quadratic equation, of which one root is positive.
         let a = rate[0] + rate[1];
-        let (of_square, constant) = (1.0 - 2.0 / 3.0 * square, square * (given.norm_squared() + a * a));
+        let (of_square, constant) = (
+            1.0 - 2.0 / 3.0 * square,
+            square * (given.norm_squared() + a * a),
+        );
         if of_square <= 0.0 {
             return -a;
         }

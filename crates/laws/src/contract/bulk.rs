@@ -160,7 +160,9 @@ impl<'a, L: BulkLaw> Suite<'a, L> {
         report.holds(property, compliance.is_some(), at)?;
         // The median over directions of the strain at which something flows.
         let mut sizes: Vec<f64> = (0..33)
-            .filter_map(|_| yield_strain(law, initial, &strained(random.direction(), finds_thickness)))
+            .filter_map(|_| {
+                yield_strain(law, initial, &strained(random.direction(), finds_thickness))
+            })
             .collect();
         sizes.sort_by(f64::total_cmp);
         Ok(Self {

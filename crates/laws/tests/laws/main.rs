@@ -15,6 +15,7 @@ mod large;
 mod lemaitre;
 mod material_point;
 mod natural_map;
+mod orthotropic;
 mod panel;
 mod plane_stress;
 mod potential;

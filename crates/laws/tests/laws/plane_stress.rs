@@ -41,7 +41,9 @@ fn every_law_under_plane_stress_obeys_the_contract() -> Result<(), Box<dyn std::
 fn soils_under_plane_stress_obey_the_contract() -> Result<(), Box<dyn std::error::Error>> {
     for dilatancy in [30.0, 10.0, 0.0] {
         let plastic = DruckerPrager::mohr_coulomb(0.1, 30.0, dilatancy)?;
-        bulk(&InPlaneStress(ElasticDruckerPrager::new(1e3, 0.3, plastic)?))?;
+        bulk(&InPlaneStress(ElasticDruckerPrager::new(
+            1e3, 0.3, plastic,
+        )?))?;
     }
     Ok(())
 }
@@ -100,7 +102,10 @@ fn a_bar_in_plane_stress_hardens_and_unloads() -> Result<(), LawError> {
         };
         let mut bar = Point::new(law);
         let close = |found: f64, expected: f64| {
-            assert!((found - expected).abs() <= 1e-9 * YIELD, "{found} {expected}");
+            assert!(
+                (found - expected).abs() <= 1e-9 * YIELD,
+                "{found} {expected}"
+            );
         };
         close(bar.pull_to(0.6 * STRAIN), 0.6 * YIELD);
         let top = YIELD + slope * 4.0 * STRAIN;
@@ -161,9 +166,15 @@ fn no_strain_leaves_a_stress_through_the_thickness() -> Result<(), Violation> {
             let strain = [a.cos() * b.cos(), a.sin() * b.cos(), 0.0, 0.0, 0.0, b.sin()];
             let d_eps = size * Sym2::from(strain);
             let of_metal = metal.respond(&metal.initial(), &d_eps).stress;
-            assert!(of_metal[2].abs() <= 1e-13 * (YIELD + YOUNG * size), "{size} {k} {of_metal}");
+            assert!(
+                of_metal[2].abs() <= 1e-13 * (YIELD + YOUNG * size),
+                "{size} {k} {of_metal}"
+            );
             let of_soil = soil.respond(&soil.initial(), &d_eps).stress;
-            assert!(of_soil[2].abs() <= 1e-13 * (1.0 + 1e3 * size), "{size} {k} {of_soil}");
+            assert!(
+                of_soil[2].abs() <= 1e-13 * (1.0 + 1e3 * size),
+                "{size} {k} {of_soil}"
+            );
         }
     }
     Ok(())

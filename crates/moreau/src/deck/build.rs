@@ -17,10 +17,12 @@ use crate::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzaw
 use crate::driver::{
     self, Driver, Increments, LeastGap, ModelError, Nesting, RigidMotion, Settings, Step, Support,
 };
-use crate::mesh::{Axisymmetric, CellKind, Integration, Mesh, MeshError, PlaneStrain, PlaneStress, Solid};
+use crate::mesh::{
+    Axisymmetric, CellKind, Integration, Mesh, MeshError, PlaneStrain, PlaneStress, Solid,
+};
 use groups::Groups;
-use std::ops::Range;
 pub(super) use parts::quadratures;
+use std::ops::Range;
 
 /// A group of the mesh and what it measures.
 #[derive(Debug, Clone, PartialEq)]

@@ -33,6 +33,8 @@ const IN_THE_PLANE: [(&str, &[&str]); 22] = [
         &[
             "",
             "analysis = \"plane-stres\"",
+            "analysis = \"plane-stress\"\nstrain = \"finite\"",
+            "analysis = \"plane-stress\"\nthickness = 0",
             "analysis = \"solid\"",
             "analysis = \"plane-strain\"\nthickness = 0",
             "analysis = \"plane-strain\"\nthickness = -1.0",

@@ -6,7 +6,8 @@ use crate::algebra::SharedTeam;
 use crate::contact::{Ball, ContactError, Cylinder, Obstacle, Plane, Polyline, Triangulated};
 use crate::deck::Laws;
 use crate::deck::entries::{
-    Adjust, Analysis as Hypothesis, Curve, Deck, FrictionEntry, Hardening, MaterialEntry, Shape, SoilEntry,
+    Adjust, Analysis as Hypothesis, Curve, Deck, FrictionEntry, Hardening, MaterialEntry, Shape,
+    SoilEntry,
 };
 use crate::deck::finding::{At, Findings};
 use crate::driver::{Analysis, Model, ModelError};
