@@ -218,6 +218,14 @@ pub enum ModelError {
     /// Of a law that is given from outside.
     #[error(transparent)]
     Law(#[from] LawFault),
+    /// A material that plane stress does not go with.
+    #[error("plane stress of {group:?} does not go with {problem}")]
+    PlaneStress {
+        /// Its group.
+        group: String,
+        /// What it does not go with, and why.
+        problem: &'static str,
+    },
     /// A law of panels where strains and rotations are large.
     #[error(
         "the law of {group:?} answers for small strains only, and the strains of this model are large: take a law \

@@ -17,11 +17,11 @@ use crate::model::points::{ALONG_NORMAL, ContactPoint, Tool, tool_index};
 use crate::vector::SparseVector;
 use moreau_algebra::SharedTeam;
 use moreau_contact::Obstacle;
-use moreau_laws::{BulkLaw, Friction, PanelLaw};
+use moreau_laws::{BulkLaw, Friction, InPlaneStress, PanelLaw};
 use moreau_mesh::{
     Axisymmetric, CellKind, Element, Facet, Hex8, Hex20, Hex27, Hypothesis, Integration, Mesh,
-    MortarRow, Pairing, PlaneStrain, PositiveShare, Pressed, Quad4, Quad8, Quad9, Share, Solid,
-    Tet4, Tet10, Tri3, Tri6, nearest,
+    MortarRow, Pairing, PlaneStrain, PlaneStress, PositiveShare, Pressed, Quad4, Quad8, Quad9,
+    Share, Solid, Tet4, Tet10, Tri3, Tri6, nearest,
 };
 use nalgebra::SVector;
 use std::collections::BTreeMap;
@@ -109,6 +109,7 @@ macro_rules! analysis {
 }
 
 analysis!(PlaneStrain, 2, plane);
+analysis!(PlaneStress, 2, plane);
 analysis!(Axisymmetric, 2, plane);
 analysis!(Solid, 3, space);
 
@@ -242,10 +243,11 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         self
     }
 
-    /// Gives the cells of a group a law and an integration rule.
+    /// Gives the cells of a group a law and an integration rule. Under [`PlaneStress`] the law is
+    /// [`InPlaneStress`], which is not to be asked for.
     ///
     /// # Errors
-    /// An unknown group; [`ModelError::TwoMaterials`].
+    /// Those of [`Model::material_from`].
     pub fn material<L: BulkLaw>(
         self,
         group: &str,
@@ -261,7 +263,8 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     /// vary. Stresses that the first loads do not balance strain the body as these are applied.
     ///
     /// # Errors
-    /// An unknown group; [`ModelError::TwoMaterials`].
+    /// An unknown group; [`ModelError::TwoMaterials`]; [`ModelError::PlaneStress`] under large strains, or with a mean
+    /// dilatation.
     pub fn material_from<L: BulkLaw>(
         mut self,
         group: &str,
@@ -269,6 +272,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         integration: Integration,
         state: impl Fn(&[f64; D]) -> L::State,
     ) -> Result<Self, ModelError> {
+        self.check_plane_stress(group, integration)?;
         let by_kind = self.claim(group)?;
         let rank = self.team.as_ref().map(|(team, _)| team.rank());
         for (kind, mut cells) in by_kind {
@@ -280,9 +284,15 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             // A mesh of dimension D has no cells of another dimension.
             if let Some(own) = own {
                 let law = law.clone();
-                self.blocks.push(match self.large {
-                    true => Box::new(SolidBlock::large(cells, own, law).with_states(&state)),
-                    false => Box::new(SolidBlock::new(cells, own, law).with_states(&state)),
+                self.blocks.push(match (self.large, H::IS_PLANE_STRESS) {
+                    (true, _) => Box::new(SolidBlock::large(cells, own, law).with_states(&state)),
+                    (false, false) => {
+                        Box::new(SolidBlock::new(cells, own, law).with_states(&state))
+                    }
+                    (false, true) => {
+                        let plate = SolidBlock::new(cells, own, InPlaneStress(law));
+                        Box::new(plate.with_states(|x| state(x).into()))
+                    }
                 });
             }
         }
@@ -306,6 +316,12 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 group: group.into(),
             });
         }
+        if H::IS_PLANE_STRESS {
+            return Err(ModelError::PlaneStress {
+                group: group.into(),
+                problem: "a law that answers for panels of points: its stress through the thickness is its own",
+            });
+        }
         for (kind, cells) in self.claim(group)? {
             let own = self.hypothesis.cells(&self.mesh, kind, &cells, integration);
             let first = self.team.as_ref().is_none_or(|(team, _)| team.rank() == 0);
@@ -316,6 +332,22 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             }
         }
         Ok(self)
+    }
+
+    /// What plane stress does not go with.
+    fn check_plane_stress(&self, group: &str, integration: Integration) -> Result<(), ModelError> {
+        let problem = match (self.large, integration) {
+            (true, _) => "large strains: its thickness is not followed",
+            (false, Integration::BBar) => "a mean dilatation: no flow keeps an area",
+            _ => return Ok(()),
+        };
+        match H::IS_PLANE_STRESS {
+            true => Err(ModelError::PlaneStress {
+                group: group.into(),
+                problem,
+            }),
+            false => Ok(()),
+        }
     }
 
     /// Takes the cells of a group for the next material, by their kind.

@@ -124,6 +124,12 @@ pub trait BulkLaw: 'static + Clone + Send + Sync {
         Sym4::zeros()
     }
 
+    /// The part of ∂σ₁/∂Δε that is not symmetric, of a law that calls itself symmetric because its tangent does
+    /// without it \[MPa\], 6×6.
+    fn skew(&self, _old: &Self::State, _d_eps: &Sym2) -> Sym4 {
+        Sym4::zeros()
+    }
+
     /// Stress in a state \[MPa\].
     fn stress(&self, state: &Self::State) -> Sym2;
 
@@ -141,8 +147,21 @@ pub trait BulkLaw: 'static + Clone + Send + Sync {
         compliance.map_or_else(Sym2::zeros, |s| s * self.stress(state))
     }
 
-    /// The elastic tangent \[MPa\], 6×6, symmetric positive definite.
+    /// The elastic tangent \[MPa\], 6×6, symmetric positive definite; under plane stress without the row and the
+    /// column of ε₃₃.
     fn elastic_tangent(&self) -> Sym4;
+
+    /// ε₃₃ of a state since the start, of a law that finds it in place of the one that it is given: one under plane
+    /// stress, [`InPlaneStress`](crate::InPlaneStress). `None` of the others.
+    fn thickness_strain(&self, _state: &Self::State) -> Option<f64> {
+        None
+    }
+
+    /// ε̇₃₃ of the plastic flow that has the other components of this rate under plane stress, σ₃₃ = 0: what makes
+    /// [`BulkLaw::flow_power`] least. That of flow at constant volume, unless the law says otherwise.
+    fn thickness_rate(&self, rate: &Sym2) -> f64 {
+        -(rate[0] + rate[1])
+    }
 
     /// Energy stored in a state, elastic and by hardening \[N·mm/mm³\]; non-negative.
     fn stored_energy(&self, state: &Self::State) -> f64;

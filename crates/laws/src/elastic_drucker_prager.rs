@@ -252,6 +252,25 @@ impl BulkLaw for ElasticDruckerPrager {
         Some(elastic + self.plastic.apex() * trace(&flow))
     }
 
+    /// Where the dilation e_v of the rate is k_f ‖e‖: the least one that stresses bound. At constant volume where
+    /// there is none, friction being so large that pressure in the plane never flows.
+    fn thickness_rate(&self, rate: &Sym2) -> f64 {
+        let square = self.plastic.friction().powi(2);
+        let mut given = *rate;
+        given[2] = 0.0;
+        // ‖e‖² = ‖ε̇‖² − e_v²/3 with ε̇₃₃ = e_v − a: a quadratic equation, of which one root is positive.
+        let a = rate[0] + rate[1];
+        let (of_square, constant) = (
+            1.0 - 2.0 / 3.0 * square,
+            square * (given.norm_squared() + a * a),
+        );
+        if of_square <= 0.0 {
+            return -a;
+        }
+        let half = square * a;
+        ((half * half + of_square * constant).sqrt() - half) / of_square - a
+    }
+
     /// c₀ e_v⁺ + σ_m (e_v − e_v⁺) of associated flow, with e_v⁺ = max(e_v, k_f ‖e‖): what a rate
     /// lacks of the dilation of flow is elastic. `None` where k_t < k_f.
     fn flow_power(&self, state: &DruckerPragerState, rate: &Sym2) -> Option<FlowPower> {

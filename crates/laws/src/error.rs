@@ -136,6 +136,12 @@ pub enum LawError {
         /// What is wrong with it.
         problem: &'static str,
     },
+    /// An energy or a criterion of a material with axes that is not positive in every direction.
+    #[error("{of} is not positive definite: some strain or stress would cost nothing")]
+    NotDefinite {
+        /// What is not.
+        of: &'static str,
+    },
     /// A damage outside [0, 1[.
     #[error("the damage must lie in [0, 1[, got {damage}")]
     DamageOutOfRange {

@@ -37,8 +37,11 @@
 //! | isotropic elasticity | [`Elastic`] | bulk |
 //! | von Mises, isotropic and kinematic hardening | [`VonMises`] | bulk |
 //! | its isotropic hardening | [`Isotropic`] | stored energy |
+//! | elasticity of three axes | [`Orthotropic`] | bulk |
+//! | its plasticity after Hill | [`Hill`] | bulk |
 //! | soils | [`ElasticDruckerPrager`] | bulk |
 //! | their plastic part | [`DruckerPrager`] | bipotential |
+//! | any of these under plane stress | [`InPlaneStress`] | bulk |
 //! | contact with Tresca friction | [`Tresca`] | superpotential |
 //! | contact with Coulomb friction | [`Coulomb`], [`AnisotropicCoulomb`] | bipotential |
 //! | contact with friction limited by a shear | [`LimitedCoulomb`] | neither |
@@ -64,7 +67,9 @@ mod friction;
 mod isotropic;
 mod large;
 mod local;
+mod orthotropic;
 mod panel;
+mod plane_stress;
 pub mod textbook;
 mod von_mises;
 
@@ -83,5 +88,8 @@ pub use friction::tresca::Tresca;
 pub use isotropic::Isotropic;
 pub use large::{LargeResponse, Turned, respond_large, volume_change};
 pub use local::{Local, Status};
+pub use orthotropic::Orthotropic;
+pub use orthotropic::hill::{Hill, HillCoefficients, HillState};
 pub use panel::{NoAnswer, Panel, PanelLaw, PointByPoint};
+pub use plane_stress::{InPlaneStress, PlaneStressState};
 pub use von_mises::{VonMises, VonMisesState};

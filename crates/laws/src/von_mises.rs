@@ -303,6 +303,15 @@ impl<const TERMS: usize> VonMises<TERMS> {
         Some(step)
     }
 
+    /// a of the part 2 a⊗n of ∂σ₁/∂Δε by which recall turns n \[MPa\].
+    #[inline]
+    fn turned(&self, step: &Return) -> Sym2 {
+        let g = self.elastic.shear_modulus();
+        let beta = 3.0 * g * step.d_p / step.trial;
+        let across = step.recall - step.n * step.n.dot(&step.recall);
+        -(1.5f64.sqrt() * g * beta / step.slope) * across
+    }
+
     /// What the return lacks at Δp \[MPa\], and the step if that is nothing; ξ without recall.
     #[inline]
     fn at(&self, old: &VonMisesState<TERMS>, xi: &Sym2, d_p: f64) -> (f64, Return) {
@@ -370,16 +379,25 @@ impl<const TERMS: usize> BulkLaw for VonMises<TERMS> {
         let mut tangent = isotropic(k, 2.0 * g * (1.0 - beta));
         add_symmetric_product(&mut tangent, g * (beta - gamma), &n, &n);
         if TERMS > 0 {
-            // Recall turns n: a part a⊗n that is not symmetric, of which the symmetric is kept.
-            let across = step.recall - n * n.dot(&step.recall);
-            let turned = -(1.5f64.sqrt() * g * beta / step.slope) * across;
-            add_symmetric_product(&mut tangent, 1.0, &turned, &n);
+            // Recall turns n: a part 2 a⊗n that is not symmetric, of which the symmetric is kept.
+            add_symmetric_product(&mut tangent, 1.0, &self.turned(&step), &n);
         }
         Response {
             stress: self.stress(&state),
             tangent,
             flows: true,
             state,
+        }
+    }
+
+    /// That by which recall turns the flow.
+    fn skew(&self, old: &VonMisesState<TERMS>, d_eps: &Sym2) -> Sym4 {
+        match self.radial_return(old, d_eps) {
+            Some(step) if TERMS > 0 => {
+                let turned = self.turned(&step) * step.n.transpose();
+                turned - turned.transpose()
+            }
+            _ => Sym4::zeros(),
         }
     }
 

@@ -151,6 +151,15 @@ impl CellKind {
         }
     }
 
+    /// The same under plane stress, where no flow keeps an area and no cell locks: there is nothing to average, and
+    /// triangles and quadrilaterals of few nodes have the full rule.
+    pub const fn integration_in_plane_stress(self) -> Integration {
+        match self.integration() {
+            Integration::BBar => Integration::Full,
+            rule => rule,
+        }
+    }
+
     /// Whether cells of this kind and rule cannot flow at constant volume: their limit loads are
     /// too high by far, or there are none.
     pub const fn locks(self, integration: Integration) -> bool {

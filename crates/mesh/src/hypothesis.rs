@@ -28,6 +28,9 @@ const fn shear(row: usize, field: usize) -> Entry {
 
 /// Modelling hypothesis: how a displacement of R^D strains a body of R³.
 pub trait Hypothesis<const D: usize>: 'static + Copy + Send + Sync {
+    /// Whether the thickness strains as σ₃₃ = 0 asks, which the material finds and not the displacement.
+    const IS_PLANE_STRESS: bool = false;
+
     /// Number of fields of a node that strains are made of.
     const FIELDS: usize;
 
@@ -125,6 +128,49 @@ impl Hypothesis<2> for PlaneStrain {
     /// Two translations and the rotation (−y, x).
     fn rigid_modes(&[x, y]: &[f64; 2]) -> Vec<[f64; 2]> {
         vec![[1.0, 0.0], [0.0, 1.0], [-y, x]]
+    }
+}
+
+/// Plane stress in the plane (1, 2): σ₃₃ = σ₁₃ = σ₂₃ = 0. Displacements strain it as in plane strain, and the
+/// material its thickness.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PlaneStress(PlaneStrain);
+
+impl PlaneStress {
+    /// A plate of the given thickness \[mm\].
+    ///
+    /// # Errors
+    ///
+    /// [`MeshError::Thickness`] unless it is positive and finite.
+    pub fn new(thickness: f64) -> Result<Self, MeshError> {
+        PlaneStrain::new(thickness).map(Self)
+    }
+
+    /// The thickness \[mm\].
+    pub fn thickness(&self) -> f64 {
+        self.0.thickness()
+    }
+}
+
+impl Hypothesis<2> for PlaneStress {
+    const IS_PLANE_STRESS: bool = true;
+
+    const FIELDS: usize = PlaneStrain::FIELDS;
+
+    fn fields(n: f64, grad: &[f64; 2], x: &[f64; 2]) -> [f64; 3] {
+        PlaneStrain::fields(n, grad, x)
+    }
+
+    const OPERATOR: [&'static [Entry]; 2] = PlaneStrain::OPERATOR;
+
+    const GRADIENT: [&'static [Entry]; 2] = PlaneStrain::GRADIENT;
+
+    fn measure(&self, x: &[f64; 2]) -> f64 {
+        self.0.measure(x)
+    }
+
+    fn rigid_modes(x: &[f64; 2]) -> Vec<[f64; 2]> {
+        PlaneStrain::rigid_modes(x)
     }
 }
 

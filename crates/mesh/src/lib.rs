@@ -5,7 +5,7 @@
 //! |---|---|
 //! | interpolate in a cell, `u = N U` \[76\] | [`Element`]: [`Tri3`], [`Tri6`], [`Quad4`], [`Quad8`], [`Quad9`], [`Tet4`], [`Tet10`], [`Hex8`], [`Hex20`], [`Hex27`] |
 //! | integrate over it, \[78\] | [`Element::rule`], [`Rule`], [`Integration`] |
-//! | strain it, `ε = B U` \[77\] | [`Hypothesis`]: [`PlaneStrain`], [`Axisymmetric`], [`Solid`] |
+//! | strain it, `ε = B U` \[77\] | [`Hypothesis`]: [`PlaneStrain`], [`PlaneStress`], [`Axisymmetric`], [`Solid`] |
 //! | hold nodes, cells and named groups | [`Mesh`], always valid once constructed |
 //! | pair two surfaces | [`Mesh::mortar_rows`] |
 //! | make one | [`block2`], [`block3`] on the lines of [`uniform`], [`geometric`], [`refine`] |
@@ -68,7 +68,7 @@ pub use element::{
 pub use error::{GroupKind, MeshError};
 pub use generate::{block2, block3, geometric, refine, uniform};
 pub use gmsh::{read_gmsh, read_gmsh_noting, read_gmsh_skin, write_gmsh};
-pub use hypothesis::{Axisymmetric, Entry, Hypothesis, PlaneStrain, Solid};
+pub use hypothesis::{Axisymmetric, Entry, Hypothesis, PlaneStrain, PlaneStress, Solid};
 pub use mesh::{Facet, Mesh, NodeKind, PositiveShare, Pressed, Share};
 pub use nearest::nearest;
 pub use pairing::{Fold, MortarRow, Pairing};

@@ -72,8 +72,8 @@ impl FileError {
                 Some("a mesh with volume cells needs analysis = \"solid\"")
             }
             ReadError::NoCells { dimension: 3, .. } => Some(
-                "a plane mesh needs analysis = \"plane-strain\" or \"axisymmetric\"; a mesh of \
-                 volumes must be saved with its volume cells",
+                "a plane mesh needs analysis = \"plane-strain\", \"plane-stress\" or \"axisymmetric\"; a \
+                 mesh of volumes must be saved with its volume cells",
             ),
             ReadError::NoCells { .. } => Some(
                 "give the surface a physical group, or save all elements (in Gmsh: Mesh.SaveAll)",

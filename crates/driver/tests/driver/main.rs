@@ -16,6 +16,7 @@ mod klarbring;
 mod law;
 mod panel;
 mod passages;
+mod plane_stress;
 mod refusals;
 mod released;
 mod seams;

@@ -15,7 +15,8 @@ const STEP: f64 = 1e-4;
 /// elastic stiffness.
 const KINK: f64 = 1e-6;
 
-/// Checks a law of the bulk from its initial state; the sizes of its strains are found by the way.
+/// Checks a law of the bulk from its initial state; the sizes of its strains are found by the way. A law under plane
+/// stress, which has a [`BulkLaw::thickness_strain`], is strained in all other components.
 ///
 /// On random paths up to some fifteen times the strain at yield and steps from there:
 ///
@@ -113,6 +114,8 @@ struct Suite<'a, L: BulkLaw> {
     /// Strain at yield, or what stands for it where nothing yields.
     strain: f64,
     yields: bool,
+    /// Whether the law finds ε₃₃.
+    finds_thickness: bool,
 }
 
 /// A step of a path.
@@ -145,13 +148,21 @@ impl<'a, L: BulkLaw> Suite<'a, L> {
         let unsymmetric = (elastic - elastic.transpose()).norm();
         let property = "the elastic tangent is symmetric";
         report.at_most(property, (unsymmetric, ROUND_OFF * stiffness), at)?;
-        let least = elastic.symmetric_eigenvalues().min();
-        let compliance = elastic.try_inverse().filter(|_| least > 0.0);
+        let finds_thickness = law.thickness_strain(initial).is_some();
+        let mut resisting = elastic;
+        if finds_thickness {
+            // Nothing resists it: a number in its place leaves the inverse of the others.
+            resisting[(2, 2)] += stiffness;
+        }
+        let least = resisting.symmetric_eigenvalues().min();
+        let compliance = resisting.try_inverse().filter(|_| least > 0.0);
         let property = "the elastic tangent is positive definite";
         report.holds(property, compliance.is_some(), at)?;
         // The median over directions of the strain at which something flows.
         let mut sizes: Vec<f64> = (0..33)
-            .filter_map(|_| yield_strain(law, initial, &random.direction()))
+            .filter_map(|_| {
+                yield_strain(law, initial, &strained(random.direction(), finds_thickness))
+            })
             .collect();
         sizes.sort_by(f64::total_cmp);
         Ok(Self {
@@ -162,15 +173,27 @@ impl<'a, L: BulkLaw> Suite<'a, L> {
             stiffness,
             strain: sizes.get(sizes.len() / 2).copied().unwrap_or(1e-3),
             yields: !sizes.is_empty(),
+            finds_thickness,
         })
     }
 
     /// A path of up to three steps and a step, some of them small.
     fn draw(&self, random: &mut Random) -> Point<L> {
-        let path = (0..random.below(4)).map(|_| random.vector(3.0 * self.strain));
+        let path = (0..random.below(4)).map(|_| self.random(random, 3.0));
         let path: Vec<Sym2> = path.collect();
         let size = [1e-3, 0.3, 5.0, 5.0][random.below(4)];
-        self.point(path, random.vector(size * self.strain))
+        self.point(path, self.random(random, size))
+    }
+
+    /// A strain of components up to so many times that at yield.
+    fn random(&self, random: &mut Random, size: f64) -> Sym2 {
+        strained(random.vector(size * self.strain), self.finds_thickness)
+    }
+
+    /// The components of a strain that the law does not find itself.
+    fn components(&self) -> impl Iterator<Item = usize> + use<L> {
+        let finds_thickness = self.finds_thickness;
+        (0..6).filter(move |&k| !(finds_thickness && k == 2))
     }
 
     fn point(&self, path: Vec<Sym2>, d_eps: Sym2) -> Point<L> {
@@ -194,7 +217,13 @@ impl<'a, L: BulkLaw> Suite<'a, L> {
 
     /// Plastic strain of the step, Δε − C⁻¹ Δσ.
     fn plastic(&self, point: &Point<L>) -> Sym2 {
-        point.d_eps - self.compliance * (point.response.stress - self.law.stress(&point.old))
+        let (law, old, new) = (self.law, &point.old, &point.response.state);
+        if let [Some(from), Some(to)] = [old, new].map(|s| law.thickness_strain(s)) {
+            let mut flow = point.d_eps - (law.elastic_strain(new) - law.elastic_strain(old));
+            flow[2] += to - from;
+            return flow;
+        }
+        point.d_eps - self.compliance * (point.response.stress - law.stress(old))
     }
 
     fn response(&self, point: &Point<L>, report: &mut Report) -> Result<(), Violation> {
@@ -251,7 +280,7 @@ impl<'a, L: BulkLaw> Suite<'a, L> {
         let (law, at) = (self.law, || point.to_string());
         let stress = point.response.stress;
         let power = |rate: &Sym2| Some(law.flow_power(&point.response.state, rate)?.total);
-        let [a, b] = [0, 1].map(|_| random.vector::<6>(self.strain));
+        let [a, b] = [0, 1].map(|_| self.random(random, 1.0));
         let (Some(of_a), Some(of_b)) = (power(&a), power(&b)) else {
             return Ok(());
         };
@@ -276,9 +305,12 @@ impl<'a, L: BulkLaw> Suite<'a, L> {
             let property = "a symmetric law lacks nothing";
             report.at_most(property, (lacking.norm(), 0.0), at)?;
         }
+        let skew = law.skew(&point.old, &point.d_eps);
+        let error = (skew + skew.transpose()).norm();
+        report.at_most("the skew part of the tangent is skew", (error, 0.0), at)?;
         let h = STEP * self.strain;
         let (mut near, mut far) = (Sym4::zeros(), Sym4::zeros());
-        for k in 0..6 {
+        for k in self.components() {
             let slope = |h: f64| {
                 let mut step = Sym2::zeros();
                 step[k] = h;
@@ -294,10 +326,10 @@ impl<'a, L: BulkLaw> Suite<'a, L> {
         }
         let mut derivative = (4.0 * near - far) / 3.0;
         let has_potential = law.potential(&point.old, &point.d_eps).is_some();
-        if law.is_symmetric() && !has_potential {
+        if law.is_symmetric() && !has_potential && skew.norm() == 0.0 {
             derivative = 0.5 * (derivative + derivative.transpose());
         }
-        let error = (point.response.tangent + lacking - derivative).norm();
+        let error = (point.response.tangent + lacking + skew - derivative).norm();
         let property = if point.response.flows {
             FLOWING
         } else {
@@ -325,12 +357,13 @@ impl<'a, L: BulkLaw> Suite<'a, L> {
         );
         let round_off = self.stress_error(point) * point.reach;
         // The potential is C¹: a kink of the tangent costs no more than C h.
-        let (h, d) = (0.1 * STEP * self.strain, random.direction());
+        let h = 0.1 * STEP * self.strain;
+        let d = strained(random.direction(), self.finds_thickness);
         let slope = (potential(&(d_eps + h * d)) - potential(&(d_eps - h * d))) / (2.0 * h);
         let error = (slope - (stress - before).dot(&d)).abs();
         let allowed = 2.0 * self.stiffness * h + round_off / h * 1e-3;
         report.at_most("the gradient of the potential is Δσ", (error, allowed), at)?;
-        let other = random.vector(3.0 * self.strain);
+        let other = self.random(random, 3.0);
         let above = potential(&(0.5 * (d_eps + other))) - 0.5 * (value + potential(&other));
         report.at_most("the potential is convex", (above, 10.0 * round_off), at)?;
         let spent = law.stored_energy(new) - law.stored_energy(old) + law.dissipation(old, new);
@@ -416,7 +449,7 @@ impl<'a, L: BulkLaw> Suite<'a, L> {
     }
 
     fn not_a_number(&self, report: &mut Report) -> Result<(), Violation> {
-        for i in 0..6 {
+        for i in self.components() {
             let mut d_eps = Sym2::from_element(self.strain);
             d_eps[i] = f64::NAN;
             let response = self.law.respond(self.initial, &d_eps);
@@ -438,6 +471,14 @@ impl<'a, L: BulkLaw> Suite<'a, L> {
             format!("of {SAMPLES}: {flowing} flow off a kink, {elastic} do not")
         })
     }
+}
+
+/// A strain, without that of the thickness where the law finds that.
+fn strained(mut strain: Sym2, finds_thickness: bool) -> Sym2 {
+    if finds_thickness {
+        strain[2] = 0.0;
+    }
+    strain
 }
 
 const FLOWING: &str = "the tangent of flow is the derivative of the stress";

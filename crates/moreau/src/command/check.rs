@@ -69,11 +69,11 @@ fn head(deck: &Deck) {
     }
     say!("units      {}", deck.units.name());
     let thickness = match deck.analysis {
-        crate::deck::Analysis::PlaneStrain => {
+        slice if slice.has_thickness() => {
             format!(", {} {} thick", deck.thickness.value, deck.units.length())
         }
         crate::deck::Analysis::Axisymmetric => " (forces are of the whole ring)".into(),
-        crate::deck::Analysis::Solid => String::new(),
+        _ => String::new(),
     };
     say!("analysis   {}{thickness}", deck.analysis.name());
 }

@@ -17,9 +17,12 @@ use crate::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzaw
 use crate::driver::{
     self, Driver, Increments, LeastGap, ModelError, Nesting, RigidMotion, Settings, Step, Support,
 };
-use crate::mesh::{Axisymmetric, CellKind, Mesh, PlaneStrain, Solid};
+use crate::mesh::{
+    Axisymmetric, CellKind, Integration, Mesh, MeshError, PlaneStrain, PlaneStress, Solid,
+};
 use groups::Groups;
 pub(super) use parts::quadratures;
+use std::ops::Range;
 
 /// A group of the mesh and what it measures.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,7 +94,7 @@ pub struct Setup<const D: usize> {
 
 /// A problem in the plane or in space.
 pub enum Problem {
-    /// Plane strain or axial symmetry.
+    /// Plane strain, plane stress or axial symmetry.
     Plane(Box<Setup<2>>),
     /// A solid.
     Solid(Box<Setup<3>>),
@@ -106,25 +109,8 @@ pub(super) fn build(
     findings: &mut Findings,
 ) -> Option<Problem> {
     match deck.analysis {
-        Analysis::PlaneStrain => {
-            let thickness = match PlaneStrain::new(deck.thickness.value) {
-                Ok(hypothesis) => Some(hypothesis),
-                Err(error) => {
-                    let expected = "expected a positive number";
-                    findings.error(&deck.thickness.span, error.to_string(), expected);
-                    None
-                }
-            };
-            let mesh = meshes::plane(deck, file, findings);
-            setup(
-                deck,
-                mesh,
-                thickness.unwrap_or_default(),
-                (parts::profile, given),
-                findings,
-            )
-            .map(|s| Problem::Plane(Box::new(s)))
-        }
+        Analysis::PlaneStrain => slice(deck, PlaneStrain::new, (file, given), findings),
+        Analysis::PlaneStress => slice(deck, PlaneStress::new, (file, given), findings),
         Analysis::Axisymmetric => {
             let mesh = meshes::meridian(deck, file, findings);
             setup(deck, mesh, Axisymmetric, (parts::profile, given), findings)
@@ -136,6 +122,23 @@ pub(super) fn build(
                 .map(|s| Problem::Solid(Box::new(s)))
         }
     }
+}
+
+/// A problem of a slice of the thickness of the deck.
+fn slice<H: driver::Analysis<2> + Default>(
+    deck: &mut Deck,
+    hypothesis: fn(f64) -> Result<H, MeshError>,
+    (file, given): (Option<&[u8]>, &Given),
+    findings: &mut Findings,
+) -> Option<Problem> {
+    let hypothesis = hypothesis(deck.thickness.value).unwrap_or_else(|error| {
+        let expected = "expected a positive number";
+        findings.error(&deck.thickness.span, error.to_string(), expected);
+        H::default()
+    });
+    let mesh = meshes::plane(deck, file, findings);
+    setup(deck, mesh, hypothesis, (parts::profile, given), findings)
+        .map(|s| Problem::Plane(Box::new(s)))
 }
 
 fn setup<const D: usize, H: driver::Analysis<D>>(
@@ -278,8 +281,45 @@ fn moments(deck: &Deck) -> bool {
     deck.analysis != Analysis::Axisymmetric && (turns || deck.finite.is_some())
 }
 
+/// What plane stress does not go with.
+fn in_plane_stress(deck: &Deck, given: &Given, findings: &mut Findings) {
+    if deck.analysis != Analysis::PlaneStress {
+        return;
+    }
+    let mut refuse = |at: &Range<usize>, problem: &str, remedy: &str| {
+        let message = format!("analysis = \"plane-stress\" with {problem}");
+        findings.error_with(at, message, "not with this", remedy);
+    };
+    if let Some(finite) = &deck.finite {
+        refuse(
+            &finite.span,
+            "strain = \"finite\": its thickness is not followed",
+            "strain = \"small\", or analysis = \"solid\"",
+        );
+    }
+    for material in &deck.materials {
+        let rule = material.quadrature.as_ref();
+        if let Some(rule) = rule.filter(|rule| rule.value == Integration::BBar) {
+            refuse(
+                &rule.span,
+                "quadrature = \"b-bar\": no flow keeps an area, and no cell locks",
+                "quadrature = \"full\" or \"reduced\"",
+            );
+        }
+        let on = &material.on;
+        if given.laws.contains_key(&on.value) {
+            refuse(
+                &on.span,
+                "a law of one's own: its stress through the thickness is its own",
+                "analysis = \"plane-strain\" or \"solid\"",
+            );
+        }
+    }
+}
+
 /// What large strains do not go with.
 fn unfinished(deck: &Deck, given: &Given, findings: &mut Findings) {
+    in_plane_stress(deck, given, findings);
     let Some(finite) = &deck.finite else { return };
     let mut refuse = |problem: &str, remedy: &str| {
         findings.error_with(

@@ -126,13 +126,13 @@ const MOMENT_IN_PLANE: Described = Described::new(
     Unit::Energy,
     "Moment of the forces of a tool on the body about the reference point of the tool, about the third axis.",
 )
-.when("NAME is a tool in plane strain, under large strains or where a tool turns");
+.when("NAME is a tool in the plane, under large strains or where a tool turns");
 const TURN: Described = Described::new(
     "turn.NAME",
     Unit::Degree,
     "Rotation of a tool since the virgin state, about the third axis.",
 )
-.when("NAME is a tool in plane strain, under large strains or where a tool turns");
+.when("NAME is a tool in the plane, under large strains or where a tool turns");
 const QUALITY: Described = Described::new(
     "cell_quality",
     Unit::None,

@@ -25,7 +25,7 @@ impl Deck {
     /// The quadrature of a material, chosen by the deck or by its elements: `"by element"` where
     /// these differ, or are not known because the mesh is not.
     pub fn quadrature(&self, material: &MaterialEntry) -> &'static str {
-        match quadratures(material)[..] {
+        match quadratures(material, self.analysis)[..] {
             [(Integration::Reduced, _)] => "reduced",
             [(Integration::Full, _)] => "full",
             [(Integration::BBar, _)] => "b-bar",
@@ -71,7 +71,7 @@ fn head(deck: &Deck, out: &mut String) -> fmt::Result {
         "small"
     };
     writeln!(out, "strain = \"{strain}\"")?;
-    if deck.analysis == super::Analysis::PlaneStrain {
+    if deck.analysis.has_thickness() {
         writeln!(out, "thickness = {:?}", deck.thickness.value)?;
     }
     if let Some(file) = &deck.mesh_file {

@@ -13,6 +13,8 @@ use std::path::PathBuf;
 pub enum Analysis {
     /// Plane strain.
     PlaneStrain,
+    /// Plane stress.
+    PlaneStress,
     /// Axial symmetry, x = radius, y = axis.
     Axisymmetric,
     /// Three-dimensional solid.
@@ -21,7 +23,7 @@ pub enum Analysis {
 
 impl Analysis {
     /// Names in a deck, in the order of the variants.
-    pub const NAMES: [&'static str; 3] = ["plane-strain", "axisymmetric", "solid"];
+    pub const NAMES: [&'static str; 4] = ["plane-strain", "plane-stress", "axisymmetric", "solid"];
 
     /// Name in a deck.
     pub fn name(self) -> &'static str {
@@ -31,6 +33,11 @@ impl Analysis {
     /// 2 or 3.
     pub fn dimension(self) -> usize {
         if self == Self::Solid { 3 } else { 2 }
+    }
+
+    /// Whether a body is a slice that has a thickness.
+    pub fn has_thickness(self) -> bool {
+        matches!(self, Self::PlaneStrain | Self::PlaneStress)
     }
 }
 

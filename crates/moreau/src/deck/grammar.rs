@@ -102,6 +102,7 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
     let units = units.and_then(|u| Units::named(u.value));
     let analysis = root.choice("analysis", &Analysis::NAMES);
     let analysis = match analysis.as_ref().map(|a| a.value) {
+        Some("plane-stress") => Analysis::PlaneStress,
         Some("axisymmetric") => Analysis::Axisymmetric,
         Some("solid") => Analysis::Solid,
         _ => Analysis::PlaneStrain,
@@ -110,14 +111,14 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
     let strain = root.choice_if("strain", &["small", "finite"]);
     let finite = strain.map(|s| At::new(s.value == "finite", s.span));
     let thickness = root.number_if("thickness");
-    if let (Some(t), true) = (&thickness, analysis != Analysis::PlaneStrain) {
+    if let (Some(t), true) = (&thickness, !analysis.has_thickness()) {
         log.borrow_mut().error(
             &t.span,
             format!(
                 "a thickness has no meaning for analysis = \"{}\"",
                 analysis.name()
             ),
-            "remove this key, or use analysis = \"plane-strain\"",
+            "remove this key, or use analysis = \"plane-strain\" or \"plane-stress\"",
         );
     }
     let before = log.borrow().errors();

@@ -130,6 +130,54 @@ fn kinematic_hardening_that_is_none_is_pointed_at() {
     );
 }
 
+/// The rules of plane stress, and what it does not go with.
+#[test]
+fn plane_stress_has_rules_of_its_own() {
+    const ANALYSIS: &str = "analysis = \"plane-strain\"";
+    let stress = "analysis = \"plane-stress\"\nthickness = 2.5";
+    for (element, rule) in [("tri3", "full"), ("quad4", "full"), ("quad8", "reduced")] {
+        let text = DECK.replace(ANALYSIS, stress).replace("quad8", element);
+        let (deck, problem, findings) = open(&text);
+        let shown = findings.render("deck.toml", &text, false);
+        // Of triangles that lock in plane strain nothing is said.
+        assert!(problem.is_some() && findings.warnings() == 0, "{shown}");
+        assert_eq!(deck.quadrature(&deck.materials[0]), rule);
+        let once = deck.resolved();
+        assert!(once.contains(stress), "{once}");
+        assert_eq!(open(&once).0.resolved(), once);
+    }
+    for (given, at, message) in [
+        (
+            "analysis = \"plane-stress\"\nstrain = \"finite\"",
+            "strain =",
+            "analysis = \"plane-stress\" with strain = \"finite\": its thickness is not followed",
+        ),
+        (
+            "analysis = \"plane-stress\"\nthickness = 0",
+            "thickness =",
+            "thickness",
+        ),
+        (
+            "analysis = \"plane-stres\"",
+            "analysis =",
+            "did you mean \"plane-stress\"?",
+        ),
+    ] {
+        says(ANALYSIS, given, at, &[message]);
+    }
+    let text = DECK
+        .replace(ANALYSIS, stress)
+        .replace("300.0", "300.0\nquadrature = \"b-bar\"")
+        .replace("quad8", "quad4");
+    let (_, problem, findings) = open(&text);
+    let shown = findings.render("deck.toml", &text, false);
+    assert!(problem.is_none(), "{shown}");
+    assert!(
+        shown.contains("with quadrature = \"b-bar\": no flow keeps an area"),
+        "{shown}"
+    );
+}
+
 #[test]
 fn friction_that_is_none_is_pointed_at() {
     for (law, message) in [

@@ -32,7 +32,9 @@ const IN_THE_PLANE: [(&str, &[&str]); 22] = [
         "analysis = \"plane-strain\"",
         &[
             "",
-            "analysis = \"plane-stress\"",
+            "analysis = \"plane-stres\"",
+            "analysis = \"plane-stress\"\nstrain = \"finite\"",
+            "analysis = \"plane-stress\"\nthickness = 0",
             "analysis = \"solid\"",
             "analysis = \"plane-strain\"\nthickness = 0",
             "analysis = \"plane-strain\"\nthickness = -1.0",

@@ -6,7 +6,8 @@ use crate::algebra::SharedTeam;
 use crate::contact::{Ball, ContactError, Cylinder, Obstacle, Plane, Polyline, Triangulated};
 use crate::deck::Laws;
 use crate::deck::entries::{
-    Adjust, Curve, Deck, FrictionEntry, Hardening, MaterialEntry, Shape, SoilEntry,
+    Adjust, Analysis as Hypothesis, Curve, Deck, FrictionEntry, Hardening, MaterialEntry, Shape,
+    SoilEntry,
 };
 use crate::deck::finding::{At, Findings};
 use crate::driver::{Analysis, Model, ModelError};
@@ -52,7 +53,9 @@ pub(super) fn parts(deck: &Deck, given: &Laws, findings: &mut Findings) -> Optio
                 findings.error(&span, problem, "out of range");
             }
         }
-        locking(material, findings);
+        if deck.analysis != Hypothesis::PlaneStress {
+            locking(material, deck.analysis, findings);
+        }
     }
     let mut frictions = Vec::new();
     for contact in &deck.contacts {
@@ -257,16 +260,22 @@ fn hardening(
 }
 
 /// The rule that the deck asks for, or else the one of the element.
-fn quadrature(kind: CellKind, material: &MaterialEntry) -> Integration {
+fn quadrature(kind: CellKind, material: &MaterialEntry, analysis: Hypothesis) -> Integration {
     let asked = material.quadrature.as_ref().map(|rule| rule.value);
-    asked.unwrap_or(kind.integration())
+    asked.unwrap_or(match analysis {
+        Hypothesis::PlaneStress => kind.integration_in_plane_stress(),
+        _ => kind.integration(),
+    })
 }
 
 /// The rules of the cells of a material, each with the kinds that have it.
-pub(in crate::deck) fn quadratures(material: &MaterialEntry) -> Vec<(Integration, Vec<CellKind>)> {
+pub(in crate::deck) fn quadratures(
+    material: &MaterialEntry,
+    analysis: Hypothesis,
+) -> Vec<(Integration, Vec<CellKind>)> {
     let mut rules: Vec<(Integration, Vec<CellKind>)> = Vec::new();
     for &kind in &material.kinds {
-        let rule = quadrature(kind, material);
+        let rule = quadrature(kind, material, analysis);
         match rules.iter_mut().find(|(r, _)| *r == rule) {
             Some((_, kinds)) => kinds.push(kind),
             None => rules.push((rule, vec![kind])),
@@ -275,12 +284,12 @@ pub(in crate::deck) fn quadratures(material: &MaterialEntry) -> Vec<(Integration
     rules
 }
 
-fn locking(material: &MaterialEntry, findings: &mut Findings) {
+fn locking(material: &MaterialEntry, analysis: Hypothesis, findings: &mut Findings) {
     let Some(yields) = material.yields() else {
         return;
     };
     for &kind in &material.kinds {
-        if kind.locks(quadrature(kind, material)) {
+        if kind.locks(quadrature(kind, material, analysis)) {
             let (rule, remedy) = match kind.locks(kind.integration()) {
                 true => ("", "a quadratic element"),
                 false => (" with full quadrature", "quadrature = \"b-bar\""),
@@ -399,10 +408,10 @@ pub(super) fn stiffness<const D: usize, H: Analysis<D>>(
 /// The group of a material with its rule; where its cells have several, a hidden group for each.
 fn by_rule<const D: usize>(
     mesh: &mut Mesh<D>,
-    material: &MaterialEntry,
+    (material, analysis): (&MaterialEntry, Hypothesis),
 ) -> Result<Vec<(String, Integration)>, MeshError> {
     let on = &material.on.value;
-    let mut rules = quadratures(material);
+    let mut rules = quadratures(material, analysis);
     if rules.len() < 2 {
         return Ok(rules
             .pop()
@@ -440,7 +449,7 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
     };
     let mut pieces = Vec::new();
     for (entry, law) in deck.materials.iter().zip(&parts.laws) {
-        for (name, rule) in by_rule(&mut mesh, entry)
+        for (name, rule) in by_rule(&mut mesh, (entry, deck.analysis))
             .map_err(|e| note(&entry.on.span, e.into()))
             .ok()?
         {

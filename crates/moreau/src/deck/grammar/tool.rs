@@ -114,7 +114,7 @@ fn shape(table: &Table<'_>, analysis: Analysis, folder: &Path) -> Option<At<Shap
                     "a sphere needs analysis = \"solid\", or \"axisymmetric\" with its center on \
                      the axis x = 0",
                     "not a sphere in this analysis",
-                    "in plane strain a circle is a cylinder",
+                    "in the plane a circle is a cylinder",
                 );
                 return None;
             }
