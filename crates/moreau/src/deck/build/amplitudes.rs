@@ -6,7 +6,7 @@ use crate::deck::finding::{Class, Findings};
 /// What a part of a condition acts as, and along which axis, or which unit vector.
 type Part = (&'static str, Way);
 
-#[derive(PartialEq)]
+#[derive(Clone, PartialEq)]
 enum Way {
     Axis(usize),
     Along(Vec<f64>),
