@@ -1,6 +1,6 @@
 //! The sequence of increments, and where it ends: collapse and buckling; not one increment.
 
-pub(crate) mod along;
+mod along;
 mod bifurcation;
 pub(crate) mod buckling;
 pub(crate) mod increments;

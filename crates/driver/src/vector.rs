@@ -1,10 +1,9 @@
-//! Vectors over the degrees of freedom: those that are zero nearly everywhere, residuals and their size; not
-//! matrices.
+//! Vectors over the degrees of freedom: those that are zero nearly everywhere, and their size; not matrices.
 
 pub(crate) mod directions;
+pub(crate) mod prescribed;
 pub(crate) mod subspace;
 
-use crate::vector::directions::Prescribed;
 use std::collections::BTreeMap;
 
 /// Loads, contact forces, prescribed motions: a number at some degrees of freedom, zero at the
@@ -105,18 +104,6 @@ pub(crate) fn largest(values: impl Iterator<Item = f64>) -> f64 {
             a.max(v.abs())
         }
     })
-}
-
-/// Forces less the internal ones, at every degree of freedom \[N\]; nothing of those on what is prescribed.
-pub(crate) fn residual(
-    internal: &[f64],
-    forces: &[&SparseVector],
-    prescribed: &Prescribed,
-) -> Vec<f64> {
-    let mut left: Vec<f64> = internal.iter().map(|f| -f).collect();
-    forces.iter().for_each(|f| f.add_to(&mut left, 1.0));
-    prescribed.clear(&mut left);
-    left
 }
 
 #[cfg(test)]

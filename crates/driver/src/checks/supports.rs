@@ -7,10 +7,9 @@
 use crate::checks::rigid::{NOTHING, RigidModes, Rows, Stopper, null_space};
 use crate::driver::Driver;
 use crate::error::ModelError;
-use crate::model::load::{Axis, Condition, Loading, Step, axis_letter};
+use crate::model::load::{Axis, Condition, Loading, Step, axis_letter, unit};
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, turned};
-use crate::path::along::unit;
 use moreau_laws::Status;
 use nalgebra::SVector;
 

@@ -12,8 +12,8 @@ use crate::linear::others::Others;
 use crate::settings::Seam;
 use crate::timings::{Clock, Timings, timed};
 use crate::vector::SparseVector;
-use crate::vector::directions::{Directions, Prescribed};
-use crate::vector::residual;
+use crate::vector::directions::Directions;
+use crate::vector::prescribed::{Prescribed, residual};
 use crate::vector::subspace::Subspace;
 use moreau_algebra::{
     Cholesky, Cost, Either, Engine, EngineError, Matrix, Pattern, SharedTeam, TooLarge,

@@ -38,6 +38,23 @@ pub(crate) fn axis_letter(index: usize) -> char {
     ['x', 'y', 'z'][index.min(2)]
 }
 
+/// The unit vector of a direction of a group.
+pub(crate) fn unit<const D: usize>(
+    on: &str,
+    direction: &[f64; D],
+) -> Result<SVector<f64, D>, ModelError> {
+    let direction = SVector::from(*direction);
+    // By the largest component first, so that no length is out of the range of numbers.
+    let largest = direction.amax();
+    let unit = (direction / largest).try_normalize(0.0);
+    let unit = unit.filter(|n| n.iter().all(|x| x.is_finite()));
+    unit.ok_or_else(|| ModelError::OutOfRange {
+        what: format!("direction of the displacement of {on:?}, its length"),
+        value: direction.norm(),
+        expected: "a positive number",
+    })
+}
+
 /// One condition of a step. Values are totals at the end of the step.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Condition<const D: usize> {
@@ -497,6 +514,28 @@ impl<const D: usize> Loading<D> {
             force: self.force.with(&start.force, |b, a| b - a),
             pressure: self.pressure.with(&start.pressure, |b, a| b - a),
             turn: self.turn.with(&start.turn, |b, a| b - a),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_have_any_length_but_none() {
+        let n = unit("side", &[3e200, 4e200]).expect("a direction");
+        assert!((n - SVector::<f64, 2>::new(0.6, 0.8)).norm() < 1e-15);
+        assert_eq!(
+            unit("side", &[0.0, -1e-300]),
+            Ok(SVector::<f64, 2>::new(0.0, -1.0))
+        );
+        for direction in [[0.0, 0.0], [f64::NAN, 1.0], [f64::INFINITY, 1.0]] {
+            let error = unit("side", &direction);
+            assert!(
+                matches!(error, Err(ModelError::OutOfRange { .. })),
+                "{error:?}"
+            );
         }
     }
 }

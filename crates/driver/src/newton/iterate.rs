@@ -4,8 +4,9 @@
 use crate::linear::system::Assembly;
 use crate::model::load::Loading;
 use crate::vector::SparseVector;
-use crate::vector::directions::Prescribed;
-use crate::vector::{largest, residual};
+use crate::vector::largest;
+use crate::vector::prescribed::Prescribed;
+use crate::vector::prescribed::residual;
 
 /// Where Newton's iteration stands.
 pub(crate) struct Iterate {

@@ -5,7 +5,8 @@ use crate::driver::Driver;
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::newton::iterate::Iterate;
-use crate::vector::{SparseVector, largest, residual};
+use crate::vector::prescribed::residual;
+use crate::vector::{SparseVector, largest};
 
 /// Step lengths that are tried before the last is taken.
 const TRIALS: usize = 12;

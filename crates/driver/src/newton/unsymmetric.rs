@@ -4,8 +4,8 @@
 use crate::driver::Driver;
 use crate::linear::system::System;
 use crate::newton::iterate::Iterate;
-use crate::vector::directions::Prescribed;
 use crate::vector::largest;
+use crate::vector::prescribed::Prescribed;
 use moreau_contact::Anderson;
 use nalgebra::DVector;
 

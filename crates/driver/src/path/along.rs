@@ -3,7 +3,7 @@
 
 use crate::driver::Driver;
 use crate::error::ModelError;
-use crate::model::load::{Condition, Step};
+use crate::model::load::{Condition, Step, unit};
 use crate::vector::directions::Directions;
 use crate::vector::subspace::{PARALLEL, Subspace};
 use nalgebra::SVector;
@@ -101,23 +101,6 @@ impl<const D: usize> Driver<D> {
     }
 }
 
-/// The unit vector of a direction of a group.
-pub(crate) fn unit<const D: usize>(
-    on: &str,
-    direction: &[f64; D],
-) -> Result<SVector<f64, D>, ModelError> {
-    let direction = SVector::from(*direction);
-    // By the largest component first, so that no length is out of the range of numbers.
-    let largest = direction.amax();
-    let unit = (direction / largest).try_normalize(0.0);
-    let unit = unit.filter(|n| n.iter().all(|x| x.is_finite()));
-    unit.ok_or_else(|| ModelError::OutOfRange {
-        what: format!("direction of the displacement of {on:?}, its length"),
-        value: direction.norm(),
-        expected: "a positive number",
-    })
-}
-
 fn axis<const D: usize>(i: usize) -> SVector<f64, D> {
     SVector::from_fn(|j, _| f64::from(u8::from(i == j)))
 }
@@ -212,22 +195,5 @@ mod tests {
         let (space, values) = combined(&vec![(-V::z(), 0.25)]).expect("agree");
         prescribe(0, &space, &values, (&mut directions, &mut moved));
         assert_eq!((directions, moved[&2]), (Directions::default(), -0.25));
-    }
-
-    #[test]
-    fn directions_have_any_length_but_none() {
-        let n = unit("side", &[3e200, 4e200]).expect("a direction");
-        assert!((n - SVector::<f64, 2>::new(0.6, 0.8)).norm() < 1e-15);
-        assert_eq!(
-            unit("side", &[0.0, -1e-300]),
-            Ok(SVector::<f64, 2>::new(0.0, -1.0))
-        );
-        for direction in [[0.0, 0.0], [f64::NAN, 1.0], [f64::INFINITY, 1.0]] {
-            let error = unit("side", &direction);
-            assert!(
-                matches!(error, Err(ModelError::OutOfRange { .. })),
-                "{error:?}"
-            );
-        }
     }
 }

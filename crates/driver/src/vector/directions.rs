@@ -120,23 +120,6 @@ impl Directions {
     }
 }
 
-/// The components of displacements that are prescribed.
-#[derive(Debug, Default)]
-pub(crate) struct Prescribed {
-    /// Ascending.
-    pub(crate) dofs: Vec<usize>,
-    pub(crate) directions: Directions,
-}
-
-impl Prescribed {
-    /// Takes out of forces what acts on these components.
-    pub(crate) fn clear(&self, forces: &mut [f64]) {
-        for &dof in &self.dofs {
-            self.directions.set(dof, 0.0, forces);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -179,7 +162,7 @@ mod tests {
         let after: Vec<f64> = (3..6).map(|d| directions.component(d, |j| v[j])).collect();
         assert!((after[1] - 2.5).abs() < 1e-15);
         assert!((after[0] - before[0]).abs() < 1e-15 && (after[2] - before[2]).abs() < 1e-15);
-        let prescribed = Prescribed {
+        let prescribed = crate::vector::prescribed::Prescribed {
             dofs: vec![0, 3],
             directions,
         };
