@@ -77,7 +77,7 @@ fn hardening_that_is_none_is_pointed_at() {
         ),
         (
             "{ swift = [700.0, 0.1, 0.2] }",
-            "hardening starts at a stress of 441.673441, but yield-stress is 300, which it does with e0 = 0.0144583",
+            "hardening starts at a stress of 441.670141, but yield-stress is 300, which it does with e0 = 0.0144583",
         ),
         (
             "{ table = [[0, 200], [1, 300]] }",

@@ -22,6 +22,9 @@ const EXACT: [(&str, f64, f64); 2] = [
 fn powers(keys: &str) -> (i32, i32) {
     let is = |names: &[&str]| keys.split('.').any(|k| names.contains(&k));
     match keys {
+        _ if is(&["tresca", "tau-max", "cohesion", "modulus"]) => (0, 1),
+        _ if is(&["recall", "friction-angle", "dilatancy-angle"]) => (0, 0),
+        _ if keys.ends_with("voce.1") => (0, 0),
         _ if is(&["normal", "axis", "friction", "poisson", "turn"]) => (0, 0),
         _ if keys.ends_with("swift.1") || keys.ends_with("swift.2") => (0, 0),
         _ if is(&["young", "yield-stress", "hardening", "pressure", "traction"]) => (0, 1),
@@ -31,6 +34,7 @@ fn powers(keys: &str) -> (i32, i32) {
             "x",
             "y",
             "z",
+            "gap-offset",
             "point",
             "nearest",
             "reference",
