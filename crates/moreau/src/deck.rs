@@ -46,9 +46,9 @@ mod units;
 
 pub use build::{Body, GroupFacts, Problem, Setup, Stage};
 pub use entries::{
-    Action, Adjust, Analysis, BlockEntry, ConditionEntry, ContactEntry, Deck, Expectation,
-    FrictionEntry, Grid, GroupEntry, Hardening, MaterialEntry, Method, Part, Shape, SoilEntry,
-    SolverEntry, StepEntry, ToolEntry, Vtu,
+    Action, Adjust, Analysis, AxesEntry, BlockEntry, ConditionEntry, ContactEntry, Deck,
+    DirectionsEntry, Expectation, FrictionEntry, Grid, GroupEntry, Hardening, HillEntry,
+    MaterialEntry, Method, Part, Shape, SoilEntry, SolverEntry, StepEntry, ToolEntry, Vtu,
 };
 pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;

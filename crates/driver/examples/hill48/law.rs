@@ -1,4 +1,4 @@
-//! Hill's orthotropic plasticity of sheets, a law from outside; not one whose axes turn.
+//! Hill's orthotropic plasticity of sheets, as a law from outside; not `moreau_laws::Hill`, which decks have.
 
 use moreau_laws::{BulkLaw, Elastic, LawError, ON_SURFACE, Response, positive};
 use moreau_mandel::{Sym2, Sym4, equivalent_strain};

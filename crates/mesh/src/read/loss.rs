@@ -87,8 +87,7 @@ impl fmt::Display for Loss {
             } => write!(
                 f,
                 "{elements} elements of type {element}, from line {line} on, are meant for plane stress, \
-                 which there is not: they are taken as cells of plane strain, which are stiffer, or of \
-                 axial symmetry"
+                 and taken as any cells of the plane: analysis = \"plane-stress\" is for the deck to say"
             ),
         }
     }

@@ -141,11 +141,19 @@ fn groups<const D: usize>(deck: &Deck, setup: &Setup<D>) {
 
 fn material(deck: &Deck, material: &MaterialEntry) {
     let stress = deck.units.stress();
+    let elastic = match material.axes.as_ref().and_then(|a| a.elastic.as_ref()) {
+        Some(given) => {
+            let [young, poisson, shear] = given.value;
+            format!("orthotropic, E {young:?} {stress}, ν {poisson:?}, G {shear:?} {stress}")
+        }
+        None => format!(
+            "E {} {stress}, ν {}",
+            material.young.value, material.poisson.value
+        ),
+    };
     say!(
-        "material   {}: E {} {stress}, ν {}, {}; {} quadrature",
+        "material   {}: {elastic}, {}; {} quadrature",
         material.on.value,
-        material.young.value,
-        material.poisson.value,
         strength(material, stress),
         deck.quadrature(material)
     );

@@ -2,6 +2,7 @@
 //! errors get the place of the value responsible.
 
 mod amplitudes;
+mod axes;
 mod conditions;
 mod groups;
 mod meshes;

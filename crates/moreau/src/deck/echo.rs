@@ -114,8 +114,27 @@ fn group(group: &GroupEntry, out: &mut String) -> fmt::Result {
 
 fn material(deck: &Deck, material: &MaterialEntry, out: &mut String) -> fmt::Result {
     writeln!(out, "\n[[material]]\non = {}", text(&material.on.value))?;
-    writeln!(out, "young = {:?}", material.young.value)?;
-    writeln!(out, "poisson = {:?}", material.poisson.value)?;
+    match material.axes.as_ref().and_then(|a| a.elastic.as_ref()) {
+        Some(given) => {
+            let [young, poisson, shear] = given.value;
+            writeln!(
+                out,
+                "orthotropic = {{ young = {young:?}, poisson = {poisson:?}, shear = {shear:?} }}"
+            )?;
+        }
+        None => {
+            writeln!(out, "young = {:?}", material.young.value)?;
+            writeln!(out, "poisson = {:?}", material.poisson.value)?;
+        }
+    }
+    if let Some(axes) = &material.axes {
+        if let Some(hill) = &axes.hill {
+            writeln!(out, "hill = {}", hill.value)?;
+        }
+        if let Some(directions) = &axes.directions {
+            writeln!(out, "axes = {}", directions.value)?;
+        }
+    }
     if let Some(yield_stress) = &material.yield_stress {
         writeln!(out, "yield-stress = {:?}", yield_stress.value)?;
         let none = Hardening {
@@ -129,7 +148,9 @@ fn material(deck: &Deck, material: &MaterialEntry, out: &mut String) -> fmt::Res
             format!("{{ modulus = {modulus:?}, recall = {recall:?} }}")
         });
         let terms: Vec<String> = terms.collect();
-        writeln!(out, "kinematic = [{}]", terms.join(", "))?;
+        if material.axes.is_none() {
+            writeln!(out, "kinematic = [{}]", terms.join(", "))?;
+        }
     }
     if let Some(soil) = &material.soil {
         writeln!(out, "cohesion = {:?}", soil.cohesion.value)?;

@@ -4,6 +4,7 @@ use super::finding::At;
 use super::units::Units;
 use crate::driver::Increments;
 use crate::mesh::{CellKind, Integration, Skin};
+use nalgebra::{Matrix3, Vector3};
 use std::fmt;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -160,10 +161,81 @@ pub struct MaterialEntry {
     pub kinematic: Vec<[At<f64>; 2]>,
     /// Strength of a soil, if it is one.
     pub soil: Option<SoilEntry>,
+    /// What it has of axes, if it has them; Young's modulus is then the largest of all.
+    pub axes: Option<AxesEntry>,
     /// Quadrature, if given.
     pub quadrature: Option<At<Integration>>,
     /// Kinds of the cells that have it; known when the mesh is.
     pub kinds: Vec<CellKind>,
+}
+
+/// What a material with axes has of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxesEntry {
+    /// Young's moduli, Poisson's ratios and shear moduli; none: elasticity is isotropic.
+    pub elastic: Option<At<[[f64; 3]; 3]>>,
+    /// Hill's criterion; none: von Mises'.
+    pub hill: Option<At<HillEntry>>,
+    /// Where the axes point; none: along those of space.
+    pub directions: Option<At<DirectionsEntry>>,
+}
+
+/// Hill's criterion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum HillEntry {
+    /// F, G, H, L, M and N.
+    Coefficients([f64; 6]),
+    /// Lankford's ratios at 0°, 45° and 90°.
+    Lankford([f64; 3]),
+}
+
+/// Directions of the axes of a material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DirectionsEntry {
+    /// In the plane: the angle of the first one, in degrees.
+    Angle(f64),
+    /// In space: the first, and another in its plane with the second.
+    Along([[f64; 3]; 2]),
+}
+
+impl DirectionsEntry {
+    /// The axes in the columns of a rotation; `None` where they span no plane.
+    pub fn rotation(&self) -> Option<Matrix3<f64>> {
+        match self {
+            Self::Angle(degrees) => {
+                let (s, c) = degrees.to_radians().sin_cos();
+                Some(Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0))
+            }
+            Self::Along(given) => {
+                let unit = |v: Vector3<f64>| v.try_normalize(1e-9);
+                let [a, b] = given.map(|v| unit(Vector3::from(v)));
+                let first = a?;
+                let third = unit(first.cross(&b?))?;
+                Some(Matrix3::from_columns(&[first, third.cross(&first), third]))
+            }
+        }
+    }
+}
+
+impl fmt::Display for DirectionsEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Angle(degrees) => write!(f, "{degrees:?}"),
+            Self::Along(given) => write!(f, "{given:?}"),
+        }
+    }
+}
+
+impl fmt::Display for HillEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (names, values): (&[&str], &[f64]) = match self {
+            Self::Coefficients(all) => (&["f", "g", "h", "l", "m", "n"], all),
+            Self::Lankford(all) => (&["r0", "r45", "r90"], all),
+        };
+        let terms = names.iter().zip(values);
+        let terms: Vec<String> = terms.map(|(name, v)| format!("{name} = {v:?}")).collect();
+        write!(f, "{{ {} }}", terms.join(", "))
+    }
 }
 
 /// A soil of Drucker and Prager, as Mohr and Coulomb's data.

@@ -1,5 +1,6 @@
 //! The keys of a deck and what they mean: from text to entries; names are not looked up here.
 
+mod axes;
 mod material;
 mod mesh;
 mod solver;
@@ -127,7 +128,7 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
     let materials = root
         .tables("material", "[[material]]")
         .into_iter()
-        .filter_map(material::read)
+        .filter_map(|t| material::read(t, dimension))
         .collect();
     if root.get("material").is_none() {
         missing(root, "[[material]]", "on, young and poisson");

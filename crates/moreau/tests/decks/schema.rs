@@ -62,6 +62,11 @@ fn unknown_key_in_model(table: &str) -> Option<Vec<String>> {
         "lines" => vec![with("x = [0, 50]", "x = { lines = [0, 1], zzz = 1 }")],
         "group" => vec![with("on = \"block.top\"", "on = \"block.top\"\nzzz = 1")],
         "material" => vec![with("young =", "zzz = 1\nyoung =")],
+        "orthotropic" => vec![with(
+            "young = 210000.0",
+            "orthotropic = { young = [1, 1, 1], poisson = [0, 0, 0], shear = [1, 1, 1], zzz = 1 }",
+        )],
+        "hill" => vec![with("300.0", "300.0\nhill = { f = 1, zzz = 1 }")],
         "hardening" => vec![with("300.0", "300.0\nhardening = { linear = 1, zzz = 1 }")],
         "kinematic" => vec![with(
             "300.0",

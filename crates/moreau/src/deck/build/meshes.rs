@@ -1,9 +1,9 @@
 //! The mesh of a deck: its file and its blocks in one mesh, no node merged; no groups of the deck.
 
-use crate::deck::entries::{BlockEntry, Deck};
+use crate::deck::entries::{Analysis, BlockEntry, Deck};
 use crate::deck::finding::{Class, Findings};
 use crate::files::{mesh_of, read_mesh};
-use crate::mesh::{Mesh, MeshError, block2, block3};
+use crate::mesh::{Loss, Mesh, MeshError, block2, block3};
 use std::ops::Range;
 
 /// The mesh of a plane analysis.
@@ -68,7 +68,11 @@ fn joined<const D: usize>(
         };
         match read {
             Ok((read, losses)) => {
-                for loss in losses {
+                let is_meant = |loss: &Loss| {
+                    let of_type = matches!(loss, Loss::PlaneStress { .. });
+                    of_type && deck.analysis == Analysis::PlaneStress
+                };
+                for loss in losses.iter().filter(|loss| !is_meant(loss)) {
                     let label = "not all of this file";
                     findings.warning(&file.span, loss.to_string(), label);
                 }

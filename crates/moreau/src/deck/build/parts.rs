@@ -12,8 +12,8 @@ use crate::deck::entries::{
 use crate::deck::finding::{At, Findings};
 use crate::driver::{Analysis, Model, ModelError};
 use crate::laws::{
-    AnisotropicCoulomb, Coulomb, DruckerPrager, Elastic, ElasticDruckerPrager, Friction, Isotropic,
-    LawError, LimitedCoulomb, PanelLaw, Parameter, Tresca, VonMises,
+    AnisotropicCoulomb, Coulomb, DruckerPrager, Elastic, ElasticDruckerPrager, Friction, Hill,
+    Isotropic, LawError, LimitedCoulomb, Orthotropic, PanelLaw, Parameter, Tresca, VonMises,
 };
 use crate::mesh::{CellKind, Integration, Mesh, MeshError};
 use crate::numbers::shown;
@@ -26,11 +26,13 @@ const RECALLED: usize = 4;
 
 /// A bulk law.
 #[derive(Debug, Clone)]
-enum Law {
+pub(super) enum Law {
     Elastic(Elastic),
     VonMises(VonMises),
     Chaboche(VonMises<RECALLED>),
     DruckerPrager(ElasticDruckerPrager),
+    Orthotropic(Orthotropic),
+    Hill(Hill),
     Given(Arc<dyn PanelLaw>),
 }
 
@@ -128,6 +130,9 @@ fn law(material: &MaterialEntry) -> Result<Law, (Range<usize>, String)> {
         };
         (at.span.clone(), error.to_string())
     };
+    if let Some(axes) = &material.axes {
+        return super::axes::law(material, axes);
+    }
     if let Some(soil) = &material.soil {
         let plastic = self::soil(soil)?;
         let law = ElasticDruckerPrager::new(young, poisson, plastic).map_err(moduli)?;
@@ -197,7 +202,7 @@ fn soil(soil: &SoilEntry) -> Result<DruckerPrager, (Range<usize>, String)> {
 const SAME_YIELD: f64 = 0.01;
 
 /// Isotropic hardening, which must start at the yield stress; or what is wrong with it, and where.
-fn hardening(
+pub(super) fn hardening(
     given: &At<Hardening>,
     yield_stress: &At<f64>,
 ) -> Result<Isotropic, (Range<usize>, String)> {
@@ -469,6 +474,8 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
             Law::VonMises(law) => model.material(&name, law, rule),
             Law::Chaboche(law) => model.material(&name, law, rule),
             Law::DruckerPrager(law) => model.material(&name, law, rule),
+            Law::Orthotropic(law) => model.material(&name, law, rule),
+            Law::Hill(law) => model.material(&name, law, rule),
             Law::Given(law) => model.panel_material(&name, &law, rule),
         };
         model = added.map_err(|e| note(&entry.on.span, e)).ok()?;

@@ -1,15 +1,27 @@
 //! `[[material]]`: moduli as they are given; whether they define a law is for the laws to say.
 
+use super::axes;
 use crate::deck::entries::{Curve, Hardening, MaterialEntry, SoilEntry};
 use crate::deck::finding::At;
 use crate::deck::reader::{self, Log, Table, Value};
 use crate::mesh::Integration;
 
-pub(super) fn read(table: Table<'_>) -> Option<MaterialEntry> {
+pub(super) fn read(table: Table<'_>, dimension: usize) -> Option<MaterialEntry> {
     let log = table.log();
     let on = table.text("on");
-    let young = table.number("young");
-    let poisson = table.number("poisson");
+    let axes = axes::read(&table, dimension);
+    let (young, poisson) = match axes.as_ref().and_then(|a| a.elastic.as_ref()) {
+        // What the size of stresses is compared with.
+        Some(At {
+            value: [young, ..],
+            span,
+        }) => {
+            let largest = young.iter().fold(0.0, |a: f64, b| a.max(*b));
+            (Some(At::new(largest, span.clone())), None)
+        }
+        None if table.get("orthotropic").is_some() => (None, None),
+        None => (table.number("young"), table.number("poisson")),
+    };
     let yield_stress = table.number_if("yield-stress");
     let isotropic = isotropic(&table);
     let kinematic = kinematic(&table);
@@ -42,6 +54,7 @@ pub(super) fn read(table: Table<'_>) -> Option<MaterialEntry> {
         isotropic,
         kinematic,
         soil,
+        axes,
         quadrature,
         kinds: Vec::new(),
     })
