@@ -1,32 +1,38 @@
 """Runs a deck on several numbers of processes, and tells of each what the processes took and whether the results
-are those of the run before it; no part of moreau.
+are those of the embedded engine; no part of moreau.
 
     python3 docs/cluster/measure.py MOREAU DECK DIR [PROCESSES ...]
+    python3 docs/cluster/measure.py --table DIR
 
-MOREAU is a command built with the feature `distributed`. The first run is that of the embedded engine. Memory is the
-largest that a process has held, and processor time that of the program in its own code and in the system's, both as
-the system tells them of a process that has ended.
+MOREAU is a command built with the feature `distributed`; 0 processes are the embedded engine. The table has all runs that
+are in DIR, those of earlier calls among them. Memory is the largest that a process has held, and processor time
+that of the program in its own code and in the system's, both as the system tells them of a process that has ended.
 """
 
 import csv
+import json
 import os
 import resource
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 MPI = ["mpirun", "--oversubscribe", "-n"]
+COLUMNS = "processes | processor [s] | largest memory [MB] | factors | iterations | forces | statuses"
 
 
-def one(into, command):
+def one(mark, command):
     """One process of a run, with what it took written to a file."""
     outcome = subprocess.run(command, check=False).returncode
     took = resource.getrusage(resource.RUSAGE_CHILDREN)
     rank = os.environ.get("OMPI_COMM_WORLD_RANK", "0")
     seconds = took.ru_utime + took.ru_stime
-    Path(into, f"took-{rank}").write_text(f"{took.ru_maxrss / 1e3} {seconds}\n")
+    Path(f"{mark}-{rank}").write_text(f"{took.ru_maxrss / 1e3} {seconds}\n")
     sys.exit(outcome)
+
+
+def results(directory, count):
+    return Path(directory, f"on-{count}" if count else "embedded")
 
 
 def rows(directory, name):
@@ -47,31 +53,53 @@ def compare(first, second):
     return worst / largest, other
 
 
+def run(moreau, deck, directory, count):
+    mark = Path(directory, f"took-{count}")
+    for old in Path(directory).glob(f"took-{count}-*"):
+        old.unlink()
+    # As many threads as each process of several has.
+    command = [moreau, "run", deck, "--out", str(results(directory, count)), "--force", "--quiet", "--threads", "1"]
+    command = [sys.executable, __file__, "--one", str(mark), *command]
+    command = [*MPI, str(count), *command] if count else command
+    outcome = subprocess.run(command, check=False).returncode
+    if outcome != 0:
+        sys.exit(f"{deck} on {count} processes: status {outcome}")
+
+
+def table(directory):
+    marks = {int(f.name.split("-")[1]) for f in Path(directory).glob("took-*")}
+    print(f"| {COLUMNS} |\n|{COLUMNS.count('|') * '---|'}---|")
+    largest, sums = {}, {}
+    for count in sorted(marks):
+        took = [f.read_text().split() for f in Path(directory).glob(f"took-{count}-*")]
+        largest[count] = max(float(t[0]) for t in took)
+        sums[count] = sum(float(t[1]) for t in took)
+        told = json.loads(Path(results(directory, count), "run.json").read_text())
+        cells = [str(count) if count else "embedded", f"{sums[count]:.1f}", f"{largest[count]:.0f}"]
+        cells += [str(told["factorisations"]), str(told["linear_iterations"])]
+        if count and 0 in marks:
+            worst, other = compare(results(directory, 0), results(directory, count))
+            cells += [f"{worst:.1e}", str(other)]
+        print("| " + " | ".join([*cells, "", ""][:7]) + " |", flush=True)
+    for what, of, count in [("memory", largest, 4), ("processor time", sums, 2)]:
+        if 1 in of and count in of:
+            print(f"{what} on {count} over that on 1: {of[count] / of[1]:.2f}")
+
+
 def main(moreau, deck, directory, counts):
     Path(directory).mkdir(parents=True, exist_ok=True)
-    reference = Path(directory, "embedded")
-    print("processes   seconds   processor s   largest MB   forces   statuses")
-    for count in [0, *map(int, counts)]:
-        out = Path(directory, f"on-{count}") if count else reference
-        for old in Path(directory).glob("took-*"):
-            old.unlink()
-        run = [moreau, "run", deck, "--out", str(out), "--force", "--quiet"]
-        # As many threads as each process of several has.
-        run += ["--threads", "1"]
-        command = [sys.executable, __file__, "--one", directory, *run]
-        command = [*MPI, str(count), *command] if count else command
-        started = time.time()
-        outcome = subprocess.run(command, check=False).returncode
-        seconds = time.time() - started
-        took = [f.read_text().split() for f in Path(directory).glob("took-*")]
-        memory = max((float(t[0]) for t in took), default=0.0)
-        processor = sum(float(t[1]) for t in took)
-        worst, other = compare(reference, out) if outcome == 0 else (float("nan"), -1)
-        name = str(count) if count else "embedded"
-        print(f"{name:>9} {seconds:9.1f} {processor:13.1f} {memory:12.0f}   {worst:.1e} {other:8d}", flush=True)
+    for count in map(int, counts or ["0", "1", "2", "3", "4"]):
+        run(moreau, deck, directory, count)
+    table(directory)
 
 
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["--one"]:
-        one(sys.argv[2], sys.argv[3:])
-    main(sys.argv[1], sys.argv[2], sys.argv[3], sys.argv[4:] or ["1", "2", "3", "4"])
+    match sys.argv[1:]:
+        case ["--one", mark, *command]:
+            one(mark, command)
+        case ["--table", directory]:
+            table(directory)
+        case [moreau, deck, directory, *counts]:
+            main(moreau, deck, directory, counts)
+        case _:
+            sys.exit(__doc__)

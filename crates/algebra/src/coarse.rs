@@ -132,6 +132,11 @@ impl CoarseSpace {
         self.rows.count()
     }
 
+    /// A row of P: the unknowns w that an unknown v follows, and how far.
+    pub fn row(&self, unknown: usize) -> &[(u32, f64)] {
+        self.rows.row(unknown)
+    }
+
     /// Pᵀ A P of the last [`project`](Self::project).
     pub fn matrix(&self) -> &Matrix {
         &self.matrix

@@ -16,6 +16,47 @@ pub enum Interface<'a> {
     Yields(&'a dyn Fn(&DVector<f64>) -> DVector<f64>),
 }
 
+/// A symmetric matrix as the iteration sees it, whoever holds its entries.
+pub trait Operator {
+    /// Number of rows.
+    fn size(&self) -> usize;
+
+    /// r ← r − A x.
+    fn subtract_product(&self, x: &[f64], r: &mut [f64]);
+
+    /// A sweep of Gauss and Seidel over the first `rows` of A x = b, from nothing, in an order of its own; writes to
+    /// `left` what that leaves of b.
+    fn sweep_down(&self, b: &[f64], rows: usize, x: &mut [f64], left: &mut [f64]);
+
+    /// The sweep back, in the order that is the reverse of that; `b` is overwritten.
+    fn sweep_up(&self, b: &mut [f64], rows: usize, x: &mut [f64]);
+
+    /// b − A x.
+    fn residual(&self, x: &[f64], b: &[f64]) -> Vec<f64> {
+        let mut r = b.to_vec();
+        self.subtract_product(x, &mut r);
+        r
+    }
+}
+
+impl Operator for Matrix {
+    fn size(&self) -> usize {
+        self.pattern.size()
+    }
+
+    fn subtract_product(&self, x: &[f64], r: &mut [f64]) {
+        self.subtract_product(x, r);
+    }
+
+    fn sweep_down(&self, b: &[f64], rows: usize, x: &mut [f64], left: &mut [f64]) {
+        self.sweep_down(b, |row| row < rows, x, left);
+    }
+
+    fn sweep_up(&self, b: &mut [f64], rows: usize, x: &mut [f64]) {
+        self.sweep_up(b, |row| row < rows, x);
+    }
+}
+
 /// When an iteration ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
@@ -33,7 +74,7 @@ pub struct Stop {
 /// on its size.
 pub struct ConjugateGradients<'a> {
     /// A, positive definite but for what the interface holds.
-    pub matrix: &'a Matrix,
+    pub matrix: &'a dyn Operator,
     /// Its coarse space.
     pub space: &'a CoarseSpace,
     /// Holds the factor of the matrix of that.
@@ -50,7 +91,7 @@ impl ConjugateGradients<'_> {
     /// # Errors
     /// [`EngineError`]: matrix, space, engine and vectors of other sizes, or nothing factorised.
     pub fn improve(&mut self, f: &[f64], u: &mut [f64]) -> Result<usize, EngineError> {
-        let n = self.matrix.pattern.size();
+        let n = self.matrix.size();
         check("unknowns of a solution", u.len(), n)?;
         check("numbers of a right-hand side", f.len(), n)?;
         check("unknowns of a coarse space", self.space.fine_size(), n)?;

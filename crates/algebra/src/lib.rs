@@ -65,7 +65,7 @@ mod team;
 
 pub use cholesky::Cholesky;
 pub use coarse::{CoarseError, CoarseSpace};
-pub use conjugate::{ConjugateGradients, Interface, Stop};
+pub use conjugate::{ConjugateGradients, Interface, Operator, Stop};
 pub use dense::{DenseCholesky, square};
 pub use either::Either;
 pub use engine::{Cost, Engine, EngineError, Inertia, TooLarge};

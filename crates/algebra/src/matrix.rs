@@ -87,11 +87,17 @@ impl Matrix {
         }
     }
 
-    /// x of (D + L) x = b on the first `rows`, zero on the others, with D the diagonal and L what is
+    /// x of (D + L) x = b on the rows that move, zero on the others, with D the diagonal and L what is
     /// below it: a sweep of Gauss and Seidel from nothing. Writes to `left` what that leaves of b.
-    pub fn sweep_down(&self, b: &[f64], rows: usize, x: &mut [f64], left: &mut [f64]) {
+    pub fn sweep_down(
+        &self,
+        b: &[f64],
+        moves: impl Fn(usize) -> bool,
+        x: &mut [f64],
+        left: &mut [f64],
+    ) {
         x.copy_from_slice(b);
-        for j in 0..rows {
+        for j in (0..x.len()).filter(|&j| moves(j)) {
             let (diagonal, below, values) = self.column(j);
             x[j] /= diagonal;
             let own = x[j];
@@ -99,24 +105,27 @@ impl Matrix {
                 x[i as usize] -= a * own;
             }
         }
-        left[rows..].copy_from_slice(&x[rows..]);
-        x[rows..].fill(0.0);
-        for (j, left) in left[..rows].iter_mut().enumerate() {
-            *left = -self.sum_below(j, x);
+        for (j, left) in left.iter_mut().enumerate() {
+            *left = match moves(j) {
+                true => 0.0,
+                false => std::mem::take(&mut x[j]),
+            };
+        }
+        for (j, left) in left.iter_mut().enumerate() {
+            *left -= self.sum_below(j, x);
         }
     }
 
-    /// A sweep of Gauss and Seidel over the first `rows` of A x = b, from the last to the first;
+    /// A sweep of Gauss and Seidel over the rows of A x = b that move, from the last to the first;
     /// `b` is overwritten.
-    pub fn sweep_up(&self, b: &mut [f64], rows: usize, x: &mut [f64]) {
-        for j in 0..rows {
+    pub fn sweep_up(&self, b: &mut [f64], moves: impl Fn(usize) -> bool, x: &mut [f64]) {
+        for (j, own) in x.iter().enumerate() {
             let (_, below, values) = self.column(j);
-            let own = x[j];
             for (&i, a) in below.iter().zip(values) {
                 b[i as usize] -= a * own;
             }
         }
-        for j in (0..rows).rev() {
+        for j in (0..x.len()).rev().filter(|&j| moves(j)) {
             x[j] = (b[j] - self.sum_below(j, x)) / self.column(j).0;
         }
     }
@@ -176,12 +185,15 @@ mod tests {
     fn sweeps_are_those_of_gauss_and_seidel() {
         let b = DVector::from_fn(12, |i, _| 1.0 + (i as f64).sin());
         let (matrix, dense) = sample();
-        for rows in [12, 9, 7] {
+        let all = [12, 9, 7].map(|rows| (0..12).map(|i| i < rows).collect());
+        let scattered: Vec<bool> = (0..12).map(|i| i % 3 != 1).collect();
+        for moves in all.into_iter().chain([scattered]) {
+            let moving = || (0..12).filter(|&i| moves[i]);
             let mut x = vec![0.0; 12];
             let mut left = vec![f64::NAN; 12];
-            matrix.sweep_down(b.as_slice(), rows, &mut x, &mut left);
+            matrix.sweep_down(b.as_slice(), |i| moves[i], &mut x, &mut left);
             let mut expected = DVector::zeros(12);
-            for i in 0..rows {
+            for i in moving() {
                 let others = (dense.row(i) * &expected)[0];
                 expected[i] += (b[i] - others) / dense[(i, i)];
             }
@@ -190,8 +202,8 @@ mod tests {
             // From anywhere, and what is not swept counts.
             let mut expected = DVector::from_fn(12, |i, _| 0.1 * i as f64);
             let mut x = expected.as_slice().to_vec();
-            matrix.sweep_up(&mut b.as_slice().to_vec(), rows, &mut x);
-            for i in (0..rows).rev() {
+            matrix.sweep_up(&mut b.as_slice().to_vec(), |i| moves[i], &mut x);
+            for i in moving().collect::<Vec<_>>().into_iter().rev() {
                 let all = (dense.row(i) * &expected)[0];
                 expected[i] += (b[i] - all) / dense[(i, i)];
             }

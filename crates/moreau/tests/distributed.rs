@@ -4,7 +4,7 @@
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 const MOREAU: &str = env!("CARGO_BIN_EXE_moreau");
@@ -210,40 +210,26 @@ fn process(deck: &Path, rank: &str) -> Option<u32> {
     })
 }
 
-#[test]
-fn a_process_that_dies_ends_all_and_leaves_the_last_checkpoint() {
-    if !has_mpi("a process that dies ends all") {
-        return;
-    }
-    let place = Place::new("killed", &deck([7, 7, 4], 40, "", "block.front"));
+/// A run of many increments on three processes, of which the first has converged.
+fn under_way(place: &Place) -> Child {
     let mut command = place.on(3, &["run", "deck.toml", "--out", "out"]);
-    let child = command
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn();
-    let child = child.expect("mpirun");
+    let piped = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    let child = piped.spawn().expect("mpirun");
     let first = place.0.join("out/checkpoint/increment-000001.ckpt");
     let started = Instant::now();
     while !first.exists() && started.elapsed() < Duration::from_secs(120) {
         std::thread::sleep(Duration::from_millis(50));
     }
-    let at = fs::canonicalize(&place.0).expect("a folder");
-    let victim = process(&at, "2").expect("a process of rank 2");
-    let killed = Command::new("kill")
-        .args(["-9", &victim.to_string()])
-        .status();
-    assert!(killed.expect("kill").success());
-    let told = child.wait_with_output().expect("mpirun");
-    assert!(!told.status.success());
-    let text = String::from_utf8_lossy(&told.stderr).into_owned();
-    assert!(
-        text.contains("signal 9") || text.contains("Killed"),
-        "{text}"
-    );
-    assert_eq!(process(&at, "0"), None);
-    // What is there goes on: here on one process, for the next increments.
-    let deck = fs::read_to_string(place.0.join("out/deck.resolved.toml"));
-    assert!(deck.is_ok_and(|deck| deck.contains("indent")));
+    child
+}
+
+fn call(program: &str, arguments: &[&str]) {
+    let status = Command::new(program).args(arguments).status();
+    assert!(status.expect(program).success(), "{program} {arguments:?}");
+}
+
+/// What is in a folder goes on: here on one process, for another increment; until then its history is whole.
+fn goes_on(place: &Place) {
     let before = place.history("out").len();
     assert!(before >= 1);
     let mut child = Command::new(MOREAU)
@@ -258,6 +244,67 @@ fn a_process_that_dies_ends_all_and_leaves_the_last_checkpoint() {
     child.kill().expect("running");
     let _ = child.wait();
     assert!(place.history("out").len() > before);
+}
+
+/// How a run ended that something happened to: its status, and what it told. No process is left.
+fn end(place: &Place, child: Child) -> (Option<i32>, String) {
+    let told = child.wait_with_output().expect("mpirun");
+    let at = fs::canonicalize(&place.0).expect("a folder");
+    assert_eq!(process(&at, "0"), None);
+    let text = String::from_utf8_lossy(&told.stderr).into_owned();
+    (told.status.code(), text)
+}
+
+#[test]
+fn a_process_that_dies_ends_all_and_leaves_the_last_checkpoint() {
+    if !has_mpi("a process that dies ends all") {
+        return;
+    }
+    let place = Place::new("killed", &deck([7, 7, 4], 40, "", "block.front"));
+    let child = under_way(&place);
+    let at = fs::canonicalize(&place.0).expect("a folder");
+    let victim = process(&at, "2").expect("a process of rank 2");
+    call("kill", &["-9", &victim.to_string()]);
+    let (status, text) = end(&place, child);
+    assert_ne!(status, Some(0));
+    assert!(
+        text.contains("signal 9") || text.contains("Killed"),
+        "{text}"
+    );
+    goes_on(&place);
+}
+
+/// The first process writes all files: none of them may be longer than some kilobytes any more.
+#[test]
+fn a_full_disk_is_told_with_the_file_and_ends_all() {
+    if !has_mpi("a full disk") || Command::new("prlimit").arg("--version").output().is_err() {
+        return;
+    }
+    let place = Place::new("full", &deck([7, 7, 4], 40, "", "block.front"));
+    let child = under_way(&place);
+    let at = fs::canonicalize(&place.0).expect("a folder");
+    let first = process(&at, "0").expect("a process of rank 0").to_string();
+    call("prlimit", &["--fsize=20000", "--pid", &first]);
+    let (status, text) = end(&place, child);
+    assert_eq!(status, Some(2), "{text}");
+    // That is the first of its files that grows.
+    assert!(text.contains("out/"), "{text}");
+    assert!(text.contains("File too large"), "{text}");
+    goes_on(&place);
+}
+
+#[test]
+fn an_interrupt_writes_where_it_is() {
+    if !has_mpi("an interrupt") {
+        return;
+    }
+    let place = Place::new("interrupted", &deck([7, 7, 4], 40, "", "block.front"));
+    let child = under_way(&place);
+    call("kill", &["-INT", &child.id().to_string()]);
+    let (status, text) = end(&place, child);
+    assert_ne!(status, Some(0));
+    assert!(text.contains("interrupted after increment"), "{text}");
+    goes_on(&place);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //! do for it; not the factor of what they add up.
 
 pub(crate) mod block;
+pub(crate) mod coarsened;
 pub(crate) mod partition;
 pub(crate) mod serve;
 pub(crate) mod share;
@@ -40,4 +41,14 @@ pub(crate) mod ask {
     pub(crate) const PRODUCT: u8 = 15;
     /// Its diagonal.
     pub(crate) const DIAGONAL: u8 = 16;
+    /// What its unknowns follow in a coarse space, whose share takes the place of its own.
+    pub(crate) const COARSEN: u8 = 17;
+    /// Entries between unknowns that the first process sweeps: they are there from then on.
+    pub(crate) const HAND_OVER: u8 = 18;
+    /// The share of the coarse space is that of the entries.
+    pub(crate) const PROJECT: u8 = 19;
+    /// A sweep down over the unknowns that no other process has.
+    pub(crate) const SWEEP_DOWN: u8 = 20;
+    /// The sweep back.
+    pub(crate) const SWEEP_UP: u8 = 21;
 }

@@ -209,31 +209,131 @@ fn pairs<const D: usize>(blocks: &[Box<dyn Block<D>>]) -> usize {
     blocks.iter().map(|b| of(b.as_ref())).sum()
 }
 
-/// Where this process has entries of K: of the cells that it holds, and of what contacts and pressures may couple, on
-/// which it adds them up.
-fn here<const D: usize>(
-    (mesh, blocks): (&Mesh<D>, &[Box<dyn Block<D>>]),
-    (position, dofs, interface): (&[u32], &[usize], usize),
-    coupled: Option<&[Vec<usize>]>,
-) -> Pattern {
-    let own = |b: &'_ dyn Block<D>| {
-        (0..b.cells().len())
-            .filter(|&k| b.holds(k))
-            .collect::<Vec<_>>()
-    };
-    let mut groups: Vec<&[usize]> = Vec::new();
-    for block in blocks {
-        let held = own(block.as_ref()).into_iter();
-        groups.extend(held.map(|k| block.nodes(k)));
+/// What is chosen to be factorised, and on which of its own entries this process adds K up.
+struct Chosen {
+    pattern: Pattern,
+    engine: Box<dyn Engine>,
+    coarse: Option<Coarse>,
+}
+
+/// What the choice depends on.
+struct Choice<'a, const D: usize, F> {
+    mesh: &'a Mesh<D>,
+    blocks: &'a [Box<dyn Block<D>>],
+    held: (F, &'a Directions),
+    contacts: &'a Contacts<'a>,
+    memory: (Option<u64>, Option<&'a SharedTeam>),
+    numbering: &'a Numbering,
+    is_tied: bool,
+    is_definite: bool,
+}
+
+impl<const D: usize, F: Fn(usize) -> bool> Choice<'_, D, F> {
+    /// The factor of K itself, unless that of a coarse space is cheaper or the only one that has room.
+    fn made(&self, others: &mut Option<Others>) -> Result<Chosen, TooLarge> {
+        let pattern = &self.numbering.pattern;
+        let cost = Cost::of(pattern).operations;
+        // In the plane a factor is small, and linear cells in plastic flow are a poor coarse space.
+        if D == 3 && !self.is_tied && conjugate_operations(pattern, 0.0) < cost {
+            let coarse = self.coarse(others).and_then(Result::ok);
+            let is_cheaper = |chosen: &Chosen| {
+                let own = chosen.engine.cost();
+                own.operations + conjugate_operations(pattern, own.entries) < cost
+            };
+            if let Some(chosen) = coarse.filter(is_cheaper) {
+                return Ok(chosen);
+            }
+            others.iter_mut().for_each(Others::refine);
+        }
+        self.own(others.as_ref())
+            .or_else(|too_large| self.coarse(others).unwrap_or(Err(too_large)))
     }
-    let facets = mesh
-        .group_names()
-        .filter_map(|name| mesh.facet_group(name).ok());
-    let facets = facets.flatten().map(|&f| mesh.facet_nodes(f).collect());
-    let facets: BTreeSet<Vec<usize>> = facets.collect();
-    groups.extend(facets.iter().map(Vec::as_slice));
-    groups.extend(coupled.into_iter().flatten().map(Vec::as_slice));
-    pattern_of::<D>(position, dofs, interface, &groups)
+
+    fn engine(&self, pattern: &Pattern) -> Result<Box<dyn Engine>, TooLarge> {
+        engine(pattern, self.memory, self.is_definite)
+    }
+
+    fn own(&self, others: Option<&Others>) -> Result<Chosen, TooLarge> {
+        let pattern = match others {
+            None => self.numbering.pattern.clone(),
+            Some(_) => self.here(&[]).0,
+        };
+        Ok(Chosen {
+            engine: self.engine(&pattern)?,
+            pattern,
+            coarse: None,
+        })
+    }
+
+    /// `None` if no node is between others.
+    fn coarse(&self, others: &mut Option<Others>) -> Option<Result<Chosen, TooLarge>> {
+        let Numbering { dofs, pattern, .. } = self.numbering;
+        let (pattern, here) = match others {
+            None => (pattern.clone(), Vec::new()),
+            Some(others) => self.here(&others.shared(dofs.len())),
+        };
+        let &Contacts {
+            nodes,
+            pivot,
+            tools,
+            ..
+        } = self.contacts;
+        let (fixed, directions) = &self.held;
+        let space = (nodes, pivot, tools);
+        let coarse = Coarse::new(self.mesh, (fixed, directions), space, (dofs, &pattern))?;
+        if let Some(others) = others {
+            others.coarsen(&coarse.space, &pattern, here);
+        }
+        let engine = self.engine(&coarse.space.matrix().pattern);
+        Some(engine.map(|engine| Chosen {
+            pattern,
+            engine,
+            coarse: Some(coarse),
+        }))
+    }
+
+    /// Where this process has entries of K: of the cells that it holds, and of what contacts and pressures may couple, on
+    /// which it adds them up. With the unknowns that are `shared` by others it has all entries among these and its own,
+    /// and tells which they are.
+    fn here(&self, shared: &[bool]) -> (Pattern, Vec<bool>) {
+        let Numbering {
+            position,
+            dofs,
+            interface,
+            ..
+        } = self.numbering;
+        let cells = |held: bool| {
+            let of = self.blocks.iter().flat_map(move |b| {
+                let own = (0..b.cells().len()).filter(move |&k| b.holds(k) == held);
+                own.map(move |k| b.nodes(k))
+            });
+            of.collect::<Vec<&[usize]>>()
+        };
+        let mut groups = cells(true);
+        let mesh = self.mesh;
+        let facets = mesh
+            .group_names()
+            .filter_map(|name| mesh.facet_group(name).ok());
+        let facets = facets.flatten().map(|&f| mesh.facet_nodes(f).collect());
+        let facets: BTreeSet<Vec<usize>> = facets.collect();
+        groups.extend(facets.iter().map(Vec::as_slice));
+        let coupled = self.contacts.coupled.into_iter().flatten();
+        groups.extend(coupled.map(Vec::as_slice));
+        let mut own = vec![false; position.len() / D];
+        groups
+            .iter()
+            .for_each(|nodes| nodes.iter().for_each(|&a| own[a] = true));
+        let all = dofs.iter().zip(shared);
+        all.for_each(|(&dof, &shared)| own[dof / D] |= shared);
+        let mut between: Vec<Vec<usize>> = Vec::new();
+        if !shared.is_empty() {
+            let of = |nodes: &[usize]| nodes.iter().copied().filter(|&a| own[a]).collect();
+            between.extend(cells(false).into_iter().map(of));
+        }
+        groups.extend(between.iter().map(Vec::as_slice));
+        let pattern = pattern_of::<D>(position, dofs, *interface, &groups);
+        (pattern, dofs.iter().map(|&dof| own[dof / D]).collect())
+    }
 }
 
 /// What a system has to know of contacts.
@@ -288,53 +388,35 @@ impl System {
         let is_tied = tied.is_some();
         // Under large strains stresses add to the stiffness what may make it indefinite.
         let is_definite = blocks.iter().all(|b| b.keeps_elastic_stiffness());
+        let numbering = tied.unwrap_or_else(condensed);
+        let several = team.filter(|team| team.size() > 1);
+        let mut others = several.map(|team| Others::new(team, (&numbering.position, directions)));
+        let choice = Choice {
+            mesh,
+            blocks,
+            held: (&fixed, directions),
+            contacts,
+            memory,
+            numbering: &numbering,
+            is_tied,
+            is_definite,
+        };
+        let chosen = choice.made(&mut others);
+        let Chosen {
+            pattern,
+            engine,
+            coarse,
+        } = chosen.map_err(|error| no_room(numbering.dofs.len(), error))?;
         let Numbering {
             position,
             dofs,
             interface,
-            pattern,
-        } = tied.unwrap_or_else(condensed);
-        let cost = Cost::of(&pattern);
-        let (pattern, others) = match team.filter(|team| team.size() > 1) {
-            None => (pattern, None),
-            Some(team) => {
-                let numbered = (&*position, &*dofs, interface);
-                let here = here::<D>((mesh, blocks), numbered, coupled);
-                (here, Some(Others::new(team, (&position, directions))))
-            }
-        };
+            ..
+        } = numbering;
         let scatter = blocks
             .iter()
             .map(|b| Scatter::new(b.as_ref(), &position, &pattern))
             .collect();
-        let coarse = || {
-            let space = (interface_nodes, pivot, tools);
-            let held = (&fixed, directions);
-            let coarse = Coarse::new(mesh, held, space, (&dofs, &pattern))?;
-            let made = engine(&coarse.space.matrix().pattern, memory, is_definite);
-            Some(made.map(|engine| (engine, Some(coarse))))
-        };
-        let mut other = None;
-        // In the plane a factor is small, and linear cells in plastic flow are a poor coarse space.
-        if D == 3
-            && !is_tied
-            && team.is_none()
-            && conjugate_operations(&pattern, 0.0) < cost.operations
-        {
-            other = coarse().filter(|other| {
-                other.as_ref().is_ok_and(|(engine, _)| {
-                    let own = engine.cost();
-                    own.operations + conjugate_operations(&pattern, own.entries) < cost.operations
-                })
-            });
-        }
-        let own = || match engine(&pattern, memory, is_definite) {
-            Ok(engine) => Ok((engine, None)),
-            Err(too_large) if team.is_some() => Err(too_large),
-            Err(too_large) => coarse().unwrap_or(Err(too_large)),
-        };
-        let chosen = other.unwrap_or_else(own);
-        let (engine, coarse) = chosen.map_err(|error| no_room(dofs.len(), error))?;
         Ok(Self {
             prescribed: Prescribed {
                 dofs: (0..position.len())
@@ -459,6 +541,9 @@ impl System {
                 }
             });
         }
+        if let (Some(others), true) = (&self.others, with_stiffness) {
+            others.take_over(self.matrix.values_mut().1);
+        }
         if let (Some(others), Some(_)) = (&self.others, missing) {
             others.add_prescribed(&self.dofs, &mut prescribed_load);
         }
@@ -517,6 +602,7 @@ impl System {
         }
         let first = self.size() - self.interface;
         if let Some(others) = &mut self.others {
+            others.take_over(self.matrix.values_mut().1);
             others.find_diagonal(self.dofs.len());
         }
         let own = |p: usize| self.diagonal(p as u32);
@@ -570,6 +656,7 @@ impl System {
         let inertia = timed(&mut self.timings.factorisation, || {
             let matrix = match &mut self.coarse {
                 Some(coarse) => {
+                    self.others.iter().for_each(Others::project);
                     coarse.space.project(&self.matrix)?;
                     coarse.space.matrix_mut()
                 }

@@ -169,7 +169,7 @@ impl Engine for Gathering {
 }
 
 /// A block of two materials pressed by a tool and dragged, on a team or alone.
-fn driver(team: Option<SharedTeam>, seam: Seam, large: bool) -> Driver<2> {
+fn driver(team: Option<SharedTeam>, (seam, large, memory): (Seam, bool, Option<u64>)) -> Driver<2> {
     let (x, y) = (uniform(0.0, 8.0, 8), uniform(0.0, 4.0, 4));
     let mut mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
     let (soft, firm) = (0..mesh.cell_count()).partition(|c| c % 8 < 3);
@@ -191,6 +191,7 @@ fn driver(team: Option<SharedTeam>, seam: Seam, large: bool) -> Driver<2> {
         .and_then(|m| m.contact("block.top", "punch", Coulomb::new(0.2).expect("valid")));
     let settings = Settings {
         seam,
+        memory,
         ..Settings::default()
     };
     Driver::new(model.expect("valid"), settings).expect("valid")
@@ -207,14 +208,17 @@ fn steps() -> [Step<2>; 2] {
     ]
 }
 
-/// Forces of the tool, energies and numbers of the state after each increment.
-fn course(mut driver: Driver<2>) -> (Vec<f64>, Vec<f64>) {
+/// Forces of the tool and energies after each increment, stresses and fields after the last; numbers of the state; iterations of
+/// conjugate gradients.
+fn course(mut driver: Driver<2>) -> (Vec<f64>, Vec<f64>, usize) {
     let mut told = Vec::new();
+    let mut iterations = 0;
     for step in steps() {
         let run = driver.run(&step, 2, |driver, report| {
             let force = driver.tool_force("punch").expect("a tool");
             told.extend(force.iter());
             told.extend([report.energies.stored, report.energies.plastic_dissipation]);
+            iterations += report.linear_iterations;
         });
         run.expect("converges");
     }
@@ -232,36 +236,68 @@ fn course(mut driver: Driver<2>) -> (Vec<f64>, Vec<f64>) {
     let mut again = Vec::new();
     driver.write(&mut again);
     assert_eq!(state, again);
-    (told, state)
+    (told, state, iterations)
+}
+
+/// The same on a number of threads.
+fn course_on(count: usize, of: (Seam, bool, Option<u64>)) -> (Vec<f64>, Vec<f64>, usize) {
+    std::thread::scope(|scope| {
+        let mut team = threads(count).into_iter();
+        let first = team.next();
+        for other in team {
+            scope.spawn(move || driver(Some(other), of).serve());
+        }
+        let outcome = course(driver(first.clone(), of));
+        first.expect("one").order(&[]);
+        outcome
+    })
 }
 
 #[test]
 fn results_do_not_depend_on_the_number_of_processes() {
-    for (seam, large) in [
-        (Seam::Condensed, false),
-        (Seam::Tied, false),
-        (Seam::Cheaper, true),
+    for of in [
+        (Seam::Condensed, false, None),
+        (Seam::Tied, false, None),
+        (Seam::Cheaper, true, None),
     ] {
-        let (expected, state) = course(driver(None, seam, large));
+        let (expected, state, _) = course(driver(None, of));
         let size = expected.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         for count in [1, 2, 3, 5] {
-            let (found, own) = std::thread::scope(|scope| {
-                let mut team = threads(count).into_iter();
-                let first = team.next();
-                for other in team {
-                    scope.spawn(move || driver(Some(other), seam, large).serve());
-                }
-                let outcome = course(driver(first.clone(), seam, large));
-                first.expect("one").order(&[]);
-                outcome
-            });
+            let (found, own, iterations) = course_on(count, of);
             assert_eq!((found.len(), own.len()), (expected.len(), state.len()));
+            assert_eq!(iterations, 0);
             for (a, b) in expected.iter().zip(&found) {
                 assert!(
                     (a - b).abs() < 1e-9 * size,
-                    "{count} of {seam:?}: {a} and {b}"
+                    "{count} of {of:?}: {a} and {b}"
                 );
             }
         }
+    }
+}
+
+/// Where its factor has no room, the coarse space is that of all processes: sweeps in another order take about as many
+/// iterations, and lead to the same.
+#[test]
+fn conjugate_gradients_are_those_of_all_processes() {
+    let with_room = (Seam::Condensed, false, None);
+    let (direct, ..) = course(driver(None, with_room));
+    let mut own = driver(None, with_room);
+    own.run(&steps()[0], 1, |_, _| {}).expect("converges");
+    let short = 8 * own.factor_entries() as u64 - 8;
+    let of = (Seam::Condensed, false, Some(short));
+    let (.., alone) = course(driver(None, of));
+    assert!(alone > 0, "the factor has room");
+    let size = direct.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    for count in [1, 2, 3, 5] {
+        let (found, _, iterations) = course_on(count, of);
+        for (a, b) in direct.iter().zip(&found) {
+            assert!((a - b).abs() < 1e-8 * size, "{count}: {a} and {b}");
+        }
+        assert!(
+            10 * iterations.abs_diff(alone) < 3 * alone,
+            "{count}: {iterations} and {alone}"
+        );
+        eprintln!("{count} {iterations} {alone}");
     }
 }

@@ -144,11 +144,38 @@ impl<const D: usize> Served<'_, D> {
                 };
                 self.answer_reals(&self.entries.as_ref().map_or(Vec::new(), of));
             }
+            ask::COARSEN..=ask::SWEEP_UP => {
+                if let Some(mut entries) = self.entries.take() {
+                    self.iterates(&mut entries, kind, order);
+                    self.entries = Some(entries);
+                }
+            }
             _ => {
                 let block = order.count();
                 if block < self.blocks.len() {
                     self.does_with(block, kind, order);
                 }
+            }
+        }
+    }
+
+    /// What conjugate gradients ask.
+    fn iterates(&self, entries: &mut Entries, kind: u8, mut order: Unpacked<'_>) {
+        match kind {
+            ask::COARSEN => {
+                let places = entries.coarsen(&mut order);
+                self.answer(&Parcel::default().indices(&places));
+            }
+            ask::HAND_OVER => self.answer_reals(&entries.hand_over()),
+            ask::PROJECT => entries.project(),
+            ask::SWEEP_DOWN => {
+                let (rows, load) = (order.count(), order.reals());
+                let (x, left) = entries.sweep_down(rows, &load);
+                self.answer(&Parcel::default().reals(&x).reals(&left));
+            }
+            _ => {
+                let (rows, load) = (order.count(), order.reals());
+                self.answer_reals(&entries.sweep_up(rows, &load, order.reals()));
             }
         }
     }

@@ -3,10 +3,11 @@
 use crate::assembly::block::{Block, CellResult};
 use crate::assembly::numbering::pattern_of;
 use crate::assembly::scatter::{FIXED, Scatter, prescribed_columns};
+use crate::assembly::spread::coarsened::Coarsened;
 use crate::assembly::turned::Turned;
 use crate::vector::SparseVector;
 use crate::vector::directions::Directions;
-use moreau_algebra::{Matrix, Share};
+use moreau_algebra::{Matrix, Share, Unpacked};
 
 /// Entries of the cells of this process.
 #[derive(Debug)]
@@ -18,6 +19,8 @@ pub(crate) struct Entries {
     directions: Directions,
     scatter: Vec<Scatter>,
     matrix: Matrix,
+    /// Its part of a coarse space, where there is one.
+    coarsened: Option<Coarsened>,
     missing: SparseVector,
     /// What the prescribed displacements that are missing do, at every degree of freedom of the mesh \[N\].
     prescribed_load: Vec<f64>,
@@ -53,6 +56,7 @@ impl Entries {
             position,
             directions,
             matrix: Matrix::new(pattern),
+            coarsened: None,
             missing: SparseVector::default(),
             prescribed_load: Vec::new(),
         }
@@ -120,12 +124,61 @@ impl Entries {
             .collect()
     }
 
-    /// As a part of the whole matrix.
+    /// As a part of the whole matrix that is factorised: that of the coarse space, where there is one.
     pub(crate) fn share(&self) -> Share<'_> {
-        Share {
+        let own = Share {
             pattern: Some(&self.matrix.pattern),
             values: self.matrix.values(),
             rows: &self.rows,
+        };
+        self.coarsened.as_ref().map_or(own, Coarsened::share)
+    }
+
+    /// A coarse space takes the place of the unknowns; what goes to the first process is told.
+    pub(crate) fn coarsen(&mut self, order: &mut Unpacked<'_>) -> Vec<u32> {
+        self.coarsened = match order.count() {
+            1 => Coarsened::new(&self.matrix, order),
+            _ => None,
+        };
+        let places = |c: &Coarsened| c.places(&self.matrix, &self.rows);
+        self.coarsened.as_ref().map_or(Vec::new(), places)
+    }
+
+    /// Entries that go to the first process.
+    pub(crate) fn hand_over(&mut self) -> Vec<f64> {
+        let Self {
+            coarsened, matrix, ..
+        } = self;
+        let coarsened = coarsened.as_ref();
+        coarsened.map_or(Vec::new(), |c| c.hand_over(matrix))
+    }
+
+    /// The coarse space is that of the entries as they are now.
+    pub(crate) fn project(&mut self) {
+        if let Some(coarsened) = &mut self.coarsened {
+            // Both are of this process: they fit.
+            let _ = coarsened.project(&self.matrix);
         }
+    }
+
+    /// Own numbers of the unknowns before one of the whole system.
+    fn before(&self, row: usize) -> usize {
+        self.rows.partition_point(|&own| (own as usize) < row)
+    }
+
+    /// A sweep down: what the unknowns do that this process has alone, and what that leaves at all of its own.
+    pub(crate) fn sweep_down(&self, rows: usize, load: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let coarsened = self.coarsened.as_ref();
+        coarsened.map_or((Vec::new(), Vec::new()), |c| {
+            c.sweep_down(&self.matrix, self.before(rows), load)
+        })
+    }
+
+    /// The sweep back.
+    pub(crate) fn sweep_up(&self, rows: usize, load: &[f64], x: Vec<f64>) -> Vec<f64> {
+        let coarsened = self.coarsened.as_ref();
+        coarsened.map_or(Vec::new(), |c| {
+            c.sweep_up(&self.matrix, self.before(rows), load, x)
+        })
     }
 }

@@ -3,6 +3,7 @@
 
 use super::System;
 use crate::error::Inaccurate;
+use crate::linear::everywhere::Everywhere;
 use crate::timings::{Clock, timed};
 use crate::vector::SparseVector;
 use crate::vector::largest;
@@ -243,7 +244,10 @@ impl System {
             return self.refine(f, u, rows);
         };
         let mut system = ConjugateGradients {
-            matrix: &self.matrix,
+            matrix: &Everywhere {
+                matrix: &self.matrix,
+                others: self.others.as_ref(),
+            },
             space: &coarse.space,
             engine: self.engine.as_mut(),
             interface,
