@@ -142,6 +142,14 @@ pub enum LawError {
         /// What is not.
         of: &'static str,
     },
+    /// A table of the bound of the shear that is none.
+    #[error("row {row} of the friction table {problem}")]
+    ShearTable {
+        /// The row, counted from 1.
+        row: usize,
+        /// What is wrong with it.
+        problem: &'static str,
+    },
     /// A damage outside [0, 1[.
     #[error("the damage must lie in [0, 1[, got {damage}")]
     DamageOutOfRange {

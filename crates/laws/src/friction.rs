@@ -5,6 +5,7 @@ pub(crate) mod anisotropic;
 pub(crate) mod bounded;
 pub(crate) mod coulomb;
 pub(crate) mod limited;
+pub(crate) mod table;
 pub(crate) mod tresca;
 
 use crate::duality::Bipotential;

@@ -84,6 +84,7 @@ pub use friction::anisotropic::AnisotropicCoulomb;
 pub use friction::bounded::{Bounded, ShearBound};
 pub use friction::coulomb::Coulomb;
 pub use friction::limited::LimitedCoulomb;
+pub use friction::table::ShearTable;
 pub use friction::tresca::Tresca;
 pub use isotropic::Isotropic;
 pub use large::{LargeResponse, Turned, respond_large, volume_change};

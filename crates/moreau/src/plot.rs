@@ -55,8 +55,9 @@ pub use axis::{ChartAxis, Scale};
 pub use chart::{Chart, Series};
 pub use colour::colours;
 pub use error::PlotError;
+pub use figure::below_each_other;
 pub use look::Style;
 pub use nodal::nodal_average;
-pub use picture::{Field, Mark, MeshPicture};
+pub use picture::{Field, Mark, MeshPicture, View};
 #[cfg(feature = "png")]
 pub use raster::png;

@@ -53,7 +53,6 @@ pub(crate) use saved::{sealed, unsealed};
 use crate::deck::{Deck, Findings, Given, Problem, open_with};
 use crate::driver::{IncrementError, IncrementReport, Iteration, ModelError, Numbers};
 use crate::laws::Status;
-use crate::mesh::Mesh;
 use crate::table::Table;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf, absolute};
@@ -300,22 +299,14 @@ impl Simulation {
         either!(&self.course, course => course.failed())
     }
 
-    /// The mesh of a body in the plane, which can be drawn.
-    pub(crate) fn plane(&self) -> Option<&Mesh<2>> {
-        match &self.course {
-            Either::Plane(course) => Some(course.driver().mesh()),
-            Either::Solid(_) => None,
-        }
-    }
-
     /// Unit of a field of the grids; empty where there is none, or none is known.
     pub fn unit(&self, field: &str) -> &'static str {
         let unit = pictures::unit(field, self.deck.units);
         unit.filter(|unit| *unit != "–").unwrap_or_default()
     }
 
-    /// Pictures as SVG, by name: `history`, and of a body in the plane `contact`, the tractions along its surfaces,
-    /// and `deformed`, with a field of [`Simulation::body`] or a component of one, as in `displacement.x`, and
+    /// Pictures as SVG, by name: `history`, `contact`, the tractions along the surfaces of a body in the plane, pressures
+    /// and statuses on those of a solid, and `deformed`, with a field of [`Simulation::body`] or a component of one, as in `displacement.x`, and
     /// displacements drawn so many times as large. What has nothing to show is left out.
     pub fn pictures(
         &self,
@@ -325,15 +316,19 @@ impl Simulation {
         let (deck, history) = (&self.deck, self.history());
         let forces = pictures::over_time(history, deck).and_then(|chart| chart.to_svg().ok());
         let mut list = vec![("history", forces)];
-        if let (Some(mesh), Some(row)) = (self.plane(), history.rows().checked_sub(1)) {
-            let increment = self.increments();
-            let tractions = pictures::tractions(&self.contacts(), increment, deck);
-            list.push(("contact", tractions));
+        if let Some(row) = history.rows().checked_sub(1) {
+            let (increment, contacts) = (self.increments(), self.contacts());
             let arrays = self.body().point_data;
             let field = field.unwrap_or(pictures::usual_field(deck));
             let at = (history, row);
-            let deformed = pictures::deformed(mesh, deck, &arrays, field, at, magnification);
-            list.push(("deformed", deformed));
+            let (contact, deformed) = either!(&self.course, course => {
+                let mesh = course.driver().mesh();
+                (
+                    pictures::contact(mesh, deck, &contacts, increment, Some(&arrays)),
+                    pictures::deformed(mesh, deck, &arrays, field, at, magnification),
+                )
+            });
+            list.extend([("contact", contact), ("deformed", deformed)]);
         }
         let drawn = list.into_iter();
         drawn.filter_map(|(name, svg)| Some((name, svg?))).collect()

@@ -1,6 +1,7 @@
-"""Decks as files, texts and keys; meshes as arrays and of other libraries; functions of hardening."""
+"""Decks as files, texts and keys; meshes as arrays and of other libraries; functions of hardening and friction."""
 
 import sys
+import tomllib
 import warnings
 from pathlib import Path
 from types import SimpleNamespace
@@ -197,6 +198,27 @@ def test_a_function_of_hardening_is_sampled():
         with pytest.raises(mc.DeckError, match=words) as refused:
             pulled(given, yield_stress=1.0, hardening=curve)
         assert refused.value.findings[0].severity == "error"
+
+
+def test_a_function_of_friction_is_sampled():
+    keys = tomllib.loads((EXAMPLES / "punched-block.toml").read_text())
+    del keys["expect"]
+
+    def load(friction):
+        contact = [{**keys["contact"][0], "friction": friction}]
+        return mc.run({**keys, "contact": contact}).history["force.punch.y"].to_numpy()[-1]
+
+    assert load(lambda p: 0.1 * p) == pytest.approx(load(0.1), rel=1e-9)
+    limited = load({"coulomb": 0.1, "tau-max": 20.0})
+    assert load(lambda p: min(0.1 * p, 20.0)) == pytest.approx(limited, rel=1e-3)
+    assert load(0.1) != pytest.approx(limited, rel=1e-3)
+    for curve, words in [
+        (lambda p: 0.1 * p if p < 100.0 else 5.0, "falls at the pressure"),
+        (lambda p: 0.1 * p + 1e-5 * p * p, "expected a concave function"),
+        (lambda p: 0.1 * p - 1.0, "at no pressure"),
+    ]:
+        with pytest.raises(mc.DeckError, match=words):
+            load(curve)
 
 
 def test_without_pandas_tables_are_arrays(monkeypatch):

@@ -37,12 +37,12 @@ pub(super) fn check(path: &Path, given: &Given, picture: Option<&Path>) -> u8 {
 
 /// Draws every step into a file of its own, the first into the one that is named; the exit status.
 fn draw(deck: &Deck, problem: &Problem, file: &Path) -> u8 {
-    let Problem::Plane(setup) = problem else {
-        tell!("a solid is not drawn before it is run: `report.html` shows it after an increment");
-        return INPUT_ERROR;
-    };
     for step in 0..deck.steps.len() {
-        let Some(svg) = planned(deck, setup, step) else {
+        let svg = match problem {
+            Problem::Plane(setup) => planned(deck, setup, step),
+            Problem::Solid(setup) => planned(deck, setup, step),
+        };
+        let Some(svg) = svg else {
             continue;
         };
         let name = |number: usize| {

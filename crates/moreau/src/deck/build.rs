@@ -242,6 +242,7 @@ fn settings<const D: usize>(
     let mut settings = Settings {
         contact,
         memory: crate::memory::available(),
+        tolerance: deck.solver.tolerance,
         ..Settings::default()
     };
     if deck.solver.outside {

@@ -133,6 +133,12 @@ const TURN: Described = Described::new(
     "Rotation of a tool since the virgin state, about the third axis.",
 )
 .when("NAME is a tool in the plane, under large strains or where a tool turns");
+const TURN_IN_SPACE: Described = Described::new(
+    "turn.NAME.AXIS",
+    Unit::Degree,
+    "Rotation of a tool since the virgin state: along the axis of the rotation, as long as its angle.",
+)
+.when("NAME is a tool in space, under large strains or where a tool turns");
 const QUALITY: Described = Described::new(
     "cell_quality",
     Unit::None,
@@ -155,12 +161,13 @@ const LARGEST: Described = Described::new(
 
 /// All columns that a history may have, each kind once.
 pub(crate) fn history_columns() -> impl Iterator<Item = &'static Described> {
-    const NAMED: [Described; 8] = [
+    const NAMED: [Described; 9] = [
         FORCE,
         DISPLACEMENT,
         MOMENT,
         MOMENT_IN_PLANE,
         TURN,
+        TURN_IN_SPACE,
         QUALITY,
         LARGEST_STRESS,
         LARGEST,
@@ -183,7 +190,10 @@ pub(crate) fn columns<const D: usize>(setup: &Setup<D>) -> Vec<(String, Unit)> {
         add(&mut list, name);
         match (setup.moments, D) {
             (false, _) => {}
-            (true, 3) => list.extend(AXES.map(|axis| named(&MOMENT, name, axis))),
+            (true, 3) => {
+                let both = [&MOMENT, &TURN_IN_SPACE].into_iter();
+                list.extend(both.flat_map(|c| AXES.map(|axis| named(c, name, axis))));
+            }
             (true, _) => list.extend([&MOMENT_IN_PLANE, &TURN].map(|c| named(c, name, ""))),
         }
     }

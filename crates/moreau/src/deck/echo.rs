@@ -328,6 +328,7 @@ fn tail(deck: &Deck, out: &mut String) -> fmt::Result {
         "\n[solver]\ncontact = {method}\nnesting = \"{nesting}\""
     )?;
     writeln!(out, "threads = {}", deck.solver.threads)?;
+    writeln!(out, "tolerance = {:?}", deck.solver.tolerance)?;
     writeln!(out, "\n[output]")?;
     if let Some(directory) = &deck.directory {
         writeln!(out, "directory = {}", text(directory))?;

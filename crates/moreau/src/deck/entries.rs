@@ -318,6 +318,8 @@ pub enum FrictionEntry {
     Limited(At<f64>, At<f64>),
     /// In space: coefficients along an axis and across, and the axis.
     Orthotropic(At<[f64; 2]>, At<Vec<f64>>),
+    /// Rows of the pressure and the bound of the shear there.
+    Table(At<Vec<At<[f64; 2]>>>),
 }
 
 impl FrictionEntry {
@@ -326,6 +328,7 @@ impl FrictionEntry {
         match self {
             Self::Coulomb(given) | Self::Tresca(given) | Self::Limited(given, _) => &given.span,
             Self::Orthotropic(given, _) => &given.span,
+            Self::Table(rows) => &rows.span,
         }
     }
 }
@@ -344,6 +347,10 @@ impl fmt::Display for FrictionEntry {
             }
             Self::Orthotropic(mu, axis) => {
                 write!(f, "{{ coulomb = {:?}, axis = {:?} }}", mu.value, axis.value)
+            }
+            Self::Table(rows) => {
+                let rows: Vec<[f64; 2]> = rows.value.iter().map(|row| row.value).collect();
+                write!(f, "{{ table = {rows:?} }}")
             }
         }
     }
@@ -447,6 +454,8 @@ pub enum Method {
 /// `[solver]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SolverEntry {
+    /// Out-of-balance force at which an increment is accepted, over the largest nodal force.
+    pub tolerance: f64,
     /// Method.
     pub method: Method,
     /// Whether the contact problem is solved around the nonlinear solve.

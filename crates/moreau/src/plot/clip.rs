@@ -1,4 +1,25 @@
-//! Polylines cut off at a box, so that pictures need no clip paths, which would need ids.
+//! Polylines cut off at a box and polygons at a line, so that pictures need no clip paths, which would need ids.
+
+/// The part of a convex polygon where a function that is linear along its sides is positive, with what else its
+/// corners carry.
+pub(super) fn cut<const N: usize>(
+    polygon: &[[f64; N]],
+    function: impl Fn(&[f64; N]) -> f64,
+) -> Vec<[f64; N]> {
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (k, a) in polygon.iter().enumerate() {
+        let b = &polygon[(k + 1) % polygon.len()];
+        let (f, g) = (function(a), function(b));
+        if f >= 0.0 {
+            kept.push(*a);
+        }
+        if (f > 0.0 && g < 0.0) || (f < 0.0 && g > 0.0) {
+            let t = f / (f - g);
+            kept.push(std::array::from_fn(|i| a[i] + t * (b[i] - a[i])));
+        }
+    }
+    kept
+}
 
 /// The parts of a polyline in the box with least corner `low` and greatest corner `high`.
 ///

@@ -38,7 +38,7 @@ pub enum PlotError {
         /// The node.
         node: usize,
         /// Its displacement \[mm\].
-        displacement: [f64; 2],
+        displacement: Vec<f64>,
         /// The magnification.
         magnification: f64,
     },

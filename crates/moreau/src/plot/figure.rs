@@ -208,3 +208,29 @@ fn draw_labels(svg: &mut String, sheet: &Sheet, x: &Axis, y: &Axis) {
     let turned = format!(r#" transform="rotate(-90 20 {})""#, number(middle));
     write_text(svg, [20.0, middle], LABEL, "middle", &turned, &y.label);
 }
+
+/// Pictures below each other as one.
+pub fn below_each_other(pictures: &[String]) -> String {
+    if let [one] = pictures {
+        return one.clone();
+    }
+    let size = |svg: &str, name: &str| -> f64 {
+        let value = svg.split(&format!(" {name}=\"")).nth(1);
+        let value = value.and_then(|v| v.split('"').next());
+        value.and_then(|v| v.parse().ok()).unwrap_or(0.0)
+    };
+    let width = pictures
+        .iter()
+        .map(|p| size(p, "width"))
+        .fold(0.0, f64::max);
+    let (mut inner, mut top) = (String::new(), 0.0);
+    for picture in pictures {
+        let place = format!("<svg y=\"{}\" ", number(top));
+        inner.push_str(&picture.replacen("<svg ", &place, 1));
+        top += size(picture, "height");
+    }
+    let [w, h] = [width, top].map(number);
+    format!(
+        r#"<svg viewBox="0 0 {w} {h}" role="img" xmlns="http://www.w3.org/2000/svg" width="{w}" height="{h}">{inner}</svg>"#
+    )
+}

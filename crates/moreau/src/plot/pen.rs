@@ -141,6 +141,17 @@ impl Pen {
         }
     }
 
+    /// Fills the path so that what is behind is still seen.
+    pub(super) fn veil(&self, svg: &mut String, colour: &str) {
+        if !self.path.is_empty() {
+            let _ = write!(
+                svg,
+                r#"<path fill="{colour}" fill-opacity=".16" stroke="{colour}" stroke-opacity=".35" stroke-width=".5" stroke-linejoin="round" d="{}"/>"#,
+                self.path,
+            );
+        }
+    }
+
     pub(super) fn stroke(&self, svg: &mut String, colour: &str, width: f64, more: &str) {
         if !self.path.is_empty() {
             let _ = write!(

@@ -1,18 +1,20 @@
-//! Pictures of plane meshes: cells, deformed or not, coloured by a field; not of their history.
+//! Pictures of meshes: cells of the plane, or what is seen of a solid, deformed or not, coloured by a field; not of their
+//! history.
 
 mod bands;
+mod flat;
+mod layers;
 mod marks;
 mod sheet;
+mod view;
 
 use super::PlotError;
-use super::clip::clip;
-use super::colour::{INK, LEVELS, colour};
-use super::pen::{COARSE, FINE, Pen};
-use crate::mesh::{CellKind, Mesh};
-use bands::{Corner, Table, combine, fill_bands};
+use crate::mesh::{CellKind, Facet, FacetKind, Mesh};
+use flat::{Face, Flat};
 pub use marks::Mark;
-use sheet::{Bar, Sheet, check_length};
-use std::collections::BTreeMap;
+use nalgebra::Vector3;
+use sheet::check_length;
+pub use view::View;
 
 /// A field on the nodes of a mesh.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,20 +25,24 @@ pub struct Field {
     pub values: Vec<f64>,
 }
 
-/// A picture of a plane mesh.
+/// A picture of a mesh: of a plane one from the front, of a solid what is seen of its skin from a corner.
 ///
 /// Edges are drawn as the curves that they are. A field is interpolated by the shape functions of
 /// each cell and read off a colour bar.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MeshPicture<'a> {
+pub struct MeshPicture<'a, const D: usize = 2> {
     /// The mesh.
-    pub mesh: &'a Mesh<2>,
+    pub mesh: &'a Mesh<D>,
+    /// Where a solid is seen from.
+    pub view: View,
+    /// What of a solid is drawn, instead of its whole skin.
+    pub surface: Option<Vec<Facet>>,
     /// Title; may be empty.
     pub title: String,
     /// Unit of lengths, as it is written at the scale.
     pub unit: String,
     /// Displacement of every node \[mm\].
-    pub displacement: Option<Vec<[f64; 2]>>,
+    pub displacement: Option<Vec<[f64; D]>>,
     /// How many times the displacement is drawn.
     pub magnification: f64,
     /// What the cells are coloured by.
@@ -44,16 +50,25 @@ pub struct MeshPicture<'a> {
     /// Whether the contour of the undeformed body is drawn as well.
     pub outline: bool,
     /// Polylines drawn besides, of tools for instance \[mm\]; cut off not far from the body.
-    pub polylines: Vec<Vec<[f64; 2]>>,
-    /// Marks on top, with room for them around the body.
-    pub marks: Vec<Mark>,
+    pub polylines: Vec<Vec<[f64; D]>>,
+    /// Convex polygons that veil what is behind them, of tools in space for instance \[mm\]; cut off not far from the body.
+    pub veils: Vec<Vec<[f64; D]>>,
+    /// Marks on top, with room for them around the body; faint where the body hides them.
+    pub marks: Vec<Mark<D>>,
+    /// What the colours of dots mean, below the body.
+    pub keys: Vec<(String, &'static str)>,
 }
 
-impl<'a> MeshPicture<'a> {
+impl<'a, const D: usize> MeshPicture<'a, D> {
     /// A picture of the undeformed mesh.
-    pub fn new(mesh: &'a Mesh<2>, title: impl Into<String>) -> Self {
+    pub fn new(mesh: &'a Mesh<D>, title: impl Into<String>) -> Self {
         Self {
             mesh,
+            view: match D {
+                2 => View::front(),
+                _ => View::corner(),
+            },
+            surface: None,
             title: title.into(),
             unit: "mm".into(),
             displacement: None,
@@ -61,7 +76,9 @@ impl<'a> MeshPicture<'a> {
             field: None,
             outline: false,
             polylines: Vec::new(),
+            veils: Vec::new(),
             marks: Vec::new(),
+            keys: Vec::new(),
         }
     }
 
@@ -72,7 +89,7 @@ impl<'a> MeshPicture<'a> {
     }
 
     /// With the nodes displaced, `magnification` times as far as they are.
-    pub fn deformed(mut self, displacement: Vec<[f64; 2]>, magnification: f64) -> Self {
+    pub fn deformed(mut self, displacement: Vec<[f64; D]>, magnification: f64) -> Self {
         self.displacement = Some(displacement);
         self.magnification = magnification;
         self
@@ -94,13 +111,36 @@ impl<'a> MeshPicture<'a> {
     }
 
     /// With a polyline.
-    pub fn polyline(mut self, points: Vec<[f64; 2]>) -> Self {
+    pub fn polyline(mut self, points: Vec<[f64; D]>) -> Self {
         self.polylines.push(points);
         self
     }
 
+    /// With a polygon that veils what is behind it.
+    pub fn veil(mut self, corners: Vec<[f64; D]>) -> Self {
+        self.veils.push(corners);
+        self
+    }
+
+    /// Of these facets of a solid alone, seen against their mean normal.
+    pub fn surface(mut self, facets: Vec<Facet>) -> Self {
+        let nodes = self
+            .positions()
+            .unwrap_or_else(|_| self.mesh.nodes().to_vec());
+        let own = facets.iter().map(|&f| normal(self.mesh, &nodes, f));
+        self.view = View::against(own.sum());
+        self.surface = Some(facets);
+        self
+    }
+
+    /// With what a colour of dots means.
+    pub fn key(mut self, meaning: impl Into<String>, colour: &'static str) -> Self {
+        self.keys.push((meaning.into(), colour));
+        self
+    }
+
     /// With marks.
-    pub fn marks(mut self, marks: Vec<Mark>) -> Self {
+    pub fn marks(mut self, marks: Vec<Mark<D>>) -> Self {
         self.marks.extend(marks);
         self
     }
@@ -112,64 +152,92 @@ impl<'a> MeshPicture<'a> {
     /// [`PlotError::Length`] and [`PlotError::Displacement`] for displacements, and
     /// [`PlotError::Length`] and [`PlotError::NoValues`] for a field, that do not fit the mesh.
     pub fn to_svg(&self) -> Result<String, PlotError> {
-        let nodes = self.positions()?;
-        let bar = self
-            .field
-            .as_ref()
-            .map(|f| Bar::new(f, self.mesh.nodes().len()))
-            .transpose()?;
-        let sheet = Sheet::new(self, &nodes, bar.as_ref());
-        let pixels: Vec<[f64; 2]> = nodes.iter().map(|&x| sheet.place(x)).collect();
-        let mut svg = sheet.head();
-        let (grey, coloured): (Vec<usize>, Vec<usize>) =
-            (0..self.mesh.cell_count()).partition(|&cell| match &bar {
-                Some(bar) => self
-                    .mesh
-                    .cell_nodes(cell)
-                    .iter()
-                    .any(|&n| !bar.values[n].is_finite()),
-                None => true,
-            });
-        self.plain_cells(&mut svg, &grey, &pixels);
-        if let Some(bar) = &bar {
-            self.coloured_cells(&mut svg, &coloured, &pixels, bar);
+        let view = &self.view;
+        let seen = |x: &[f64; D]| view.seen(x);
+        let flat = |x: &[f64; D]| {
+            let [x, y, _] = view.seen(x);
+            [x, y]
+        };
+        let nodes: Vec<[f64; 3]> = self.positions()?.iter().map(seen).collect();
+        let still = || self.mesh.nodes().iter().map(seen).collect();
+        let axis = |i: usize| {
+            let [x, y, _] = view.seen(&std::array::from_fn::<f64, D, _>(|k| {
+                f64::from(u8::from(k == i))
+            }));
+            [x, y]
+        };
+        let marks = self.marks.iter();
+        Flat {
+            title: &self.title,
+            unit: &self.unit,
+            magnification: self.displacement.as_ref().map(|_| self.magnification),
+            still: (self.outline && self.displacement.is_some()).then(still),
+            faces: self.faces(&nodes),
+            nodes,
+            solid: D == 3,
+            field: self.field.as_ref(),
+            polylines: self
+                .polylines
+                .iter()
+                .map(|p| p.iter().map(flat).collect())
+                .collect(),
+            veils: self
+                .veils
+                .iter()
+                .map(|v| v.iter().map(seen).collect())
+                .collect(),
+            marks: marks
+                .map(|m| (m.map(flat), view.seen(&m.place())[2]))
+                .collect(),
+            keys: &self.keys,
+            axes: (D == 3).then(|| [axis(0), axis(1), axis(2)]),
         }
-        self.edges(&mut svg, &sheet, &pixels);
-        for points in &self.polylines {
-            // A point that is not finite interrupts the line.
-            for piece in points.split(|x| !x.iter().all(|v| v.is_finite())) {
-                for part in clip(piece, sheet.low, sheet.high) {
-                    let mut pen = Pen::new(FINE);
-                    pen.polyline(part.iter().map(|&x| sheet.place(x)));
-                    pen.stroke(&mut svg, "#333333", 2.2, "");
-                }
-            }
+        .to_svg()
+    }
+
+    /// Cells of the plane, or facets of a solid that face the eye.
+    fn faces(&self, seen: &[[f64; 3]]) -> Vec<Face> {
+        if D == 2 {
+            let face = |cell| Face {
+                kind: self.mesh.kind(cell),
+                nodes: self.mesh.cell_nodes(cell).to_vec(),
+            };
+            return (0..self.mesh.cell_count()).map(face).collect();
         }
-        marks::draw(&mut svg, &sheet, &self.marks);
-        if let Some(bar) = &bar {
-            sheet.bar(&mut svg, bar);
-        }
-        sheet.captions(&mut svg, self);
-        svg.push_str("</svg>");
-        Ok(svg)
+        let skin = match &self.surface {
+            Some(facets) => facets.clone(),
+            None => self.mesh.boundary_facets(),
+        };
+        let face = |facet: Facet| {
+            let kind = match self.mesh.facet_kind(facet) {
+                FacetKind::Tri3 => CellKind::Tri3,
+                FacetKind::Tri6 => CellKind::Tri6,
+                FacetKind::Quad8 => CellKind::Quad8,
+                FacetKind::Quad9 => CellKind::Quad9,
+                _ => CellKind::Quad4,
+            };
+            let nodes = self.mesh.facet_nodes(facet).collect();
+            (normal(self.mesh, seen, facet).z > 0.0).then_some(Face { kind, nodes })
+        };
+        skin.into_iter().filter_map(face).collect()
     }
 
     /// Nodes as drawn \[mm\].
-    fn positions(&self) -> Result<Vec<[f64; 2]>, PlotError> {
+    fn positions(&self) -> Result<Vec<[f64; D]>, PlotError> {
         let nodes = self.mesh.nodes();
         let Some(displacement) = &self.displacement else {
             return Ok(nodes.to_vec());
         };
         check_length("the displacement", displacement.len(), nodes.len())?;
         let magnification = self.magnification;
-        let place = |(node, (x, &u)): (usize, (&[f64; 2], &[f64; 2]))| {
-            let place = [x[0] + magnification * u[0], x[1] + magnification * u[1]];
+        let place = |(node, (x, &u)): (usize, (&[f64; D], &[f64; D]))| {
+            let place: [f64; D] = std::array::from_fn(|i| x[i] + magnification * u[i]);
             if place.iter().all(|v| v.abs() <= FARTHEST) {
                 Ok(place)
             } else {
                 Err(PlotError::Displacement {
                     node,
-                    displacement: u,
+                    displacement: u.to_vec(),
                     magnification,
                 })
             }
@@ -181,175 +249,24 @@ impl<'a> MeshPicture<'a> {
             .map(place)
             .collect()
     }
+}
 
-    /// Fills cells that have no value.
-    fn plain_cells(&self, svg: &mut String, cells: &[usize], pixels: &[[f64; 2]]) {
-        let mut pen = Pen::new(self.precision());
-        for &cell in cells {
-            let nodes = self.mesh.cell_nodes(cell);
-            for (k, facet) in self.mesh.kind(cell).facets().iter().enumerate() {
-                let ends = [pixels[nodes[facet[0]]], pixels[nodes[facet[1]]]];
-                if k == 0 {
-                    pen.move_to(ends[0]);
-                }
-                pen.edge(ends, facet.get(2).map(|&m| pixels[nodes[m]]));
-            }
-            pen.close();
-        }
-        pen.fill(svg, "#e8ecf0");
-    }
-
-    /// Fills cells with the colours of a field, by patches about [`PATCH`] wide.
-    fn coloured_cells(&self, svg: &mut String, cells: &[usize], pixels: &[[f64; 2]], bar: &Bar) {
-        let mut size = PATCH;
-        let divisions = loop {
-            let divisions: Vec<[usize; 2]> = cells
-                .iter()
-                .map(|&cell| self.divisions(cell, pixels, size))
-                .collect();
-            let patches: usize = divisions.iter().map(|d| d[0] * d[1]).sum();
-            if patches <= MOST_PATCHES.max(cells.len()) {
-                break divisions;
-            }
-            size *= 1.3;
-        };
-        let mut pens = vec![Pen::new(COARSE); LEVELS];
-        let mut tables: BTreeMap<(CellKind, [usize; 2]), Table> = BTreeMap::new();
-        for (&cell, &division) in cells.iter().zip(&divisions) {
-            let kind = self.mesh.kind(cell);
-            let nodes = self.mesh.cell_nodes(cell);
-            let table = tables
-                .entry((kind, division))
-                .or_insert_with(|| Table::new(kind, division));
-            let corners: Vec<Corner> = table
-                .corners
-                .iter()
-                .map(|shape| Corner {
-                    place: [0, 1].map(|i| combine(shape, nodes, |n| pixels[n][i])),
-                    // Quadratic interpolation overshoots the nodal values a little.
-                    part: bar.part(combine(shape, nodes, |n| bar.values[n])),
-                })
-                .collect();
-            for patch in &table.patches {
-                let patch: Vec<Corner> = patch.iter().map(|&k| corners[k]).collect();
-                fill_bands(&mut pens, &patch);
-            }
-        }
-        for (level, pen) in pens.iter().enumerate() {
-            pen.fill(svg, &colour(level));
-        }
-    }
-
-    /// Patches of a cell along the two coordinates of its reference cell.
-    fn divisions(&self, cell: usize, pixels: &[[f64; 2]], size: f64) -> [usize; 2] {
-        let nodes = self.mesh.cell_nodes(cell);
-        let kind = self.mesh.kind(cell);
-        let mut longest = [0.0f64; 2];
-        for (k, facet) in kind.facets().iter().enumerate() {
-            let [a, b] = [pixels[nodes[facet[0]]], pixels[nodes[facet[1]]]];
-            longest[k % 2] = longest[k % 2].max((a[0] - b[0]).hypot(a[1] - b[1]));
-        }
-        if kind.corner_count() == 3 {
-            longest = [longest[0].max(longest[1]); 2];
-        }
-        longest.map(|length| ((length / size).ceil() as usize).clamp(1, 100))
-    }
-
-    /// Draws the edges between cells and the contour of the body.
-    fn edges(&self, svg: &mut String, sheet: &Sheet, pixels: &[[f64; 2]]) {
-        // By end nodes, in order: end nodes, mid-side node, number of cells.
-        let mut edges: BTreeMap<[usize; 2], (Option<usize>, usize)> = BTreeMap::new();
-        for cell in 0..self.mesh.cell_count() {
-            let nodes = self.mesh.cell_nodes(cell);
-            for facet in self.mesh.kind(cell).facets() {
-                let mut ends = [nodes[facet[0]], nodes[facet[1]]];
-                ends.sort_unstable();
-                let middle = facet.get(2).map(|&m| nodes[m]);
-                edges.entry(ends).or_insert((middle, 0)).1 += 1;
-            }
-        }
-        let cell = sheet.typical_cell(self.mesh.cell_count());
-        let (ink, opacity) = match self.field {
-            Some(_) => ("#000000", r#" stroke-opacity="0.4""#),
-            None => ("#5a6673", ""),
-        };
-        if cell >= 4.0 {
-            let mut inner = Pen::new(self.precision());
-            for (&[a, b], &(middle, _)) in edges.iter().filter(|(_, edge)| edge.1 > 1) {
-                inner.move_to(pixels[a]);
-                inner.edge([pixels[a], pixels[b]], middle.map(|m| pixels[m]));
-            }
-            inner.stroke(svg, ink, (cell / 22.0).clamp(0.2, 0.7), opacity);
-        }
-        let contour: Vec<Edge> = edges
-            .iter()
-            .filter(|(_, edge)| edge.1 == 1)
-            .map(|(&ends, &(middle, _))| (ends, middle))
-            .collect();
-        let chains = chains(&contour);
-        let draw = |place: &dyn Fn(usize) -> [f64; 2]| {
-            let mut pen = Pen::new(FINE);
-            for chain in &chains {
-                for (k, &([a, b], middle)) in chain.iter().enumerate() {
-                    if k == 0 {
-                        pen.move_to(place(a));
-                    }
-                    pen.edge([place(a), place(b)], middle.map(place));
-                }
-            }
-            pen
-        };
-        if self.outline && self.displacement.is_some() {
-            let undeformed = draw(&|n| sheet.place(self.mesh.nodes()[n]));
-            undeformed.stroke(svg, "#666666", 1.0, r#" stroke-dasharray="5 3""#);
-        }
-        draw(&|n| pixels[n]).stroke(svg, INK, 1.1, "");
-    }
-
-    /// Coordinates of a large mesh are short.
-    fn precision(&self) -> f64 {
-        if self.mesh.cell_count() > 1000 {
-            COARSE
-        } else {
-            FINE
-        }
+/// Twice the area of a facet along its outward normal, by its diagonals or two of its sides.
+fn normal<const D: usize, const N: usize>(
+    mesh: &Mesh<D>,
+    places: &[[f64; N]],
+    facet: Facet,
+) -> Vector3<f64> {
+    let corners: Vec<usize> = mesh.facet_nodes(facet).collect();
+    let side = |a: usize, b: usize| {
+        let [a, b] = [&places[corners[a]], &places[corners[b]]];
+        Vector3::from_fn(|i, _| b.get(i).unwrap_or(&0.0) - a.get(i).unwrap_or(&0.0))
+    };
+    match mesh.facet_kind(facet) {
+        FacetKind::Tri3 | FacetKind::Tri6 => side(0, 1).cross(&side(0, 2)),
+        _ => side(0, 2).cross(&side(1, 3)),
     }
 }
 
 /// Farthest coordinate of a node: the size of the body is a finite number.
 const FARTHEST: f64 = f64::MAX / 4.0;
-/// Width of a patch in which the field is taken for linear.
-const PATCH: f64 = 8.0;
-/// Patches of a picture: keep it below three megabytes.
-const MOST_PATCHES: usize = 10_000;
-
-/// An edge of the mesh: end nodes, mid-side node.
-type Edge = ([usize; 2], Option<usize>);
-
-/// Edges in chains, end to end, so that dashes run on.
-fn chains(edges: &[Edge]) -> Vec<Vec<Edge>> {
-    let mut at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for (k, (ends, _)) in edges.iter().enumerate() {
-        for &end in ends {
-            at.entry(end).or_default().push(k);
-        }
-    }
-    let mut used = vec![false; edges.len()];
-    let mut chains = Vec::new();
-    for first in 0..edges.len() {
-        let mut chain = Vec::new();
-        let mut next = (!used[first]).then_some((first, edges[first].0[0]));
-        while let Some((k, from)) = next {
-            used[k] = true;
-            let ([a, b], middle) = edges[k];
-            let to = if a == from { b } else { a };
-            chain.push(([from, to], middle));
-            let free = at.get(&to).and_then(|at| at.iter().find(|&&k| !used[k]));
-            next = free.map(|&k| (k, to));
-        }
-        if !chain.is_empty() {
-            chains.push(chain);
-        }
-    }
-    chains
-}

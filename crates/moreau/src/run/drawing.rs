@@ -69,46 +69,56 @@ pub(super) fn pictures_of(
     };
     let forces = pictures::over_time(&history, deck).and_then(|chart| chart.to_svg().ok());
     write("history.svg".into(), forces)?;
-    if let Some(mesh) = simulation.plane() {
-        let contacts = contact_table(directory, &[number])?;
-        let at = drawing.increment.map_or(String::new(), |n| format!("-{n}"));
-        write(
-            format!("contact{at}.svg"),
-            pictures::tractions(&contacts, number, deck),
-        )?;
-        let files = vtu::bodies(directory);
-        let arrays = match files.iter().find(|f| f.0 == number) {
-            Some((_, _, path)) => Some(vtu::read_point_data(path)?),
-            None if drawing.increment.is_some() => {
-                let all: Vec<String> = files.iter().map(|f| f.0.to_string()).collect();
-                return Err(RunError::Unknown {
-                    what: format!("the body of increment {number}"),
-                    expected: all.join(", "),
-                });
-            }
-            None => last.map(<[_]>::to_vec),
-        };
-        let field = drawing.field.as_deref();
-        if let Some(arrays) = arrays {
-            let name = field.unwrap_or(pictures::usual_field(deck));
-            if pictures::field(&arrays, name).is_none() {
-                let all = pictures::fields(&arrays);
-                let near = nearest(name, all.iter().map(String::as_str));
-                let near = near.map_or(String::new(), |n| format!(" (did you mean {n}?)"));
-                return Err(RunError::Unknown {
-                    what: format!("the field \"{name}\"{near}"),
-                    expected: all.join(", "),
-                });
-            }
-            let at = increments.iter().position(|&n| n == number);
-            let at = (&history, at.unwrap_or(0));
-            let svg = pictures::deformed(mesh, deck, &arrays, name, at, drawing.magnification);
-            write(format!("deformed{asked}.svg"), svg)?;
+    let files = vtu::bodies(directory);
+    let arrays = match files.iter().find(|f| f.0 == number) {
+        Some((_, _, path)) => Some(vtu::read_point_data(path)?),
+        None if drawing.increment.is_some() => {
+            let all: Vec<String> = files.iter().map(|f| f.0.to_string()).collect();
+            return Err(RunError::Unknown {
+                what: format!("the body of increment {number}"),
+                expected: all.join(", "),
+            });
         }
+        None => last.map(<[_]>::to_vec),
+    };
+    let name = drawing.field.as_deref();
+    let name = name.unwrap_or(pictures::usual_field(deck));
+    if let Some(arrays) = &arrays {
+        known(name, arrays)?;
     }
+    let contacts = contact_table(directory, &[number])?;
+    let row = increments.iter().position(|&n| n == number).unwrap_or(0);
+    let (contact, deformed, still) = either!(simulation.course(), course => {
+        let (mesh, arrays) = (course.driver().mesh(), arrays.as_deref());
+        let of_field = |name: &str, magnification| {
+            pictures::deformed(mesh, deck, arrays?, name, (&history, row), magnification)
+        };
+        (
+            pictures::contact(mesh, deck, &contacts, number, arrays),
+            of_field(name, drawing.magnification),
+            of_field(pictures::usual_field(deck), None),
+        )
+    });
+    let at = drawing.increment.map_or(String::new(), |n| format!("-{n}"));
+    write(format!("contact{at}.svg"), contact.clone())?;
+    write(format!("deformed{asked}.svg"), deformed)?;
     let page = either!(simulation.course(), course => {
-        report::report(course.driver(), deck, directory, last)
+        report::report(course.driver(), deck, directory, last, [still, contact])
     })?;
     write("report.html".into(), Some(page))?;
     Ok(written)
+}
+
+/// That a field is there.
+fn known(name: &str, arrays: &[Array]) -> Result<(), RunError> {
+    if pictures::field(arrays, name).is_some() {
+        return Ok(());
+    }
+    let all = pictures::fields(arrays);
+    let near = nearest(name, all.iter().map(String::as_str));
+    let near = near.map_or(String::new(), |n| format!(" (did you mean {n}?)"));
+    Err(RunError::Unknown {
+        what: format!("the field \"{name}\"{near}"),
+        expected: all.join(", "),
+    })
 }

@@ -3,11 +3,11 @@
 mod viewer;
 
 use super::RunError;
-use super::files::{contact_table, history_table, read_text};
+use super::files::{history_table, read_text};
 use crate::deck::Deck;
 use crate::driver::Driver;
 use crate::numbers::shown;
-use crate::simulation::pictures::{over_time, tractions};
+use crate::simulation::pictures::over_time;
 use crate::table::Table;
 use crate::vtu::Array;
 use minijinja::value::Value;
@@ -15,16 +15,17 @@ use minijinja::{Environment, context};
 use std::path::Path;
 use viewer::viewer;
 
-/// The page of a run. `last` is the end of the run where no file has it.
+/// The page of a run. `last` is the end of the run where no file has it; The stills are its deformed body and its
+/// contact.
 pub(super) fn report<const D: usize>(
     driver: &Driver<D>,
     deck: &Deck,
     directory: &Path,
     last: Option<&[Array]>,
+    [deformed, contact]: [Option<String>; 2],
 ) -> Result<String, RunError> {
     let history = history_table(directory)?;
     let increment = history.numbers("increment").pop().unwrap_or(0.0) as usize;
-    let contacts = contact_table(directory, &[increment])?;
     let resolved = read_text(&directory.join("deck.resolved.toml"))?;
     let run = read_text(&directory.join("run.json"))?;
     let run: serde_json::Value = serde_json::from_str(&run).unwrap_or_default();
@@ -49,7 +50,9 @@ pub(super) fn report<const D: usize>(
         certificate => certificate(&history, deck),
         deck => resolved,
         history => forces.as_ref().and_then(|chart| chart.to_svg().ok()),
-        contact => if D == 2 { tractions(&contacts, increment, deck) } else { None },
+        deformed => deformed,
+        contact => contact,
+        solid => D == 3,
         // No name in it may end the script.
         data => viewer(driver, deck, directory, forces.as_ref(), (increment, last))?.to_string().replace("</", "<\\/"),
     };

@@ -115,11 +115,9 @@ impl History {
             if self.moments {
                 let moment = driver.tool_moment(tool).ok();
                 let axes = if D == 3 { 0..3 } else { 2..3 };
-                row.extend(axes.map(|i| moment.map_or(f64::NAN, |m| m[i])));
-                if D == 2 {
-                    let turn = driver.tool_turn(tool).ok();
-                    row.push(turn.map_or(f64::NAN, |t| t.z.to_degrees()));
-                }
+                row.extend(axes.clone().map(|i| moment.map_or(f64::NAN, |m| m[i])));
+                let turn = driver.tool_turn(tool).ok();
+                row.extend(axes.map(|i| turn.map_or(f64::NAN, |t| t[i].to_degrees())));
             }
         }
         for surface in &self.surfaces {

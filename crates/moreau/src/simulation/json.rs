@@ -110,6 +110,12 @@ const RUN: &[Key<Outcome>] = &[
         json!(o.threads)
     }),
     key(
+        "tolerance",
+        Unit::None,
+        "Out-of-balance force at which increments were accepted, over the largest nodal force.",
+        |o| json!(o.tolerance),
+    ),
+    key(
         "certificate",
         Unit::None,
         "How far the contact law is from being met, the worst of all increments; an object.",

@@ -220,6 +220,8 @@ pub struct Outcome {
     pub dofs: usize,
     /// Threads that work on cells.
     pub threads: usize,
+    /// Out-of-balance force at which increments were accepted, over the largest nodal force.
+    pub tolerance: f64,
     /// The worst of all increments.
     pub certificate: Certificate,
     /// The largest gap, see [`IncrementReport::relative_gap`].
@@ -309,6 +311,7 @@ pub(super) fn conclude<const D: usize>(
         cuts: tally.cuts,
         dofs: D * driver.mesh().nodes().len(),
         threads: threads(),
+        tolerance: deck.solver.tolerance,
         certificate: tally.certificate,
         relative_gap: tally.relative_gap,
         criticality: tally.criticality.map(|c| c.1),

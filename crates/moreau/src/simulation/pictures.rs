@@ -6,8 +6,10 @@ mod conditions;
 mod tools;
 
 use crate::deck::{Deck, Units};
-use crate::mesh::Mesh;
-use crate::plot::{Chart, MeshPicture, Style};
+use crate::laws::Status;
+use crate::mesh::{Facet, Mesh};
+use crate::plot::{Chart, Mark, MeshPicture, Style, below_each_other};
+use crate::simulation::status_name;
 use crate::table::Table;
 use crate::vtu::Array;
 use tools::outlines;
@@ -195,11 +197,11 @@ pub(crate) fn field(arrays: &[Array], name: &str) -> Option<Vec<f64>> {
     Some(array.values.chunks(array.components).map(value).collect())
 }
 
-/// Displacement of every node in the plane.
-fn displacement(arrays: &[Array]) -> Option<Vec<[f64; 2]>> {
+/// Displacement of every node.
+fn displacement<const D: usize>(arrays: &[Array]) -> Option<Vec<[f64; D]>> {
     let array = arrays.iter().find(|a| a.name == "displacement")?;
-    let plane = |v: &[f64]| Some([*v.first()?, *v.get(1)?]);
-    array.values.chunks(array.components).map(plane).collect()
+    let own = |v: &[f64]| v.get(..D)?.try_into().ok();
+    array.values.chunks(array.components).map(own).collect()
 }
 
 /// How many times displacements are drawn so that they are seen but not out of shape; never smaller than they are,
@@ -213,21 +215,21 @@ pub(crate) fn usual_magnification(deck: &Deck, size: f64, largest: f64) -> f64 {
 
 /// The deformed body with a field on it, and the tools where a row of the history has them; nothing if the arrays
 /// do not have what it takes.
-pub(crate) fn deformed(
-    mesh: &Mesh<2>,
+pub(crate) fn deformed<const D: usize>(
+    mesh: &Mesh<D>,
     deck: &Deck,
     arrays: &[Array],
     name: &str,
-    (history, row): (&Table, usize),
+    at: (&Table, usize),
     magnification: Option<f64>,
 ) -> Option<String> {
-    let mut displacement = displacement(arrays)?;
+    let mut displacement = displacement::<D>(arrays)?;
     let mut values = field(arrays, name)?;
     displacement.truncate(mesh.nodes().len());
     values.truncate(mesh.nodes().len());
     let largest = displacement
         .iter()
-        .map(|u| u[0].hypot(u[1]))
+        .map(|u| u.iter().fold(0.0f64, |m, v| m.hypot(*v)))
         .fold(0.0, f64::max);
     let magnification = magnification.unwrap_or(usual_magnification(deck, mesh.size(), largest));
     let picture = MeshPicture::new(mesh, &deck.title)
@@ -235,15 +237,143 @@ pub(crate) fn deformed(
         .field(label(name, deck.units), values)
         .unit(deck.units.length())
         .outline();
-    let tools = outlines(deck, (history, row), mesh.size(), magnification);
-    let picture = tools.into_iter().fold(picture, MeshPicture::polyline);
-    picture.to_svg().ok()
+    with_tools(picture, deck, at, magnification).to_svg().ok()
 }
 
-/// What a step of a plane deck is to do, before anything is computed: the mesh, the tools where they are at first, supports,
+/// A picture with the tools of a deck as well.
+fn with_tools<'a, const D: usize>(
+    picture: MeshPicture<'a, D>,
+    deck: &Deck,
+    at: (&Table, usize),
+    magnification: f64,
+) -> MeshPicture<'a, D> {
+    let tools = outlines(deck, at, picture.mesh, magnification);
+    match D {
+        2 => tools.into_iter().fold(picture, MeshPicture::polyline),
+        _ => tools.into_iter().fold(picture, MeshPicture::veil),
+    }
+}
+
+/// The statuses of contact with their colours.
+const STATUSES: [(Status, &str); 3] = [
+    (Status::Open, "#9aa1ab"),
+    (Status::Stick, "#1f5fbf"),
+    (Status::Slip, "#e07b00"),
+];
+
+/// Contact in one increment: along the surfaces of a plane body, on those of a solid.
+pub(crate) fn contact<const D: usize>(
+    mesh: &Mesh<D>,
+    deck: &Deck,
+    contacts: &Table,
+    increment: usize,
+    arrays: Option<&[Array]>,
+) -> Option<String> {
+    match D {
+        2 => tractions(contacts, increment, deck),
+        _ => surfaces(mesh, deck, contacts, increment, arrays),
+    }
+}
+
+/// The contact surfaces of a solid in one increment, each seen against its mean normal with its pressure and the
+/// statuses of its points, below each other; where they are then if strains are large.
+fn surfaces<const D: usize>(
+    mesh: &Mesh<D>,
+    deck: &Deck,
+    contacts: &Table,
+    increment: usize,
+    arrays: Option<&[Array]>,
+) -> Option<String> {
+    let (names, status) = (contacts.texts("contact"), contacts.texts("status"));
+    let [rows, node, pressure] = ["increment", "node", "p_n"].map(|name| contacts.numbers(name));
+    let own: Vec<usize> = (0..rows.len())
+        .filter(|&k| rows[k] == increment as f64)
+        .collect();
+    let moved = arrays
+        .filter(|_| deck.finite.is_some())
+        .and_then(displacement::<D>);
+    let mut sheets = Vec::new();
+    let mut drawn: Vec<&str> = Vec::new();
+    for &k in &own {
+        let name = names[k];
+        if drawn.contains(&name) {
+            continue;
+        }
+        drawn.push(name);
+        let facets = mesh.facet_group(name).ok()?.to_vec();
+        let points: Vec<usize> = own.iter().copied().filter(|&k| names[k] == name).collect();
+        let mut values = vec![f64::NAN; mesh.nodes().len()];
+        for &k in &points {
+            *values.get_mut(node[k] as usize)? = pressure[k];
+        }
+        between(mesh, &facets, &mut values);
+        let title = match deck.title.as_str() {
+            "" => name.to_owned(),
+            title => format!("{title}: {name}"),
+        };
+        let mut picture = MeshPicture::new(mesh, title)
+            .field(
+                format!("contact pressure [{}]", deck.units.stress()),
+                values,
+            )
+            .unit(deck.units.length());
+        if let Some(u) = &moved {
+            let u = u.iter().take(mesh.nodes().len()).copied().collect();
+            picture = picture.deformed(u, 1.0);
+        }
+        picture = picture.surface(facets);
+        let place = |n: usize| {
+            let u = moved.as_ref().and_then(|u| u.get(n));
+            std::array::from_fn(|i| mesh.nodes()[n][i] + u.map_or(0.0, |u| u[i]))
+        };
+        for (kind, colour) in STATUSES {
+            let kind = status_name(kind);
+            let alike: Vec<usize> = points
+                .iter()
+                .copied()
+                .filter(|&k| status[k] == kind)
+                .collect();
+            if !alike.is_empty() {
+                let dot = |&k: &usize| Mark::Dot {
+                    at: place(node[k] as usize),
+                    colour,
+                };
+                picture = picture
+                    .marks(alike.iter().map(dot).collect())
+                    .key(format!("{kind}: {}", alike.len()), colour);
+            }
+        }
+        sheets.push(picture.to_svg().ok()?);
+    }
+    (!sheets.is_empty()).then(|| below_each_other(&sheets))
+}
+
+/// Values at nodes between corners that have one, where no contact is: their mean.
+fn between<const D: usize>(mesh: &Mesh<D>, facets: &[Facet], values: &mut [f64]) {
+    for &facet in facets {
+        let nodes: Vec<usize> = mesh.facet_nodes(facet).collect();
+        let corners = mesh.facet_kind(facet).corner_count();
+        for (k, &n) in nodes.iter().enumerate().skip(corners) {
+            if values[n].is_nan() {
+                values[n] = match k < 2 * corners {
+                    true => 0.5 * (values[nodes[k - corners]] + values[nodes[(k + 1) % corners]]),
+                    false => {
+                        nodes[..corners].iter().map(|&n| values[n]).sum::<f64>() / corners as f64
+                    }
+                };
+            }
+        }
+    }
+}
+
+/// What a step of a deck is to do, before anything is computed: the mesh, the tools where they are at first, supports,
 /// motions, loads and contacts.
 #[cfg(feature = "command")]
-pub(crate) fn planned(deck: &Deck, setup: &crate::deck::Setup<2>, step: usize) -> Option<String> {
+pub(crate) fn planned<const D: usize>(
+    deck: &Deck,
+    setup: &crate::deck::Setup<D>,
+    step: usize,
+) -> Option<String> {
     let entry = deck.steps.get(step)?;
     let mesh = setup.driver.mesh();
     let title = match deck.title.as_str() {
@@ -254,9 +384,7 @@ pub(crate) fn planned(deck: &Deck, setup: &crate::deck::Setup<2>, step: usize) -
         .unit(deck.units.length())
         .marks(conditions::marks(deck, setup, entry));
     let none = Table::new(Vec::new());
-    let tools = outlines(deck, (&none, 0), mesh.size(), 1.0);
-    let picture = tools.into_iter().fold(picture, MeshPicture::polyline);
-    picture.to_svg().ok()
+    with_tools(picture, deck, (&none, 0), 1.0).to_svg().ok()
 }
 
 /// 1, 2 or 5 times a power of ten, at most the value.

@@ -429,3 +429,51 @@ fn two_coefficients_of_friction_have_an_axis() {
         &["needs analysis = \"solid\""],
     );
 }
+
+#[test]
+fn a_table_of_friction_never_falls_and_is_concave() {
+    let table = |rows: &str| format!("friction = {{ table = {rows} }}");
+    let (deck, problem, findings) =
+        open(&DECK.replace("friction = 0.1", &table("[[0, 0], [200, 30], [600, 60]]")));
+    assert!(problem.is_some() && findings.errors() == 0);
+    let once = deck.resolved();
+    let shown = "friction = { table = [[0.0, 0.0], [200.0, 30.0], [600.0, 60.0]] }";
+    assert!(once.contains(shown), "{once}");
+    assert_eq!(open(&once).0.resolved(), once);
+    for (rows, words) in [
+        (
+            "[[0, 0], [200, 30], [600, 20]]",
+            "row 3 of the friction table falls",
+        ),
+        (
+            "[[0, 0], [200, 10], [600, 60]]",
+            "row 3 of the friction table is steeper",
+        ),
+        (
+            "[[10, 0], [200, 10]]",
+            "row 1 of the friction table does not start at no pressure",
+        ),
+        ("[[0, 0], [200]]", "expected [pressure, shear]"),
+        ("[]", "row 1 of the friction table is missing"),
+    ] {
+        says("friction = 0.1", &table(rows), "friction =", &[words]);
+    }
+    says(
+        "friction = 0.1",
+        "friction = { table = [[0, 0], [1, 1]], coulomb = 0.1 }",
+        "friction =",
+        &["friction has table and coulomb, expected one law"],
+    );
+}
+
+#[test]
+fn a_tolerance_is_between_rounding_and_no_answer() {
+    for value in ["1e-14", "0.1", "-1e-10"] {
+        says(
+            "[[tool]]",
+            &format!("[solver]\ntolerance = {value}\n[[tool]]"),
+            "tolerance =",
+            &["expected a part of the largest force"],
+        );
+    }
+}

@@ -2,8 +2,8 @@
 //! that do not fit.
 
 use super::{block, texts};
-use moreau::mesh::{CellKind, block2, uniform};
-use moreau::plot::{MeshPicture, PlotError};
+use moreau::mesh::{CellKind, block2, block3, uniform};
+use moreau::plot::{Mark, MeshPicture, PlotError};
 
 const PLANE: [CellKind; 5] = [
     CellKind::Tri3,
@@ -175,5 +175,91 @@ fn data_that_do_not_fit_the_mesh_are_errors() {
     ] {
         let error = picture().field("f", values).to_svg().unwrap_err();
         assert_eq!(error, PlotError::NoValues { label: "f".into() });
+    }
+}
+
+/// Of a block three sides are seen, whatever its cells: as many fills in the colours of the bar as sides have faces, and
+/// none of the inner value.
+#[test]
+fn a_solid_is_drawn_by_what_is_seen_of_it() {
+    for kind in [
+        CellKind::Tet4,
+        CellKind::Tet10,
+        CellKind::Hex8,
+        CellKind::Hex20,
+        CellKind::Hex27,
+    ] {
+        let axis = || uniform(0.0, 2.0, 2);
+        let mesh = block3("b", kind, &axis(), &axis(), &axis()).expect("a mesh");
+        // 1 on what the eye sees, 0 on the sides behind.
+        let front = |x: &[f64; 3]| f64::from(u8::from(x.iter().any(|v| *v > 1.99)));
+        let values: Vec<f64> = mesh.nodes().iter().map(front).collect();
+        let seen = |x: [f64; 3]| Mark::Support {
+            at: x,
+            from: [0.0, 1.0, 0.0],
+        };
+        let picture = MeshPicture::new(&mesh, "block")
+            .field("seen [–]", values)
+            .marks(vec![seen([1.0, 2.0, 1.0]), seen([1.0, 0.0, 1.0])])
+            .veil(vec![
+                [-1.0, 2.0, -1.0],
+                [-1.0, 2.0, 1e9],
+                [1e9, 2.0, 1e9],
+                [1e9, 2.0, -1.0],
+            ]);
+        let svg = picture.to_svg().expect("a picture");
+        let texts = texts(&svg);
+        for text in ["block", "seen [–]", "x", "y", "z"] {
+            assert!(texts.iter().any(|t| t == text), "{text} in {texts:?}");
+        }
+        // The support below is hidden.
+        assert_eq!(svg.matches("<g opacity").count(), 1, "{kind}");
+        assert_eq!(svg.matches("fill-opacity").count(), 1, "{kind}");
+        assert_eq!(Ok(svg), picture.to_svg());
+        // Seen from below against its normal: nothing of the marks on top.
+        let below = mesh.facet_group("b.bottom").expect("a group").to_vec();
+        let svg = MeshPicture::new(&mesh, "")
+            .surface(below)
+            .to_svg()
+            .expect("a picture");
+        let ticks = self::texts(&svg);
+        assert!(
+            ticks.contains(&"x".into())
+                && ticks.contains(&"z".into())
+                && !ticks.contains(&"y".into())
+        );
+    }
+}
+
+/// Labels at one place are beside each other.
+#[test]
+fn labels_do_not_cover_each_other() {
+    let mesh = block(CellKind::Quad4);
+    let label = |text: &str| Mark::Label {
+        at: [1.0, 1.0],
+        towards: [0.0, 1.0],
+        text: text.into(),
+        colour: "#333333",
+    };
+    let marks = vec![
+        label("one of them"),
+        label("two of them"),
+        label("three of them"),
+    ];
+    let svg = MeshPicture::new(&mesh, "")
+        .marks(marks)
+        .to_svg()
+        .expect("a picture");
+    let height = |text: &str| -> f64 {
+        let before = svg.split(&format!(">{text}<")).next().expect("a text");
+        let y = before
+            .rsplit(" y=\"")
+            .next()
+            .and_then(|y| y.split('"').next());
+        y.and_then(|y| y.parse().ok()).expect("a place")
+    };
+    let at = ["one of them", "two of them", "three of them"].map(height);
+    for (i, a) in at.iter().enumerate() {
+        assert!(at[..i].iter().all(|b| (a - b).abs() > 12.0), "{at:?}");
     }
 }

@@ -1,6 +1,7 @@
 //! A deck in memory, stepped from outside.
 
 mod interrupted;
+mod keys;
 mod laws;
 mod replaced;
 mod saved;

@@ -22,6 +22,10 @@ from .tables import frame
 _SAMPLES = np.concatenate([[0.0], np.geomspace(1e-6, 3.0, 500)])
 
 
+# Pressures at which a function of friction is sampled, over the largest of Young's moduli.
+_PRESSURES = np.concatenate([[0.0], np.geomspace(1e-9, 1.0, 500)])
+
+
 class Deck:
     """A problem: the keys of a deck, which the documentation of decks explains.
 
@@ -31,12 +35,13 @@ class Deck:
 
     In keys, ``mesh`` may also be a :class:`Mesh`, a mesh of meshio or of pyvista, or a list of what
     :func:`moreau_fem.block` returns; ``hardening`` of a material may be a function of the equivalent plastic strain:
-    the stress that it adds to ``yield_stress``, sampled at 501 strains from 0 to 3.
+    the stress that it adds to ``yield_stress``, sampled at 501 strains from 0 to 3; ``friction`` of a contact a function
+    of the pressure: the bound of the shear, sampled at 501 pressures up to the largest of Young's moduli.
 
     Raises
     ------
     DeckError
-        For a function of hardening that softens.
+        For a function of hardening that softens, or of friction that falls or is not concave.
     TypeError
         For what no deck can hold.
     OSError
@@ -85,6 +90,10 @@ class Deck:
                 plain[name] = self._mesh(value)
             elif name == "material":
                 plain[name] = [_dashed(_sampled(material)) for material in value]
+            elif name == "contact":
+                moduli = [material.get("young") for material in keys.get("material", [])]
+                stiffest = max((float(young) for young in moduli if isinstance(young, (int, float))), default=0.0)
+                plain[name] = [_dashed(_bounded(contact, stiffest or 1.0)) for contact in value]
             elif name == "expect":
                 # Its keys are the names of columns.
                 plain[name] = value
@@ -239,3 +248,30 @@ def _sampled(material: Mapping[str, Any]) -> dict[str, Any]:
 
 def _softening(message: str) -> Finding:
     return Finding("error", "values", message, "hardening", None, 0, 0)
+
+
+def _bounded(contact: Mapping[str, Any], stiffest: float) -> dict[str, Any]:
+    """A contact with a function of friction as a table, up to a pressure that no contact reaches."""
+    given = {name.replace("_", "-"): value for name, value in contact.items()}
+    friction: Callable[[Any], Any] | Any = given.get("friction")
+    if not callable(friction):
+        return given
+    pressures = stiffest * _PRESSURES
+    shear = np.array([float(friction(p)) for p in pressures.tolist()])
+    on = given.get("surface")
+    slopes = np.diff(shear) / np.diff(pressures)
+    if not np.isfinite(shear).all() or shear[0] < 0.0:
+        message = f"friction of {on!r} is {shear[0]} at no pressure, expected a shear >= 0 and finite numbers"
+    elif (slopes < -1e-9 * slopes[0]).any():
+        at = pressures[1 + int(np.flatnonzero(slopes < -1e-9 * slopes[0])[0])]
+        message = f"friction of {on!r} falls at the pressure {at:.4g}, expected a shear that does not fall"
+    elif (np.diff(slopes) > 1e-9 * abs(slopes[0])).any():
+        at = pressures[1 + int(np.flatnonzero(np.diff(slopes) > 1e-9 * abs(slopes[0]))[0])]
+        message = f"friction of {on!r} rises faster from the pressure {at:.4g} on, expected a concave function"
+    else:
+        # Without what rounding adds.
+        slopes = np.maximum(np.minimum.accumulate(slopes), 0.0)
+        shear = shear[0] + np.concatenate([[0.0], np.cumsum(slopes * np.diff(pressures))])
+        given["friction"] = {"table": [list(row) for row in zip(pressures.tolist(), shear.tolist())]}
+        return given
+    raise DeckError(message, [Finding("error", "values", message, "friction", None, 0, 0)])

@@ -13,7 +13,8 @@ use crate::deck::finding::{At, Findings};
 use crate::driver::{Analysis, Model, ModelError};
 use crate::laws::{
     AnisotropicCoulomb, Coulomb, DruckerPrager, Elastic, ElasticDruckerPrager, Friction, Hill,
-    Isotropic, LawError, LimitedCoulomb, Orthotropic, PanelLaw, Parameter, Tresca, VonMises,
+    Isotropic, LawError, LimitedCoulomb, Orthotropic, PanelLaw, Parameter, ShearTable, Tresca,
+    VonMises,
 };
 use crate::mesh::{CellKind, Integration, Mesh, MeshError};
 use crate::numbers::shown;
@@ -110,6 +111,19 @@ fn friction(entry: &FrictionEntry) -> Result<Friction, (Range<usize>, LawError)>
         FrictionEntry::Orthotropic(mu, _) => AnisotropicCoulomb::new(mu.value[0], mu.value[1])
             .map_err(|error| (mu.span.clone(), error))?
             .into(),
+        FrictionEntry::Table(rows) => {
+            let points: Vec<[f64; 2]> = rows.value.iter().map(|row| row.value).collect();
+            let law = ShearTable::new(&points).map_err(|error| {
+                let row = match error {
+                    LawError::ShearTable { row, .. } => rows.value.get(row - 1),
+                    _ => None,
+                };
+                (row.map_or(&rows.span, |row| &row.span).clone(), error)
+            })?;
+            // A law lives as long as the program, and is a few numbers.
+            let law: &'static ShearTable = Box::leak(Box::new(law));
+            law.into()
+        }
     })
 }
 

@@ -149,7 +149,7 @@ fn isotropic(table: &Table<'_>) -> Option<At<Hardening>> {
 }
 
 /// An array of N numbers.
-fn row<const N: usize>(
+pub(super) fn row<const N: usize>(
     value: Value<'_>,
     what: &str,
     shown: &str,

@@ -6,6 +6,10 @@ use crate::deck::reader::{self, Table};
 
 const METHODS: [&str; 3] = ["exact", "uzawa", "gauss-seidel"];
 
+/// Force that is out of balance over the largest one, unless the deck says; and what it may say.
+const TOLERANCE: f64 = 1e-10;
+const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-13..=1e-4;
+
 /// Increments between checkpoints, unless the deck says.
 const CHECKPOINT: usize = 10;
 
@@ -18,6 +22,7 @@ pub(super) fn read_solver(root: &Table<'_>) -> SolverEntry {
         method: Method::Exact,
         outside: false,
         threads: 0,
+        tolerance: TOLERANCE,
     };
     let Some(table) = section(root, "solver", "[solver]") else {
         return solver;
@@ -39,6 +44,22 @@ pub(super) fn read_solver(root: &Table<'_>) -> SolverEntry {
     solver.method = method.unwrap_or(Method::Exact);
     let threads = table.get("threads");
     let threads = threads.and_then(|v| reader::integer(v, "threads", 0..=1024, log));
+    if let Some(tolerance) = table.number_if("tolerance") {
+        if TOLERANCES.contains(&tolerance.value) {
+            solver.tolerance = tolerance.value;
+        } else {
+            log.borrow_mut().error(
+                &tolerance.span,
+                format!(
+                    "tolerance is {:?}, expected a part of the largest force from {:?} to {:?}",
+                    tolerance.value,
+                    TOLERANCES.start(),
+                    TOLERANCES.end()
+                ),
+                "below it rounding decides, above it the answer is none",
+            );
+        }
+    }
     solver.threads = threads.map_or(0, |t| t.value);
     table.finish();
     solver

@@ -4,7 +4,8 @@ use crate::deck::entries::{
     Adjust, Analysis, ContactEntry, FrictionEntry, Shape, SkinEntry, ToolEntry,
 };
 use crate::deck::finding::At;
-use crate::deck::reader::{self, Table};
+use crate::deck::grammar::material::row;
+use crate::deck::reader::{self, Table, Value};
 use crate::files::read_skin;
 use std::path::Path;
 
@@ -268,6 +269,11 @@ fn friction(table: &Table<'_>, dimension: usize) -> Option<FrictionEntry> {
     let inner = reader::table(value, "friction", "friction", log)?;
     let axis = inner.get("axis");
     let two = inner.get("coulomb").filter(|v| v.get_ref().is_array());
+    if let Some(value) = inner.get("table") {
+        let law = shear_table(&inner, value);
+        inner.finish();
+        return law;
+    }
     let law = match inner.number_if("tresca") {
         Some(limit) => Some(FrictionEntry::Tresca(limit)),
         None if two.is_some() || axis.is_some() => orthotropic(&inner, dimension),
@@ -289,6 +295,26 @@ fn friction(table: &Table<'_>, dimension: usize) -> Option<FrictionEntry> {
     }
     inner.finish();
     law
+}
+
+/// `{ table = [[pressure, shear], …] }`.
+fn shear_table(table: &Table<'_>, value: Value<'_>) -> Option<FrictionEntry> {
+    let log = table.log();
+    for key in ["coulomb", "tau-max", "tresca", "axis"] {
+        if let Some(value) = table.get(key) {
+            log.borrow_mut().error(
+                &value.span(),
+                format!("friction has table and {key}, expected one law"),
+                "a table is the whole bound of the shear",
+            );
+        }
+    }
+    let rows = reader::items(value, "table", "an array of [pressure, shear]", log)?;
+    let rows = rows
+        .into_iter()
+        .map(|r| row(r, "a row of the table", "[pressure, shear]", log));
+    let rows = rows.collect::<Option<Vec<_>>>()?;
+    Some(FrictionEntry::Table(At::new(rows, value.span())))
 }
 
 /// `{ coulomb = [μ along, μ across], axis = [x, y, z] }`.

@@ -2,6 +2,7 @@
 //! their place in a mesh.
 
 use crate::mesh::{CellKind, Element, Quad4, Quad8, Quad9, Tri3, Tri6};
+use crate::plot::clip::cut;
 use crate::plot::colour::{LEVELS, level};
 use crate::plot::pen::Pen;
 
@@ -67,21 +68,17 @@ impl Table {
 }
 
 /// A place on paper and its part of the colour bar.
-#[derive(Clone, Copy)]
-pub(super) struct Corner {
-    pub(super) place: [f64; 2],
-    pub(super) part: f64,
-}
+pub(super) type Corner = [f64; 3];
 
 /// Fills a patch, linear on triangles, in the colours of its levels.
 pub(super) fn fill_bands(pens: &mut [Pen], patch: &[Corner]) {
-    let levels = || patch.iter().map(|c| level(c.part));
+    let levels = || patch.iter().map(|c| level(c[2]));
     let (lowest, highest) = (levels().min().unwrap_or(0), levels().max().unwrap_or(0));
     if lowest == highest {
         polygon(&mut pens[lowest], patch);
     } else if let &[a, b, c, d] = patch {
         // The diagonal along which the values differ less follows the bands.
-        if (a.part - c.part).abs() < (b.part - d.part).abs() {
+        if (a[2] - c[2]).abs() < (b[2] - d[2]).abs() {
             fill_bands(pens, &[a, b, c]);
             fill_bands(pens, &[a, c, d]);
         } else {
@@ -93,8 +90,8 @@ pub(super) fn fill_bands(pens: &mut [Pen], patch: &[Corner]) {
         let stride = (highest + 1 - lowest).div_ceil(MOST_BANDS);
         for k in (lowest..=highest).step_by(stride) {
             let bounds = [k, k + stride].map(|k| k as f64 / LEVELS as f64);
-            let above = half(patch, |part| part - bounds[0]);
-            let band = half(&above, |part| bounds[1] - part);
+            let above = cut(patch, |c| c[2] - bounds[0]);
+            let band = cut(&above, |c| bounds[1] - c[2]);
             polygon(&mut pens[(k + stride / 2).min(highest)], &band);
         }
     }
@@ -102,27 +99,7 @@ pub(super) fn fill_bands(pens: &mut [Pen], patch: &[Corner]) {
 
 fn polygon(pen: &mut Pen, corners: &[Corner]) {
     if corners.len() > 2 {
-        pen.polyline(corners.iter().map(|corner| corner.place));
+        pen.polyline(corners.iter().map(|&[x, y, _]| [x, y]));
         pen.close();
     }
-}
-
-/// The part of a convex polygon where a linear function is positive.
-fn half(polygon: &[Corner], function: impl Fn(f64) -> f64) -> Vec<Corner> {
-    let mut kept = Vec::with_capacity(polygon.len() + 1);
-    for (k, &a) in polygon.iter().enumerate() {
-        let b = polygon[(k + 1) % polygon.len()];
-        let (f, g) = (function(a.part), function(b.part));
-        if f >= 0.0 {
-            kept.push(a);
-        }
-        if (f > 0.0 && g < 0.0) || (f < 0.0 && g > 0.0) {
-            let t = f / (f - g);
-            kept.push(Corner {
-                place: [0, 1].map(|i| a.place[i] + t * (b.place[i] - a.place[i])),
-                part: a.part + t * (b.part - a.part),
-            });
-        }
-    }
-    kept
 }

@@ -1,25 +1,25 @@
 //! Marks on a picture: supports, arrows, surfaces, labels, of a size on paper; not what they stand for.
 
 use super::sheet::Sheet;
-use crate::plot::pen::{FINE, Pen, write_text};
+use crate::plot::pen::{FINE, Pen, number, write_text};
 use std::fmt::Write;
 
 /// A mark on a picture, at places of the body.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Mark {
+pub enum Mark<const D: usize = 2> {
     /// A point that is held along a direction, from the side that `from` points to.
     Support {
         /// Where \[mm\].
-        at: [f64; 2],
+        at: [f64; D],
         /// Unit vector along it, out of the body.
-        from: [f64; 2],
+        from: [f64; D],
     },
     /// A motion or a force.
     Arrow {
         /// Where \[mm\].
-        at: [f64; 2],
+        at: [f64; D],
         /// Unit vector.
-        along: [f64; 2],
+        along: [f64; D],
         /// Whether it ends there, as what presses, or begins.
         ends: bool,
         /// Colour, as `#1f5fbf`.
@@ -28,21 +28,84 @@ pub enum Mark {
     /// A line along a surface.
     Line {
         /// Its points \[mm\].
-        points: Vec<[f64; 2]>,
+        points: Vec<[f64; D]>,
         /// Colour.
         colour: &'static str,
     },
     /// A text beside a point.
     Label {
         /// Where \[mm\].
-        at: [f64; 2],
+        at: [f64; D],
         /// Unit vector from there to the text.
-        towards: [f64; 2],
+        towards: [f64; D],
         /// The text.
         text: String,
         /// Colour.
         colour: &'static str,
     },
+    /// A dot.
+    Dot {
+        /// Where \[mm\].
+        at: [f64; D],
+        /// Colour.
+        colour: &'static str,
+    },
+}
+
+impl<const D: usize> Mark<D> {
+    /// Where it is \[mm\]; a line in its middle.
+    pub fn place(&self) -> [f64; D] {
+        match self {
+            Self::Support { at, .. }
+            | Self::Arrow { at, .. }
+            | Self::Label { at, .. }
+            | Self::Dot { at, .. } => *at,
+            Self::Line { points, .. } => {
+                let count = points.len().max(1) as f64;
+                std::array::from_fn(|i| points.iter().map(|x| x[i]).sum::<f64>() / count)
+            }
+        }
+    }
+
+    /// With all of its places and directions seen by a linear map.
+    pub(super) fn map(&self, seen: impl Fn(&[f64; D]) -> [f64; 2]) -> Mark<2> {
+        match self {
+            Self::Support { at, from } => Mark::Support {
+                at: seen(at),
+                from: seen(from),
+            },
+            Self::Arrow {
+                at,
+                along,
+                ends,
+                colour,
+            } => Mark::Arrow {
+                at: seen(at),
+                along: seen(along),
+                ends: *ends,
+                colour,
+            },
+            Self::Line { points, colour } => Mark::Line {
+                points: points.iter().map(seen).collect(),
+                colour,
+            },
+            Self::Label {
+                at,
+                towards,
+                text,
+                colour,
+            } => Mark::Label {
+                at: seen(at),
+                towards: seen(towards),
+                text: text.clone(),
+                colour,
+            },
+            Self::Dot { at, colour } => Mark::Dot {
+                at: seen(at),
+                colour,
+            },
+        }
+    }
 }
 
 /// Pixels of a support, of an arrow, and of its head.
@@ -58,79 +121,150 @@ fn off(x: [f64; 2], along: [f64; 2], pixels: f64) -> [f64; 2] {
     [x[0] + pixels * along[0], x[1] - pixels * along[1]]
 }
 
-/// Draws marks.
-pub(super) fn draw(svg: &mut String, sheet: &Sheet, marks: &[Mark]) {
-    for mark in marks {
-        match mark {
-            Mark::Support { at, from } => {
-                let tip = sheet.place(*at);
-                let across = [-from[1], from[0]];
-                let base = off(tip, *from, SUPPORT);
-                let mut pen = Pen::new(FINE);
-                pen.move_to(tip);
-                for side in [0.5, -0.5] {
-                    pen.line_to(off(base, across, side * SUPPORT));
-                }
-                pen.close();
-                pen.stroke(svg, HELD, 1.3, "");
-            }
-            Mark::Arrow {
-                at,
-                along,
-                ends,
-                colour,
-            } => {
-                let at = sheet.place(*at);
-                let (tail, tip) = match ends {
-                    true => (off(at, *along, -ARROW), at),
-                    false => (at, off(at, *along, ARROW)),
-                };
-                let across = [-along[1], along[0]];
-                let neck = off(tip, *along, -HEAD);
-                let mut shaft = Pen::new(FINE);
-                shaft.polyline([tail, neck].into_iter());
-                shaft.stroke(svg, colour, 1.6, "");
-                let mut head = Pen::new(FINE);
-                head.move_to(tip);
-                for side in [0.4, -0.4] {
-                    head.line_to(off(neck, across, side * HEAD));
-                }
-                head.close();
-                head.fill(svg, colour);
-            }
-            Mark::Line { points, colour } => {
-                let mut pen = Pen::new(FINE);
-                pen.polyline(points.iter().map(|&x| sheet.place(x)));
-                pen.stroke(svg, colour, 4.0, r#" stroke-opacity="0.55""#);
-            }
-            Mark::Label {
-                at,
-                towards,
-                text,
-                colour,
-            } => {
-                let x = off(sheet.place(*at), *towards, 1.25 * ARROW);
-                // Beside an arrow, not on it.
-                let x = [x[0], x[1] - LABEL * towards[0].abs()];
-                let anchor = match towards[0] {
-                    t if t > 0.5 => "start",
-                    t if t < -0.5 => "end",
-                    _ => "middle",
-                };
-                let halo = r##" stroke="#ffffff" stroke-width="3" paint-order="stroke""##;
-                let mut more = String::from(halo);
-                let _ = write!(more, r#" fill="{colour}""#);
-                let width = crate::plot::text::width(text, LABEL);
-                // Within the sheet.
-                let left = match anchor {
-                    "start" => x[0],
-                    "end" => x[0] - width,
-                    _ => x[0] - 0.5 * width,
-                };
-                let shift = (4.0 - left).max(0.0) + (sheet.width() - 4.0 - left - width).min(0.0);
-                let x = [x[0] + shift, x[1] + 0.35 * LABEL];
-                write_text(svg, x, LABEL, anchor, &more, text);
-            }
+/// The unit vector across a direction.
+fn across([x, y]: [f64; 2]) -> [f64; 2] {
+    let length = x.hypot(y).max(f64::MIN_POSITIVE);
+    [-y / length, x / length]
+}
+
+/// Draws marks, faint ones that are hidden, labels after all others.
+pub(super) fn draw(svg: &mut String, sheet: &Sheet, marks: &[(&Mark<2>, bool)]) {
+    for &(mark, hidden) in marks {
+        if hidden && !matches!(mark, Mark::Label { .. }) {
+            svg.push_str(r#"<g opacity="0.3">"#);
+            symbol(svg, sheet, mark);
+            svg.push_str("</g>");
+        } else {
+            symbol(svg, sheet, mark);
         }
     }
+    let mut taken = Vec::new();
+    for (mark, _) in marks {
+        label(svg, sheet, mark, &mut taken);
+    }
+}
+
+/// A dot at a place on paper.
+pub(super) fn dot(svg: &mut String, mark: &Mark<2>) {
+    if let Mark::Dot { at: [x, y], colour } = mark {
+        let [x, y] = [x, y].map(|v| number(*v));
+        let _ = write!(
+            svg,
+            r##"<circle cx="{x}" cy="{y}" r="3.6" fill="{colour}" stroke="#ffffff" stroke-width="1.1"/>"##
+        );
+    }
+}
+
+/// Draws a mark that is no label.
+fn symbol(svg: &mut String, sheet: &Sheet, mark: &Mark<2>) {
+    match mark {
+        Mark::Support { at, from } => {
+            let tip = sheet.place(*at);
+            let across = across(*from);
+            let base = off(tip, *from, SUPPORT);
+            let mut pen = Pen::new(FINE);
+            pen.move_to(tip);
+            for side in [0.5, -0.5] {
+                pen.line_to(off(base, across, side * SUPPORT));
+            }
+            pen.close();
+            pen.stroke(svg, HELD, 1.3, "");
+        }
+        Mark::Arrow {
+            at,
+            along,
+            ends,
+            colour,
+        } => {
+            let at = sheet.place(*at);
+            let (tail, tip) = match ends {
+                true => (off(at, *along, -ARROW), at),
+                false => (at, off(at, *along, ARROW)),
+            };
+            let across = across(*along);
+            // A short arrow is all head.
+            let length = along[0].hypot(along[1]).max(0.05);
+            let neck = off(tip, *along, -(HEAD / length).min(0.8 * ARROW));
+            let mut shaft = Pen::new(FINE);
+            shaft.polyline([tail, neck].into_iter());
+            shaft.stroke(svg, colour, 1.6, "");
+            let mut head = Pen::new(FINE);
+            head.move_to(tip);
+            for side in [0.4, -0.4] {
+                head.line_to(off(neck, across, side * HEAD));
+            }
+            head.close();
+            head.fill(svg, colour);
+        }
+        Mark::Line { points, colour } => {
+            let mut pen = Pen::new(FINE);
+            pen.polyline(points.iter().map(|&x| sheet.place(x)));
+            pen.stroke(svg, colour, 4.0, r#" stroke-opacity="0.55""#);
+        }
+        Mark::Dot { at, colour } => dot(
+            svg,
+            &Mark::Dot {
+                at: sheet.place(*at),
+                colour,
+            },
+        ),
+        Mark::Label { .. } => {}
+    }
+}
+
+/// Draws a label where none of those before is.
+fn label(svg: &mut String, sheet: &Sheet, mark: &Mark<2>, taken: &mut Vec<[f64; 4]>) {
+    let Mark::Label {
+        at,
+        towards,
+        text,
+        colour,
+    } = mark
+    else {
+        return;
+    };
+    let x = off(sheet.place(*at), *towards, 1.25 * ARROW);
+    // Beside an arrow, not on it.
+    let x = [x[0], x[1] - LABEL * towards[0].abs()];
+    let anchor = match towards[0] {
+        t if t > 0.5 => "start",
+        t if t < -0.5 => "end",
+        _ => "middle",
+    };
+    let halo = r##" stroke="#ffffff" stroke-width="3" paint-order="stroke""##;
+    let mut more = String::from(halo);
+    let _ = write!(more, r#" fill="{colour}""#);
+    let width = crate::plot::text::width(text, LABEL);
+    // Within the sheet.
+    let left = match anchor {
+        "start" => x[0],
+        "end" => x[0] - width,
+        _ => x[0] - 0.5 * width,
+    };
+    let shift = (4.0 - left).max(0.0) + (sheet.width() - 4.0 - left - width).min(0.0);
+    let line = |k: i32| {
+        // The place itself, then those below and above it in turn.
+        let rows = f64::from((k + 1) / 2) * if k % 2 == 1 { 1.0 } else { -1.0 };
+        x[1] + 0.35 * LABEL + 1.25 * LABEL * rows
+    };
+    let room = |y: &f64| {
+        let own = [
+            left + shift,
+            y - LABEL,
+            left + shift + width,
+            y + 0.3 * LABEL,
+        ];
+        let apart =
+            |other: &[f64; 4]| (0..2).any(|i| own[i] >= other[i + 2] || other[i] >= own[i + 2]);
+        own[1] >= sheet.top() && own[3] <= sheet.bottom() && taken.iter().all(apart)
+    };
+    let y = (0..40).map(line).find(room).unwrap_or(line(0));
+    taken.push([
+        left + shift,
+        y - LABEL,
+        left + shift + width,
+        y + 0.3 * LABEL,
+    ]);
+    let x = [x[0] + shift, y];
+    write_text(svg, x, LABEL, anchor, &more, text);
 }

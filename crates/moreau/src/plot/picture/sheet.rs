@@ -1,7 +1,8 @@
 //! The sheet that a picture is drawn on: its size, what stands beside the drawing, and the places
 //! of nodes; not the cells.
 
-use super::{Field, MeshPicture};
+use super::flat::Flat;
+use super::{Field, Mark};
 use crate::plot::clip::clip;
 use crate::plot::colour::{INK, LEVELS, colour};
 use crate::plot::error::PlotError;
@@ -17,6 +18,8 @@ const TITLE_LINE: f64 = 21.0;
 const LABEL: f64 = 13.0;
 const LABEL_LINE: f64 = 17.0;
 const TICK: f64 = 12.0;
+/// Axes with their colours.
+const COLOURS: [(&str, &str); 3] = [("x", "#b3261e"), ("y", "#1a7f4b"), ("z", "#1f5fbf")];
 /// Steps of a colour bar, about.
 const STEPS: f64 = 5.0;
 /// Least distance of its labels, in parts of the bar: that they do not touch on the lowest.
@@ -26,6 +29,9 @@ const TALL: f64 = 540.0;
 /// Least width and height of the drawing: room for captions and a colour bar.
 const LEAST: [f64; 2] = [320.0, 130.0];
 const BAR: f64 = 16.0;
+/// Height of the directions of the axes, and their length.
+const AXES: f64 = 46.0;
+const AXIS: f64 = 24.0;
 /// How far polylines go beyond the body, in parts of its size.
 const BEYOND: f64 = 0.12;
 
@@ -109,42 +115,43 @@ pub(super) struct Sheet {
     corner: [f64; 2],
     size: [f64; 2],
     /// Pixels a millimetre.
-    scale: f64,
+    pub(super) scale: f64,
     /// Label of the bar.
     label: Vec<String>,
     tick_width: f64,
 }
 
 impl Sheet {
-    pub(super) fn new(
-        picture: &MeshPicture<'_>,
-        nodes: &[[f64; 2]],
-        bar: Option<&Bar<'_>>,
-    ) -> Self {
-        let mut low = [f64::INFINITY; 2];
-        let mut high = [f64::NEG_INFINITY; 2];
-        let mut include = |x: &[f64; 2]| {
+    pub(super) fn new(picture: &Flat<'_>, bar: Option<&Bar<'_>>) -> Self {
+        let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+        let include = |[low, high]: &mut [[f64; 2]; 2], x: &[f64]| {
             for i in 0..2 {
                 low[i] = low[i].min(x[i]);
                 high[i] = high[i].max(x[i]);
             }
         };
-        nodes.iter().for_each(&mut include);
-        if picture.outline {
-            picture.mesh.nodes().iter().for_each(&mut include);
+        for &n in picture.faces.iter().flat_map(|face| &face.nodes) {
+            include(&mut bounds, &picture.nodes[n]);
+            picture
+                .still
+                .iter()
+                .for_each(|still| include(&mut bounds, &still[n]));
         }
+        let [low, high] = bounds;
         let beyond = BEYOND * (high[0] - low[0]).max(high[1] - low[1]);
         let limits = [low.map(|v| v - beyond), high.map(|v| v + beyond)];
         for points in &picture.polylines {
             for piece in points.split(|x| !x.iter().all(|v| v.is_finite())) {
-                for x in clip(piece, limits[0], limits[1]).iter().flatten() {
-                    for i in 0..2 {
-                        low[i] = low[i].min(x[i]);
-                        high[i] = high[i].max(x[i]);
-                    }
-                }
+                let parts = clip(piece, limits[0], limits[1]);
+                parts.iter().flatten().for_each(|x| include(&mut bounds, x));
             }
         }
+        for veil in &picture.veils {
+            let within = |v: f64, i: usize| v.clamp(limits[0][i], limits[1][i]);
+            let veil = veil.iter().filter(|x| x.iter().all(|v| v.is_finite()));
+            veil.for_each(|x| include(&mut bounds, &[within(x[0], 0), within(x[1], 1)]));
+        }
+        let [mut low, mut high] = bounds;
         if !picture.marks.is_empty() {
             low = [0, 1].map(|i| low[i].min(limits[0][i]));
             high = [0, 1].map(|i| high[i].max(limits[1][i]));
@@ -175,11 +182,15 @@ impl Sheet {
         let size = [0, 1].map(|i| (scale * span[i]).max(LEAST[i]));
         let label = bar.map_or_else(Vec::new, |bar| wrap(bar.label, LABEL, size[1] + 24.0));
         let sheet_width = 2.0 * MARGIN + size[0] + beside(label.len());
-        let title = wrap(&picture.title, TITLE, sheet_width - 2.0 * MARGIN);
+        let title = wrap(picture.title, TITLE, sheet_width - 2.0 * MARGIN);
+        let below = match picture.axes {
+            None => 38.0,
+            Some(_) => 38.0 + AXES,
+        };
         let top = 16.0 + TITLE_LINE * title.len() as f64;
         Self {
             width: sheet_width,
-            height: top + size[1] + 38.0,
+            height: top + size[1] + below,
             title,
             low,
             high,
@@ -193,6 +204,15 @@ impl Sheet {
 
     pub(super) fn width(&self) -> f64 {
         self.width
+    }
+
+    /// Between these a label has room.
+    pub(super) fn top(&self) -> f64 {
+        self.corner[1] - 6.0
+    }
+
+    pub(super) fn bottom(&self) -> f64 {
+        self.corner[1] + self.size[1] + 8.0
     }
 
     /// Place on paper.
@@ -261,10 +281,9 @@ impl Sheet {
     }
 
     /// Magnification and a scale.
-    pub(super) fn captions(&self, svg: &mut String, picture: &MeshPicture<'_>) {
+    pub(super) fn captions(&self, svg: &mut String, picture: &Flat<'_>) {
         let y = self.height - 12.0;
-        if picture.displacement.is_some() && picture.magnification != 1.0 {
-            let m = picture.magnification;
+        if let Some(m) = picture.magnification.filter(|m| *m != 1.0) {
             let times = if (1e-3..1e5).contains(&m.abs()) {
                 format!("displacement × {m}")
             } else {
@@ -290,5 +309,37 @@ impl Sheet {
             picture.unit
         );
         write_text(svg, [left - 7.0, y], TICK, "end", "", &text);
+        self.axes(svg, picture);
+        let mut x = self.corner[0] + 3.6 * AXIS;
+        for (meaning, colour) in picture.keys {
+            let mark = Mark::Dot {
+                at: [x, y - AXES + 8.0],
+                colour,
+            };
+            super::marks::dot(svg, &mark);
+            write_text(svg, [x + 9.0, y - AXES + 12.3], TICK, "start", "", meaning);
+            x += 30.0 + width(meaning, TICK);
+        }
+    }
+
+    /// Directions of the axes, in the order of their nearness to the eye.
+    fn axes(&self, svg: &mut String, picture: &Flat<'_>) {
+        let Some(axes) = picture.axes else {
+            return;
+        };
+        let [left, top] = [self.corner[0] + AXIS, self.height - 12.0 - 0.72 * AXES];
+        for ([x, y], (name, colour)) in axes.into_iter().zip(COLOURS) {
+            // One that points at the eye has no length.
+            if x.hypot(y) < 0.05 {
+                continue;
+            }
+            let tip = |length: f64| [left + length * x, top - length * y];
+            let mut pen = Pen::new(FINE);
+            pen.polyline([[left, top], tip(AXIS)].into_iter());
+            pen.stroke(svg, colour, 1.6, "");
+            let at = tip(AXIS + 8.0 / x.hypot(y));
+            let more = format!(r#" fill="{colour}""#);
+            write_text(svg, [at[0], at[1] + 4.0], TICK, "middle", &more, name);
+        }
     }
 }

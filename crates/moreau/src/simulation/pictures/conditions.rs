@@ -1,4 +1,4 @@
-//! What a step of a plane deck does to its bodies, as marks on a picture before anything is computed: supports, motions,
+//! What a step of a deck does to its bodies, as marks on a picture before anything is computed: supports, motions,
 //! loads, contacts with their gaps; not the tools' outlines.
 
 use crate::deck::{Action, ConditionEntry, Deck, Setup, StepEntry};
@@ -6,10 +6,14 @@ use crate::mesh::Mesh;
 use crate::numbers::shown;
 use crate::plot::Mark;
 use crate::simulation::tools::Sheet;
-use nalgebra::{Vector2, Vector3};
+use crate::vtu::three;
+use nalgebra::{SVector, Vector3};
+use std::collections::BTreeMap;
 
 /// Marks along the longest side of the body, at most.
 const MOST: f64 = 24.0;
+/// The same in space, where they stand on faces.
+const MOST_IN_SPACE: f64 = 10.0;
 /// Significant digits.
 const DIGITS: usize = 4;
 const MOTION: &str = "#1f5fbf";
@@ -18,7 +22,11 @@ const CONTACT: &str = "#e07b00";
 const INK: &str = "#333333";
 
 /// The marks of a step.
-pub(super) fn marks(deck: &Deck, setup: &Setup<2>, step: &StepEntry) -> Vec<Mark> {
+pub(super) fn marks<const D: usize>(
+    deck: &Deck,
+    setup: &Setup<D>,
+    step: &StepEntry,
+) -> Vec<Mark<D>> {
     let scene = Scene::new(deck, setup.driver.mesh());
     let mut marks = Vec::new();
     for contact in &deck.contacts {
@@ -48,69 +56,77 @@ pub(super) fn marks(deck: &Deck, setup: &Setup<2>, step: &StepEntry) -> Vec<Mark
 }
 
 /// The body with what marks have to know of it.
-struct Scene<'a> {
+struct Scene<'a, const D: usize> {
     deck: &'a Deck,
-    mesh: &'a Mesh<2>,
-    centre: Vector2<f64>,
+    mesh: &'a Mesh<D>,
+    centre: SVector<f64, D>,
     /// Half of its width and of its height \[mm\].
-    half: Vector2<f64>,
+    half: SVector<f64, D>,
     /// Least distance of marks \[mm\].
     apart: f64,
 }
 
-impl<'a> Scene<'a> {
-    fn new(deck: &'a Deck, mesh: &'a Mesh<2>) -> Self {
+impl<'a, const D: usize> Scene<'a, D> {
+    fn new(deck: &'a Deck, mesh: &'a Mesh<D>) -> Self {
         let (low, high) = mesh.bounds();
-        let (low, high) = (Vector2::from(low), Vector2::from(high));
+        let (low, high) = (SVector::from(low), SVector::from(high));
         Self {
             deck,
             mesh,
             centre: 0.5 * (low + high),
             half: 0.5 * (high - low),
-            apart: (high - low).amax() / MOST,
+            apart: (high - low).amax() / if D == 2 { MOST } else { MOST_IN_SPACE },
         }
     }
 
     /// The axis direction that leads from a place towards the middle of the body.
-    fn inwards(&self, at: [f64; 2]) -> [f64; 2] {
-        let way = self.centre - Vector2::from(at);
+    fn inwards(&self, at: [f64; D]) -> [f64; D] {
+        let way = self.centre - SVector::from(at);
         // By the side that it is nearest to.
         let part = way.abs().component_div(&self.half);
-        match part.y >= part.x {
-            true => [0.0, way.y.signum()],
-            false => [way.x.signum(), 0.0],
-        }
+        // Above or below, if all sides are as near.
+        let first = match part[1] >= part[0] {
+            true => 1,
+            false => 0,
+        };
+        let axis = (2..D).fold(first, |k, i| if part[i] > part[k] { i } else { k });
+        std::array::from_fn(|i| if i == axis { way[i].signum() } else { 0.0 })
     }
 
     /// Places of the nodes of a group, as far apart as marks.
-    fn places(&self, group: &str) -> Vec<[f64; 2]> {
+    fn places(&self, group: &str) -> Vec<[f64; D]> {
         let nodes = self.mesh.node_group(group).unwrap_or_default();
-        self.thinned(nodes.iter().map(|&a| (self.mesh.nodes()[a], [0.0; 2])))
+        self.thinned(nodes.iter().map(|&a| (self.mesh.nodes()[a], [0.0; D])))
             .into_iter()
             .map(|(x, _)| x)
             .collect()
     }
 
     /// Middles of the facets of a group with their outward unit normals, as far apart as marks.
-    fn facets(&self, group: &str) -> Vec<([f64; 2], [f64; 2])> {
+    fn facets(&self, group: &str) -> Vec<([f64; D], [f64; D])> {
         let facets = self.mesh.facet_group(group).unwrap_or_default();
         let middle = |facet: &crate::mesh::Facet| {
-            let nodes: Vec<usize> = self.mesh.facet_nodes(*facet).collect();
-            let [a, b] = [nodes[0], nodes[1]].map(|a| Vector2::from(self.mesh.nodes()[a]));
-            let along = (b - a).normalize();
-            ((0.5 * (a + b)).into(), [along.y, -along.x])
+            let corners = self.mesh.facet_kind(*facet).corner_count();
+            let nodes: Vec<usize> = self.mesh.facet_nodes(*facet).take(corners).collect();
+            let x = |k: usize| SVector::from(self.mesh.nodes()[nodes[k]]);
+            let middle: SVector<f64, D> =
+                (0..corners).map(x).sum::<SVector<f64, D>>() / corners as f64;
+            (
+                middle.into(),
+                outward(&(0..corners).map(x).collect::<Vec<_>>()).into(),
+            )
         };
         self.thinned(facets.iter().map(middle))
     }
 
     fn thinned(
         &self,
-        places: impl Iterator<Item = ([f64; 2], [f64; 2])>,
-    ) -> Vec<([f64; 2], [f64; 2])> {
-        let mut kept: Vec<([f64; 2], [f64; 2])> = Vec::new();
+        places: impl Iterator<Item = ([f64; D], [f64; D])>,
+    ) -> Vec<([f64; D], [f64; D])> {
+        let mut kept: Vec<([f64; D], [f64; D])> = Vec::new();
         for (x, n) in places {
-            let near = |k: &([f64; 2], [f64; 2])| {
-                (Vector2::from(k.0) - Vector2::from(x)).norm() < self.apart
+            let near = |k: &([f64; D], [f64; D])| {
+                (SVector::from(k.0) - SVector::from(x)).norm() < self.apart
             };
             if !kept.iter().any(near) {
                 kept.push((x, n));
@@ -120,21 +136,34 @@ impl<'a> Scene<'a> {
     }
 
     /// The facets of a contact.
-    fn surface(&self, group: &str) -> Vec<Mark> {
-        let facets = self.mesh.facet_group(group).unwrap_or_default().iter();
-        let line = |facet: &crate::mesh::Facet| {
+    fn surface(&self, group: &str) -> Vec<Mark<D>> {
+        let facets = self.mesh.facet_group(group).unwrap_or_default();
+        let mut sides: BTreeMap<[usize; 2], (Vec<usize>, usize)> = BTreeMap::new();
+        for facet in facets {
             let nodes: Vec<usize> = self.mesh.facet_nodes(*facet).collect();
-            let order: &[usize] = if nodes.len() > 2 { &[0, 2, 1] } else { &[0, 1] };
-            let points = order.iter().map(|&k| self.mesh.nodes()[nodes[k]]);
-            Mark::Line {
-                points: points.collect(),
-                colour: CONTACT,
+            let corners = self.mesh.facet_kind(*facet).corner_count();
+            // In the plane the facet itself, in space the edges around it.
+            let edges = if D == 2 { 1 } else { corners };
+            for k in 0..edges {
+                let [a, b] = [nodes[k], nodes[(k + 1) % corners]];
+                let line: Vec<usize> = [Some(&a), nodes.get(corners + k), Some(&b)]
+                    .into_iter()
+                    .flatten()
+                    .copied()
+                    .collect();
+                sides.entry([a.min(b), a.max(b)]).or_insert((line, 0)).1 += 1;
             }
+        }
+        // Of a surface in space its border.
+        let border = sides.into_values().filter(|side| side.1 == 1);
+        let line = |(nodes, _): (Vec<usize>, usize)| Mark::Line {
+            points: nodes.iter().map(|&a| self.mesh.nodes()[a]).collect(),
+            colour: CONTACT,
         };
-        facets.map(line).collect()
+        border.map(line).collect()
     }
 
-    fn condition(&self, condition: &ConditionEntry, marks: &mut Vec<Mark>) {
+    fn condition(&self, condition: &ConditionEntry, marks: &mut Vec<Mark<D>>) {
         let on = condition.on.value.as_str();
         let units = self.deck.units;
         match &condition.action {
@@ -145,15 +174,15 @@ impl<'a> Scene<'a> {
                     .filter(|(_, u)| *u == 0.0)
                     .map(|(axis, _)| *axis);
                 self.held(on, &still.collect::<Vec<_>>(), marks);
-                let u = components(given.iter().copied());
-                let places: Vec<_> = self.places(on).into_iter().map(|x| (x, [0.0; 2])).collect();
+                let u = components::<D>(given.iter().copied());
+                let places: Vec<_> = self.places(on).into_iter().map(|x| (x, [0.0; D])).collect();
                 self.arrows(&places, u, units.length(), MOTION, marks);
             }
             Action::FixAlong(n) => self.held_along(on, n, marks),
             Action::MoveAlong(n, u) if *u == 0.0 => self.held_along(on, n, marks),
             Action::MoveAlong(n, u) => {
-                let n = Vector2::from(components(n.iter().copied().enumerate())).normalize();
-                let places: Vec<_> = self.places(on).into_iter().map(|x| (x, [0.0; 2])).collect();
+                let n = unit::<D>(n);
+                let places: Vec<_> = self.places(on).into_iter().map(|x| (x, [0.0; D])).collect();
                 self.arrows(&places, (n * *u).into(), units.length(), MOTION, marks);
             }
             Action::Pressure(pressure) => {
@@ -171,37 +200,41 @@ impl<'a> Scene<'a> {
                 self.label(&facets, text, LOAD, marks);
             }
             Action::Traction(t) => {
-                let t = components(t.iter().copied().enumerate());
+                let t = components::<D>(t.iter().copied().enumerate());
                 self.arrows(&self.facets(on), t, units.stress(), LOAD, marks);
             }
             Action::Force(f) | Action::BodyForce(f) => {
                 let nodes = self.mesh.node_group(on).unwrap_or_default();
-                let sum: Vector2<f64> = nodes
+                let sum: SVector<f64, D> = nodes
                     .iter()
-                    .map(|&a| Vector2::from(self.mesh.nodes()[a]))
+                    .map(|&a| SVector::from(self.mesh.nodes()[a]))
                     .sum();
                 let middle = sum / nodes.len().max(1) as f64;
-                let f = components(f.iter().copied().enumerate());
+                let f = components::<D>(f.iter().copied().enumerate());
                 let unit = match &condition.action {
                     Action::Force(_) => units.force().to_owned(),
                     _ => format!("{}/{}³", units.force(), units.length()),
                 };
-                self.arrows(&[(middle.into(), [0.0; 2])], f, &unit, LOAD, marks);
+                self.arrows(&[(middle.into(), [0.0; D])], f, &unit, LOAD, marks);
             }
             Action::Tool(way, turn) => {
                 let mut said = Vec::new();
                 if let Some(way) = way {
-                    let u = components(way.iter().copied().enumerate());
+                    let u = components::<D>(way.iter().copied().enumerate());
                     said.push(format!("{} {}", place(u), units.length()));
                     self.tool(on, Some((u, MOTION)), marks);
                 }
                 if let Some(turn) = turn {
-                    said.push(format!("turns by {}°", shown(turn.angle, DIGITS)));
+                    let about = match D {
+                        2 => String::new(),
+                        _ => format!(" about {:?}", turn.axis),
+                    };
+                    said.push(format!("turns by {}°{about}", shown(turn.angle, DIGITS)));
                 }
                 self.named(on, &said.join(", "), marks);
             }
             Action::Push(force, _) => {
-                let f = components(force.iter().copied().enumerate());
+                let f = components::<D>(force.iter().copied().enumerate());
                 self.tool(on, Some((f, LOAD)), marks);
                 self.named(on, &format!("{} {}", place(f), units.force()), marks);
             }
@@ -209,11 +242,11 @@ impl<'a> Scene<'a> {
     }
 
     /// Supports along axes.
-    fn held(&self, group: &str, axes: &[usize], marks: &mut Vec<Mark>) {
+    fn held(&self, group: &str, axes: &[usize], marks: &mut Vec<Mark<D>>) {
         for at in self.places(group) {
-            for &axis in axes.iter().filter(|axis| **axis < 2) {
+            for &axis in axes.iter().filter(|axis| **axis < D) {
                 let out = (at[axis] - self.centre[axis]).signum();
-                let mut from = [0.0; 2];
+                let mut from = [0.0; D];
                 from[axis] = out;
                 marks.push(Mark::Support { at, from });
             }
@@ -221,10 +254,10 @@ impl<'a> Scene<'a> {
     }
 
     /// Supports along a direction, from the side that leads out of the body.
-    fn held_along(&self, group: &str, direction: &[f64], marks: &mut Vec<Mark>) {
-        let n = Vector2::from(components(direction.iter().copied().enumerate())).normalize();
+    fn held_along(&self, group: &str, direction: &[f64], marks: &mut Vec<Mark<D>>) {
+        let n = unit::<D>(direction);
         for at in self.places(group) {
-            let out = n.dot(&(Vector2::from(at) - self.centre)).signum();
+            let out = n.dot(&(SVector::from(at) - self.centre)).signum();
             let from = (n * out).into();
             marks.push(Mark::Support { at, from });
         }
@@ -233,20 +266,20 @@ impl<'a> Scene<'a> {
     /// Arrows along a vector, that end where they point into the body, and its components beside one of them.
     fn arrows(
         &self,
-        places: &[([f64; 2], [f64; 2])],
-        v: [f64; 2],
+        places: &[([f64; D], [f64; D])],
+        v: [f64; D],
         unit: &str,
         colour: &'static str,
-        marks: &mut Vec<Mark>,
+        marks: &mut Vec<Mark<D>>,
     ) {
-        let v_ = Vector2::from(v);
+        let v_ = SVector::from(v);
         let Some(along) = v_.try_normalize(0.0) else {
             return;
         };
         for &(at, n) in places {
-            let out = match n == [0.0; 2] {
-                true => Vector2::from(at) - self.centre,
-                false => Vector2::from(n),
+            let out = match n == [0.0; D] {
+                true => SVector::from(at) - self.centre,
+                false => SVector::from(n),
             };
             marks.push(Mark::Arrow {
                 at,
@@ -261,10 +294,10 @@ impl<'a> Scene<'a> {
     /// A text outside of the place in the middle of some.
     fn label(
         &self,
-        places: &[([f64; 2], [f64; 2])],
+        places: &[([f64; D], [f64; D])],
         text: String,
         colour: &'static str,
-        marks: &mut Vec<Mark>,
+        marks: &mut Vec<Mark<D>>,
     ) {
         if let Some(&(at, _)) = places.get(places.len() / 2) {
             let towards = self.inwards(at).map(|t| -t);
@@ -278,25 +311,30 @@ impl<'a> Scene<'a> {
     }
 
     /// The place of a tool's surface that is nearest to the body.
-    fn nearest(&self, name: &str) -> Option<Vector2<f64>> {
+    fn nearest(&self, name: &str) -> Option<SVector<f64, D>> {
         let tool = self.deck.tools.iter().find(|t| t.name.value == name)?;
-        let centre = Vector3::new(self.centre.x, self.centre.y, 0.0);
-        let sheet = Sheet::new(tool, 2, centre, self.mesh.size());
-        let ends = |piece: &Vec<usize>| [piece[0], piece[1]].map(|k| sheet.points[k].xy());
-        let foot = |[a, b]: [Vector2<f64>; 2]| {
+        let centre = Vector3::from(three(self.centre.as_slice()));
+        let sheet = Sheet::new(tool, D, centre, self.mesh.size());
+        let own = |k: usize| SVector::<f64, D>::from_fn(|i, _| sheet.points[k][i]);
+        let foot = |piece: &Vec<usize>| {
+            if D > 2 {
+                let sum: SVector<f64, D> = piece.iter().map(|&k| own(k)).sum();
+                return sum / piece.len() as f64;
+            }
+            let [a, b] = [own(piece[0]), own(piece[1])];
             let way = b - a;
             let part = way.dot(&(self.centre - a)) / way.norm_squared().max(f64::MIN_POSITIVE);
             a + way * part.clamp(0.0, 1.0)
         };
-        let feet = sheet.pieces.iter().map(|piece| foot(ends(piece)));
-        let far = |x: &Vector2<f64>| (x - self.centre).norm();
+        let feet = sheet.pieces.iter().map(foot);
+        let far = |x: &SVector<f64, D>| (x - self.centre).norm();
         feet.min_by(|a, b| far(a).total_cmp(&far(b)))
     }
 
     /// An arrow on a tool.
-    fn tool(&self, name: &str, arrow: Option<([f64; 2], &'static str)>, marks: &mut Vec<Mark>) {
+    fn tool(&self, name: &str, arrow: Option<([f64; D], &'static str)>, marks: &mut Vec<Mark<D>>) {
         let along =
-            arrow.and_then(|(v, colour)| Some((Vector2::from(v).try_normalize(0.0)?, colour)));
+            arrow.and_then(|(v, colour)| Some((SVector::from(v).try_normalize(0.0)?, colour)));
         if let (Some(at), Some((along, colour))) = (self.nearest(name), along) {
             let into = along.dot(&(self.centre - at)) > 0.0;
             marks.push(Mark::Arrow {
@@ -309,9 +347,9 @@ impl<'a> Scene<'a> {
     }
 
     /// The name of a tool with what it does.
-    fn named(&self, name: &str, what: &str, marks: &mut Vec<Mark>) {
+    fn named(&self, name: &str, what: &str, marks: &mut Vec<Mark<D>>) {
         if let Some(at) = self.nearest(name) {
-            let at: [f64; 2] = at.into();
+            let at: [f64; D] = at.into();
             marks.push(Mark::Label {
                 at,
                 towards: self.inwards(at).map(|t| -t),
@@ -322,8 +360,13 @@ impl<'a> Scene<'a> {
     }
 }
 
-fn components(given: impl Iterator<Item = (usize, f64)>) -> [f64; 2] {
-    let mut v = [0.0; 2];
+/// The direction of a support as a unit vector.
+fn unit<const D: usize>(direction: &[f64]) -> SVector<f64, D> {
+    SVector::from(components::<D>(direction.iter().copied().enumerate())).normalize()
+}
+
+fn components<const D: usize>(given: impl Iterator<Item = (usize, f64)>) -> [f64; D] {
+    let mut v = [0.0; D];
     for (axis, value) in given {
         if let Some(own) = v.get_mut(axis) {
             *own = value;
@@ -332,6 +375,20 @@ fn components(given: impl Iterator<Item = (usize, f64)>) -> [f64; 2] {
     v
 }
 
-fn place(v: [f64; 2]) -> String {
-    format!("({}, {})", shown(v[0], DIGITS), shown(v[1], DIGITS)).replace('-', "−")
+fn place<const D: usize>(v: [f64; D]) -> String {
+    let v = v.map(|v| shown(v, DIGITS));
+    format!("({})", v.join(", ")).replace('-', "−")
+}
+
+/// The outward unit normal of a facet by its corners.
+fn outward<const D: usize>(corners: &[SVector<f64, D>]) -> SVector<f64, D> {
+    let side =
+        |a: usize, b: usize| -> Vector3<f64> { three((corners[b] - corners[a]).as_slice()).into() };
+    let normal = match corners.len() {
+        2 => side(0, 1).cross(&Vector3::z()),
+        3 => side(0, 1).cross(&side(0, 2)),
+        _ => side(0, 2).cross(&side(1, 3)),
+    };
+    let normal = normal.try_normalize(0.0).unwrap_or_default();
+    SVector::from_fn(|i, _| normal[i])
 }
