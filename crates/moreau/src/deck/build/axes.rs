@@ -51,8 +51,9 @@ pub(super) fn law(
     };
     let law = Hill::new(elastic, criterion.along(&turn), yield_stress.value);
     let law = law.map_err(at(&yield_stress.span))?;
-    Ok(Law::Hill(match &material.isotropic {
+    let law = match &material.isotropic {
         Some(given) => law.with_hardening(hardening(given, yield_stress)?),
         None => law,
-    }))
+    };
+    Ok(Law::Hill(Box::new(law)))
 }

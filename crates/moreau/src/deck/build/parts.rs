@@ -33,7 +33,7 @@ pub(super) enum Law {
     Chaboche(VonMises<RECALLED>),
     DruckerPrager(ElasticDruckerPrager),
     Orthotropic(Orthotropic),
-    Hill(Hill),
+    Hill(Box<Hill>),
     Given(Arc<dyn PanelLaw>),
 }
 
@@ -489,7 +489,7 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
             Law::Chaboche(law) => model.material(&name, law, rule),
             Law::DruckerPrager(law) => model.material(&name, law, rule),
             Law::Orthotropic(law) => model.material(&name, law, rule),
-            Law::Hill(law) => model.material(&name, law, rule),
+            Law::Hill(law) => model.material(&name, *law, rule),
             Law::Given(law) => model.panel_material(&name, &law, rule),
         };
         model = added.map_err(|e| note(&entry.on.span, e)).ok()?;
