@@ -5,6 +5,7 @@ mod amplitudes;
 mod axes;
 mod conditions;
 mod groups;
+mod laws;
 mod meshes;
 mod names;
 mod parts;

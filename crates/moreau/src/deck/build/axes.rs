@@ -1,6 +1,6 @@
 //! Laws of materials with axes; what their numbers must obey is for the laws to say.
 
-use super::parts::{Law, hardening};
+use super::laws::{Law, hardening};
 use crate::deck::entries::{AxesEntry, HillEntry, MaterialEntry};
 use crate::laws::{Elastic, Hill, HillCoefficients, LawError, Orthotropic};
 use nalgebra::Matrix3;
