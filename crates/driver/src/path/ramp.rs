@@ -12,6 +12,7 @@ use crate::saved::{Numbers, Saved};
 use crate::settings::Nesting;
 use crate::vector::SparseVector;
 use crate::vector::largest;
+use moreau_contact::ContactError;
 use std::ops::ControlFlow;
 
 /// A step under way: the loadings at both of its ends, and how far it has come.
@@ -360,11 +361,31 @@ impl<const D: usize> Driver<D> {
                     ramp.path = self.path(ramp).filter(|_| !follows);
                     if ramp.path.is_none() && ramp.length < smallest {
                         let stopped = ramp.stopped(cause, 2.0 * ramp.length);
-                        return Err(self.loose_tool(&ramp.end).map_or(stopped, Into::into));
+                        return Err(self.out_of_hand(ramp, stopped));
                     }
                 }
             }
         }
+    }
+
+    /// Why a step stopped: a tool that nothing holds, if there is one.
+    fn out_of_hand(&self, ramp: &Ramp<D>, stopped: IncrementError) -> IncrementError {
+        let is_singular = |error: &IncrementError| match error {
+            IncrementError::Stopped { cause, .. } => matches!(
+                **cause,
+                IncrementError::Contact {
+                    source: ContactError::Singular,
+                    ..
+                }
+            ),
+            _ => false,
+        };
+        let loose = self.loose_tool(&ramp.end).or_else(|| {
+            is_singular(&stopped)
+                .then(|| self.spinning_tool(&ramp.end))
+                .flatten()
+        });
+        loose.map_or(stopped, Into::into)
     }
 
     /// The loads of a whole step, where the body is now \[N\].
@@ -484,7 +505,7 @@ impl<const D: usize> Driver<D> {
                     halved += 1;
                     if halved > self.settings.cuts {
                         let stopped = ramp.stopped(cause, path.last.abs());
-                        return Err(self.loose_tool(&ramp.end).map_or(stopped, Into::into));
+                        return Err(self.out_of_hand(ramp, stopped));
                     }
                 }
             }

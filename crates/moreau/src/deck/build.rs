@@ -80,6 +80,8 @@ pub struct Setup<const D: usize> {
     pub tools: Vec<String>,
     /// Whether tools have moments worth telling: where strains are large, or a tool turns.
     pub moments: bool,
+    /// Whether a moment turns a tool.
+    pub spins: bool,
     /// Surfaces of bodies that touch each other, and probes, that are not held: each once, in the order of the
     /// contacts and of the probes.
     pub surfaces: Vec<String>,
@@ -203,6 +205,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
         stages,
         surfaces: surfaces(deck, &held),
         moments: moments(deck),
+        spins: spins(deck),
         held,
         tools: deck.tools.iter().map(|t| t.name.value.clone()).collect(),
         groups: groups.facts(&hypothesis),
@@ -276,9 +279,14 @@ fn driver<const D: usize>(
     }
 }
 
+fn spins(deck: &Deck) -> bool {
+    let mut all = deck.steps.iter().flat_map(|s| &s.conditions);
+    all.any(|c| matches!(c.action, Action::Moment(_)))
+}
+
 fn moments(deck: &Deck) -> bool {
     let mut all = deck.steps.iter().flat_map(|s| &s.conditions);
-    let turns = all.any(|c| matches!(c.action, Action::Tool(_, Some(_))));
+    let turns = all.any(|c| matches!(c.action, Action::Tool(_, Some(_)) | Action::Moment(_)));
     deck.analysis != Analysis::Axisymmetric && (turns || deck.finite.is_some())
 }
 

@@ -133,6 +133,12 @@ const TURN: Described = Described::new(
     "Rotation of a tool since the virgin state, about the third axis.",
 )
 .when("NAME is a tool in the plane, under large strains or where a tool turns");
+const TURN_IN_SPACE: Described = Described::new(
+    "turn.NAME.AXIS",
+    Unit::Degree,
+    "Rotation of a tool since the virgin state: a vector along its axis, as long as the angle.",
+)
+.when("NAME is a tool in space, where a moment turns a tool");
 const QUALITY: Described = Described::new(
     "cell_quality",
     Unit::None,
@@ -161,6 +167,7 @@ pub(crate) fn history_columns() -> impl Iterator<Item = &'static Described> {
         MOMENT,
         MOMENT_IN_PLANE,
         TURN,
+        TURN_IN_SPACE,
         QUALITY,
         LARGEST_STRESS,
         LARGEST,
@@ -183,7 +190,12 @@ pub(crate) fn columns<const D: usize>(setup: &Setup<D>) -> Vec<(String, Unit)> {
         add(&mut list, name);
         match (setup.moments, D) {
             (false, _) => {}
-            (true, 3) => list.extend(AXES.map(|axis| named(&MOMENT, name, axis))),
+            (true, 3) => {
+                list.extend(AXES.map(|axis| named(&MOMENT, name, axis)));
+                if setup.spins {
+                    list.extend(AXES.map(|axis| named(&TURN_IN_SPACE, name, axis)));
+                }
+            }
             (true, _) => list.extend([&MOMENT_IN_PLANE, &TURN].map(|c| named(c, name, ""))),
         }
     }

@@ -401,6 +401,7 @@ const SYMBOLS: [(&str, &str); 16] = [
     ("body-force", "load"),
     ("displacement", "move"),
     ("turn", "tools"),
+    ("moment", "tools"),
 ];
 
 /// A table, as an inline one or under a header.

@@ -21,6 +21,8 @@ pub(super) struct History {
     surfaces: Vec<String>,
     /// Whether there are moments of tools.
     moments: bool,
+    /// Whether a moment turns a tool.
+    spins: bool,
     table: Table,
 }
 
@@ -40,6 +42,7 @@ impl History {
             tools: setup.tools.clone(),
             surfaces: setup.surfaces.clone(),
             moments: setup.moments,
+            spins: setup.spins,
         }
     }
 
@@ -116,10 +119,13 @@ impl History {
                 let moment = driver.tool_moment(tool).ok();
                 let axes = if D == 3 { 0..3 } else { 2..3 };
                 row.extend(axes.map(|i| moment.map_or(f64::NAN, |m| m[i])));
-                if D == 2 {
-                    let turn = driver.tool_turn(tool).ok();
-                    row.push(turn.map_or(f64::NAN, |t| t.z.to_degrees()));
-                }
+                let turn = driver.tool_turn(tool).ok();
+                let axes = match D {
+                    3 if !self.spins => 0..0,
+                    3 => 0..3,
+                    _ => 2..3,
+                };
+                row.extend(axes.map(|i| turn.map_or(f64::NAN, |t| t[i].to_degrees())));
             }
         }
         for surface in &self.surfaces {

@@ -200,6 +200,10 @@ impl<'a> Scene<'a> {
                 }
                 self.named(on, &said.join(", "), marks);
             }
+            Action::Moment(moment) => {
+                let said = format!("moment {} {}", shown(moment.value, DIGITS), units.energy());
+                self.named(on, &said, marks);
+            }
             Action::Push(force, _) => {
                 let f = components(force.iter().copied().enumerate());
                 self.tool(on, Some((f, LOAD)), marks);
