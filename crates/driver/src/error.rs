@@ -177,13 +177,15 @@ pub enum ModelError {
     /// A moment that nothing carries.
     #[error(
         "the moment of {moment} N·mm on tool {tool:?} is more than friction carries, by which alone it is held: it spins. \
-         Press it harder, give it more friction or a smaller moment, or prescribe its turn"
+         In the last equilibrium the moment was {carried:.6e} N·mm. Press it harder, give it more friction or a smaller moment, or prescribe its turn"
     )]
     SpinningTool {
         /// The tool.
         tool: String,
         /// The moment \[N·mm\].
         moment: f64,
+        /// The moment in the last equilibrium \[N·mm\].
+        carried: f64,
     },
     /// A moment that turns a tool away from all that it may touch.
     #[error(

@@ -52,9 +52,12 @@ impl<const D: usize> Driver<D> {
         let spins = self.spun_by_normals(end);
         let moment = |&tool: &usize| end.force.at(self.turn_dof(tool)) * self.mesh.size();
         let tool = spins.into_iter().find(|tool| moment(tool) != 0.0)?;
+        let rest = vec![0.0; self.state.displacement.len()];
+        let carried = self.moment(tool, &rest, &self.state.contacts);
         Some(ModelError::SpinningTool {
             tool: self.tools[tool].name.clone(),
-            moment: moment(&tool) * end.axle_of(tool)?.sum().signum(),
+            moment: moment(&tool),
+            carried: carried.dot(&end.axle_of(tool)?),
         })
     }
 

@@ -487,7 +487,7 @@ impl<const D: usize> Driver<D> {
                     let motion = largest(moved.iter().copied());
                     // Where strains are large, loads may fall and rise again.
                     let flat = path.growth <= Collapse::FLAT && !self.has_large_strains();
-                    path.ended = flat || motion > size;
+                    path.ended = flat || motion > size || self.tools_motion() > size;
                     let easy = report.newton_iterations <= 2 * Increments::EASY && halved == 0;
                     if easy && !(self.has_large_strains() && self.last_motion() > SEEN * size) {
                         path.length *= 2.0;
@@ -518,6 +518,14 @@ impl<const D: usize> Driver<D> {
         last.map_or(0.0, |(d_u, _)| {
             largest(d_u[..self.mesh_dofs()].iter().copied())
         })
+    }
+
+    /// Largest motion of a driven tool in the last increment, of its turn at the size of the mesh \[mm\].
+    fn tools_motion(&self) -> f64 {
+        let driven = |dof: &usize| !self.state.loading.displacement.contains_key(dof);
+        let tools = (self.mesh_dofs()..self.state.displacement.len()).filter(driven);
+        let last = self.state.last.as_ref();
+        last.map_or(0.0, |(d_u, _)| largest(tools.map(|dof| d_u[dof])))
     }
 
     /// Work of loads on the displacements of the last increment \[N·mm\].

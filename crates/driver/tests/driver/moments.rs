@@ -136,7 +136,9 @@ fn a_given_moment_turns_a_roll_as_far_as_the_turn_that_takes_it() {
         let both = by_turn_and_by_moment(|| large(300.0, 0.4, seam), (&press, &turn), (Z, 2e-3));
         for report in both {
             let r = &report.residuals;
-            eprintln!("{seam:?} {r:?}");
+            // Quadratic in the end: of less than a newton a thousandth is left, and of that rounding.
+            let near = r.iter().position(|r| *r < 5.0).expect("balance");
+            assert!(r.len() <= near + 5 && r[near + 2] < 1e-6, "{seam:?} {r:?}");
             assert!(report.newton_iterations <= 12, "{r:?}");
         }
     }
@@ -241,7 +243,7 @@ fn a_free_roll_rolls_without_slip() {
         assert!(force[0].abs() < 5.0, "{force}");
         let friction = driver.energies().friction_dissipation;
         assert!(
-            friction >= 0.0 && friction < 0.02 * 0.3 * 600.0 * way,
+            friction > -1e-9 && friction < 0.02 * 0.3 * 600.0 * way,
             "{friction}"
         );
         assert!(
@@ -289,29 +291,39 @@ fn moments_that_nothing_stands_up_to_are_told_by_name() {
     let press = |name: &str| held(name, 0.0).push("roll", Axis::Y, -600.0);
     let refused = |driver: &mut Driver<2>, step: &Step<2>| {
         let error = driver.run(step, 2, |_, _| {}).expect_err("spins");
-        eprintln!(
-            "{error} {:?} {:?}",
-            driver.tool_turn("roll"),
-            driver.tool_displacement("roll")
-        );
         error
     };
-    // More than friction carries: 0.3 · 600 N · 20 mm.
+    // More than friction carries, 0.3 · 600 N · 20 mm: at once, and followed to what it carries.
+    let most = 0.3 * 600.0 * RADIUS;
+    let spin = press("spin").moment("roll", Z, 1.2 * most);
+    for count in [1, 2] {
+        let mut driver = large(1e6, 0.3, Seam::Cheaper);
+        run(&mut driver, &press("press"), 2);
+        let spun = driver.run(&spin, count, |_, _| {}).expect_err("spins");
+        match &spun {
+            IncrementError::Model(ModelError::SpinningTool {
+                tool,
+                moment,
+                carried,
+            }) if count == 1 => {
+                assert!(tool == "roll" && *carried < most, "{spun}");
+                assert!((moment / (1.2 * most) - 1.0).abs() < 1e-12, "{spun}");
+            }
+            IncrementError::Collapse { collapse, .. } if count == 2 => {
+                let factor = collapse.load_factor;
+                assert!((factor * 1.2 - 1.0).abs() < 1e-6, "{factor}");
+            }
+            other => panic!("{count}: {other:?}"),
+        }
+    }
     let mut driver = large(1e6, 0.3, Seam::Cheaper);
     run(&mut driver, &press("press"), 2);
-    let most = 0.3 * 600.0 * RADIUS;
-    let spun = refused(&mut driver, &press("spin").moment("roll", Z, 1.2 * most));
-    let spinning = |moment: &f64| (moment / (1.2 * most) - 1.0).abs() < 1e-12;
-    assert!(
-        matches!(&spun, IncrementError::Model(ModelError::SpinningTool { tool, moment })
-            if tool == "roll" && spinning(moment)),
-        "{spun:?}"
-    );
     run(
         &mut driver,
         &press("less").moment("roll", Z, -0.9 * most),
         2,
     );
+    assert!((about(&driver, "roll", Z)[0] / (-0.9 * most) - 1.0).abs() < 1e-9);
     // Without friction nothing resists at all, nor where nothing touches, or where the analysis knows no turn.
     let smooth = refused(
         &mut large(1e6, 0.0, Seam::Cheaper),

@@ -161,7 +161,7 @@ const LARGEST: Described = Described::new(
 
 /// All columns that a history may have, each kind once.
 pub(crate) fn history_columns() -> impl Iterator<Item = &'static Described> {
-    const NAMED: [Described; 8] = [
+    const NAMED: [Described; 9] = [
         FORCE,
         DISPLACEMENT,
         MOMENT,

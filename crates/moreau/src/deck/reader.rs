@@ -384,7 +384,7 @@ pub(super) fn vector(
 }
 
 /// Symbols of formulas, and words that belong one table further in, with the keys that stand for them.
-const SYMBOLS: [(&str, &str); 16] = [
+const SYMBOLS: [(&str, &str); 17] = [
     ("E", "young"),
     ("nu", "poisson"),
     ("sigma_y", "yield-stress"),
