@@ -7,7 +7,7 @@ use crate::error::{IncrementError, LawFault, ModelError};
 use crate::linear::system::{Contacts, System};
 use crate::model::footing::Footing;
 use crate::model::load::Loading;
-use crate::model::points::{ContactPoint, Tool, tool_index, turned};
+use crate::model::points::{ContactPoint, Tool, in_space, tool_index, turned};
 use crate::model::{Analysis, Contact, Measure, Model};
 use crate::report::{ContactRecord, Energies, IncrementReport, Iteration};
 use crate::settings::{Nesting, Seam, Settings};
@@ -75,7 +75,7 @@ impl<const D: usize> Driver<D> {
         settings: Settings<D>,
     ) -> Result<Self, ModelError> {
         model.check()?;
-        let dofs = D * (model.mesh.nodes().len() + model.tools.len());
+        let dofs = D * (model.mesh.nodes().len() + 2 * model.tools.len());
         let rest = |p: &ContactPoint<D>| ContactRecord {
             contact: p.contact,
             node: p.node,
@@ -171,6 +171,12 @@ impl<const D: usize> Driver<D> {
     /// The node that stands for a tool.
     pub(crate) fn tool_node(&self, tool: usize) -> usize {
         self.mesh.nodes().len() + tool
+    }
+
+    /// The degree of freedom of the turn of a tool by a moment: the way of a point as far from its reference point as the
+    /// mesh is large \[mm\], so that its force is the moment over that size \[N\].
+    pub(crate) fn turn_dof(&self, tool: usize) -> usize {
+        D * (self.mesh.nodes().len() + self.tools.len() + tool)
     }
 
     /// Degrees of freedom of the mesh; those of the tools come after them.
@@ -349,8 +355,6 @@ impl<const D: usize> Driver<D> {
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
         let node = self.tool_node(tool);
         let about = self.tools[tool].reference + self.displacement(node) + moved(node);
-        let in_space =
-            |v: &SVector<f64, D>| Vector3::from_fn(|i, _| if i < D { v[i] } else { 0.0 });
         let of = |(p, c): (&ContactPoint<D>, &ContactRecord<D>)| {
             let own = p
                 .own
@@ -495,7 +499,8 @@ impl<const D: usize> Driver<D> {
         let before = self.timings();
         // Two factors at once may not fit.
         self.system = None;
-        let coupled = self.coupled(seam);
+        let coupled = self.coupled(seam, loading);
+        let turned = self.turned(loading);
         let mut system = System::new(
             &self.mesh,
             &self.blocks,
@@ -503,9 +508,10 @@ impl<const D: usize> Driver<D> {
             &Contacts {
                 nodes: &interface,
                 pivot,
-                tools: self.tools.len(),
+                tools: 2 * self.tools.len(),
                 seam,
                 coupled: coupled.as_deref(),
+                turned: &turned,
             },
             (
                 self.settings.memory,
@@ -527,22 +533,33 @@ impl<const D: usize> Driver<D> {
         for (k, tool) in self.tools.iter().enumerate() {
             let node = self.tool_node(k);
             let force = SVector::from(end.force.at_node::<D>(node));
-            // The most work that a contact force of unit pressure can do against the tool's force.
+            let moment = end.force.at(self.turn_dof(k)) * self.mesh.size();
+            let axle = end.axle_of(k).unwrap_or_default() * moment;
+            // The most work that a contact force of unit pressure can do against the tool's force, or its moment.
             let most = |p: &ContactPoint<D>| {
-                let x = self.position(p.node);
+                let place = self.position(p.node) - self.displacement(node);
                 let turn = self.state.loading.turn_of(k);
-                let seen = tool.seen(x - self.displacement(node), &turn);
-                let n = turned(tool.obstacle.normal(&seen), &turn);
-                let along = n.dot(&force);
-                let across = (force - n * along).norm();
-                along + if p.law.resists_slip() { across } else { 0.0 }
+                let n = turned(tool.obstacle.normal(&tool.seen(place, &turn)), &turn);
+                let spin = axle.cross(&in_space(&(place - tool.reference)));
+                [force, SVector::from_fn(|i, _| spin[i])].map(|drives| {
+                    let along = n.dot(&drives);
+                    let across = (drives - n * along).norm();
+                    along + if p.law.resists_slip() { across } else { 0.0 }
+                })
             };
             let mut points = self.points.iter().filter(|p| p.tool == Some(k)).peekable();
-            if force.norm() > 0.0 && points.peek().is_none() {
+            if (force.norm() > 0.0 || moment != 0.0) && points.peek().is_none() {
                 let tool = tool.name.clone();
                 return Err(ModelError::UntouchedTool { tool });
             }
-            if force.norm() > 0.0 && !points.any(|p| most(p) > 1e-9 * force.norm()) {
+            let least = 1e-9 * moment.abs() * self.mesh.size();
+            if moment != 0.0 && !points.clone().any(|p| most(p)[1] > least) {
+                return Err(ModelError::TurnedAwayTool {
+                    tool: tool.name.clone(),
+                    moment,
+                });
+            }
+            if force.norm() > 0.0 && !points.any(|p| most(p)[0] > 1e-9 * force.norm()) {
                 return Err(ModelError::PulledTool {
                     tool: tool.name.clone(),
                     force: force.iter().copied().collect(),

@@ -127,9 +127,9 @@ pub enum ModelError {
         /// The motion in words.
         motion: String,
     },
-    /// A tool driven by a force that could move without resistance.
+    /// A tool driven by a force or a moment that could move without resistance.
     #[error(
-        "tool {tool:?} is driven by a force and free to move: nothing resists {motion}. \
+        "tool {tool:?} is driven and free to move: nothing resists {motion}. \
          Prescribe its motion there, or give it a contact (with friction, if the motion is along its \
          surface)"
     )]
@@ -150,10 +150,10 @@ pub enum ModelError {
         /// The force on it \[N\].
         force: Vec<f64>,
     },
-    /// A tool driven by a force that no contact has.
+    /// A tool driven by a force or a moment that no contact has.
     #[error(
-        "tool {tool:?} is driven by a force, but no contact is against it: nothing can stand up to the \
-         force; add the contact, or prescribe the tool's motion"
+        "tool {tool:?} is driven, but no contact is against it: nothing can stand up to its force or \
+         moment; add the contact, or prescribe the tool's motion"
     )]
     UntouchedTool {
         /// The tool.
@@ -162,6 +162,42 @@ pub enum ModelError {
     /// A tool driven by a force that touches nothing.
     #[error("{0}")]
     ToolOutOfContact(Box<ToolOutOfContact>),
+    /// A moment about an axis that a tool has turned across.
+    #[error(
+        "a moment turns tool {tool:?} about {axis:?}, and it has turned about {turned:?} before: expected the same axis"
+    )]
+    TiltedAxle {
+        /// The tool.
+        tool: String,
+        /// Axis of the moment.
+        axis: Vec<f64>,
+        /// How far it has turned, along the axis of that \[rad\].
+        turned: Vec<f64>,
+    },
+    /// A moment that nothing carries.
+    #[error(
+        "the moment of {moment} N·mm on tool {tool:?} is more than friction carries, by which alone it is held: it spins. \
+         In the last equilibrium the moment was {carried:.6e} N·mm. Press it harder, give it more friction or a smaller moment, or prescribe its turn"
+    )]
+    SpinningTool {
+        /// The tool.
+        tool: String,
+        /// The moment \[N·mm\].
+        moment: f64,
+        /// The moment in the last equilibrium \[N·mm\].
+        carried: f64,
+    },
+    /// A moment that turns a tool away from all that it may touch.
+    #[error(
+        "tool {tool:?} is turned by the moment {moment} N·mm away from every surface that it may touch: nothing can stand \
+         up to that; turn the moment round, or prescribe the tool's turn"
+    )]
+    TurnedAwayTool {
+        /// The tool.
+        tool: String,
+        /// The moment \[N·mm\].
+        moment: f64,
+    },
     /// Two conditions that prescribe one displacement differently.
     #[error(
         "step {step:?} prescribes u_{axis} of node {node} as {first} and as {second} mm: remove one"

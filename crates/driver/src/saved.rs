@@ -199,7 +199,8 @@ impl<const D: usize> Saved for Loading<D> {
         self.directions = Directions::from_numbers(D, dofs, &along);
         numbers.sparse(&mut self.force)?;
         numbers.sparse(&mut self.pressure)?;
-        numbers.sparse(&mut self.turn)
+        numbers.sparse(&mut self.turn)?;
+        numbers.sparse(&mut self.axle)
     }
 }
 

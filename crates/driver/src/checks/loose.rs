@@ -47,6 +47,20 @@ impl<const D: usize> Driver<D> {
         d_u
     }
 
+    /// The first tool with a moment under a loading that normals of contacts alone would let spin, if there is one.
+    pub(crate) fn spinning_tool(&self, end: &Loading<D>) -> Option<ModelError> {
+        let spins = self.spun_by_normals(end);
+        let moment = |&tool: &usize| end.force.at(self.turn_dof(tool)) * self.mesh.size();
+        let tool = spins.into_iter().find(|tool| moment(tool) != 0.0)?;
+        let rest = vec![0.0; self.state.displacement.len()];
+        let carried = self.moment(tool, &rest, &self.state.contacts);
+        Some(ModelError::SpinningTool {
+            tool: self.tools[tool].name.clone(),
+            moment: moment(&tool),
+            carried: carried.dot(&end.axle_of(tool)?),
+        })
+    }
+
     /// The first tool with a force under a loading that touches nothing, if there is one.
     pub(crate) fn loose_tool(&self, end: &Loading<D>) -> Option<ModelError> {
         let size = self.mesh.size();

@@ -38,7 +38,7 @@ impl<const D: usize> Driver<D> {
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
         for (p, motion_row) in self.points.iter().zip(&self.footing.rows) {
             let Some(tool) = p.tool else { continue };
-            let (start, turn) = (self.seen(p, motion_row), end.turn_of(tool));
+            let (start, turn) = (self.seen(p, motion_row), self.turn_at(tool, end, d_u));
             let mut way = turned(motion_row.relative(moved), &-turn);
             if turn != self.state.loading.turn_of(tool) {
                 let at = |a: usize| match a < self.mesh.nodes().len() {

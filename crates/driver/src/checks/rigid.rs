@@ -2,6 +2,7 @@
 
 use crate::driver::Driver;
 use crate::model::load::{Loading, axis_letter};
+use crate::model::points::in_space;
 use nalgebra::{DMatrix, DVector, SVector};
 use std::collections::BTreeMap;
 
@@ -29,7 +30,7 @@ pub(crate) const NOTHING: f64 = 1e-6;
 pub(crate) struct Rows {
     /// First cell of each body.
     pub(crate) cells: Vec<usize>,
-    /// Tools that are driven by forces, bodies of their own after those of cells.
+    /// Tools that forces or moments drive, bodies of their own after those of cells.
     pub(crate) tools: Vec<usize>,
     /// Modes of a body, of which the first are translations.
     pub(crate) modes: usize,
@@ -110,7 +111,7 @@ impl Rows {
     }
 }
 
-/// The rigid modes of the bodies and of the tools that are driven by forces.
+/// The rigid modes of the bodies and of the tools that forces or moments drive.
 pub(crate) struct RigidModes<'a, const D: usize> {
     driver: &'a Driver<D>,
     loading: &'a Loading<D>,
@@ -151,7 +152,9 @@ impl<'a, const D: usize> RigidModes<'a, D> {
             .collect();
         let first = |tool: usize| D * driver.tool_node(tool);
         let is_held = |dof: usize| loading.displacement.contains_key(&dof);
-        let driven = |&k: &usize| (first(k)..first(k) + D).any(|dof| !is_held(dof));
+        let driven = |&k: &usize| {
+            loading.axle_of(k).is_some() || (first(k)..first(k) + D).any(|dof| !is_held(dof))
+        };
         let tools: Vec<usize> = (0..driver.tools.len()).filter(driven).collect();
         body_of.resize(mesh.nodes().len() + driver.tools.len(), usize::MAX);
         for (k, &tool) in tools.iter().enumerate() {
@@ -181,7 +184,33 @@ impl<'a, const D: usize> RigidModes<'a, D> {
         modes.into_iter().map(SVector::from).collect()
     }
 
-    /// A tool does not turn, and moves only where it is driven.
+    /// The number of the mode in which a moment turns a tool, in place of the rotation about the nearest of the axes.
+    fn turn_of(&self, tool: usize) -> Option<usize> {
+        let axle = self.loading.axle_of(tool)?;
+        let rotations = self
+            .count
+            .checked_sub(D)
+            .filter(|&rotations| rotations > 0)?;
+        Some(D + axle.iamax().min(rotations - 1))
+    }
+
+    /// What the turn of a tool by a moment moves a place of it along a direction, by the number of the mode; a place
+    /// relative to where the tool has moved.
+    pub(crate) fn turning(
+        &self,
+        tool: usize,
+        place: &SVector<f64, D>,
+        direction: &SVector<f64, D>,
+    ) -> Option<(usize, f64)> {
+        let body = self.tools.iter().position(|&k| k == tool)?;
+        let (mode, axle) = (self.turn_of(tool)?, self.loading.axle_of(tool)?);
+        let arm = in_space(&(place - self.driver.tools[tool].reference));
+        let way = axle.cross(&arm) / self.driver.mesh.size();
+        let number = self.count * (self.cells.len() + body) + mode;
+        Some((number, way.dot(&in_space(direction))))
+    }
+
+    /// A tool moves only where it is driven, and its turn is that of no node.
     fn of_tool(&self, node: usize) -> Vec<SVector<f64, D>> {
         let is_held = |i: usize| self.loading.displacement.contains_key(&(D * node + i));
         let free = |i: usize, u: f64| if is_held(i) { 0.0 } else { u };
@@ -223,7 +252,9 @@ impl<'a, const D: usize> RigidModes<'a, D> {
         for (k, &tool) in self.tools.iter().enumerate() {
             let first = self.count * (self.cells.len() + k);
             let modes = self.of_tool(self.driver.tool_node(tool));
-            for (j, _) in modes.iter().enumerate().filter(|(_, m)| m.norm() == 0.0) {
+            let turn = self.turn_of(tool);
+            let has = |j: usize, m: &SVector<f64, D>| m.norm() > 0.0 || Some(j) == turn;
+            for (j, _) in modes.iter().enumerate().filter(|(j, m)| !has(*j, m)) {
                 let own = BTreeMap::from([(first + j, 1.0)]);
                 rows.add((Stopper::Displacement, usize::MAX, 0), &own);
             }

@@ -160,6 +160,15 @@ impl<const D: usize> Driver<D> {
             .is_empty()
     }
 
+    /// The tools in motions that normals of contacts leave free.
+    pub(crate) fn spun_by_normals(&self, loading: &Loading<D>) -> Vec<usize> {
+        let rows = self.resisted(loading, |_, _| 1);
+        let free = rows.free().into_iter();
+        let tool =
+            |(body, _): (usize, String)| Some(rows.tools[body.checked_sub(rows.cells.len())?]);
+        free.filter_map(tool).collect()
+    }
+
     fn resisted(&self, loading: &Loading<D>, components: impl Fn(&Self, usize) -> usize) -> Rows {
         let held = loading.displacement.range(..self.mesh_dofs());
         let held = held.map(|(&dof, _)| (dof / D, loading.directions.along(dof), (0, 0)));
@@ -210,12 +219,19 @@ impl<const D: usize> Driver<D> {
             };
             let weights: Vec<(usize, f64)> = motion_row.weights().collect();
             let axes = moreau_contact::frame(&normal);
+            let place = self.place(motion_row);
             for k in 0..components(self, c) {
                 let kind = match k {
                     0 => Stopper::Contact,
                     _ => Stopper::Friction,
                 };
-                let row = modes.row(&weights, &axes.column(k).into_owned());
+                let direction = axes.column(k).into_owned();
+                let mut row = modes.row(&weights, &direction);
+                if let Some(tool) = point.tool
+                    && let Some((mode, way)) = modes.turning(tool, &place, &direction)
+                {
+                    *row.entry(mode).or_insert(0.0) -= way;
+                }
                 rows.add((kind, point.contact, 0), &row);
             }
         }

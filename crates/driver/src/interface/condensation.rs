@@ -175,6 +175,12 @@ pub(crate) fn row<const D: usize>(
             }
         }
     }
+    if let Some((dof, coefficient)) = kinematics.turning(component)
+        && let Some(dof) = unknown(dof)
+        && coefficient != 0.0
+    {
+        row.insert(dof, coefficient);
+    }
     row
 }
 

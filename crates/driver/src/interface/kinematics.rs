@@ -4,7 +4,7 @@ use crate::driver::Driver;
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
-use crate::model::points::{ContactPoint, Kinematics, Turn, turned};
+use crate::model::points::{ContactPoint, Kinematics, Turn, in_space, turned};
 use crate::vector::SparseVector;
 use moreau_laws::Local;
 use nalgebra::{SMatrix, SVector};
@@ -23,9 +23,41 @@ impl<const D: usize> Driver<D> {
         })
     }
 
+    /// How far a tool has turned at the end of an increment: as it is told, or as a moment has turned it.
+    pub(crate) fn turn_at(&self, tool: usize, end: &Loading<D>, d_u: &[f64]) -> Turn {
+        let Some(axle) = end.axle_of(tool) else {
+            return end.turn_of(tool);
+        };
+        let angle = d_u[self.turn_dof(tool)] / self.mesh.size();
+        self.state.loading.turn_of(tool) + axle * angle
+    }
+
     /// Whether slips are ways along tools, and not displacements beside them.
-    fn follows(&self, turn: &Turn) -> bool {
-        self.has_large_strains() || turn.norm() > 0.0
+    fn follows(&self, turn: &Turn, end: &Loading<D>, tool: usize) -> bool {
+        self.has_large_strains() || turn.norm() > 0.0 || end.axle_of(tool).is_some()
+    }
+
+    /// The degree of freedom of the turn of a tool that a moment turns, and how a point of it moves with that: a place
+    /// relative to where the tool has moved.
+    fn lever(
+        &self,
+        tool: usize,
+        end: &Loading<D>,
+        x: &SVector<f64, D>,
+    ) -> Option<(usize, SVector<f64, D>)> {
+        let axle = end.axle_of(tool)?;
+        let arm = in_space(&(x - self.tools[tool].reference)) / self.mesh.size();
+        let way = axle.cross(&arm);
+        Some((self.turn_dof(tool), SVector::from_fn(|i, _| way[i])))
+    }
+
+    /// Where a contact point is at the start of an increment, relative to where its tool has moved.
+    pub(crate) fn place(&self, motion_row: &RelativeMotionRow<D>) -> SVector<f64, D> {
+        let nodes = self.mesh.nodes().len();
+        motion_row.relative(|a| match a < nodes {
+            true => self.position(a),
+            false => self.displacement(a),
+        })
     }
 
     /// Where its tool sees a contact point at the start of an increment.
@@ -34,12 +66,7 @@ impl<const D: usize> Driver<D> {
         point: &ContactPoint<D>,
         motion_row: &RelativeMotionRow<D>,
     ) -> SVector<f64, D> {
-        let nodes = self.mesh.nodes().len();
-        let at = |a: usize| match a < nodes {
-            true => self.position(a),
-            false => self.displacement(a),
-        };
-        let x = motion_row.relative(at);
+        let x = self.place(motion_row);
         match point.tool {
             Some(tool) => self.tools[tool].seen(x, &self.state.loading.turn_of(tool)),
             None => x,
@@ -71,15 +98,19 @@ impl<const D: usize> Driver<D> {
                 };
                 return kinematics.between_forces(motion_row.area);
             };
-            let turn = end.turn_of(tool);
-            let (tool, at) = (&self.tools[tool], self.tool_position(tool, end, d_u));
+            let turn = self.turn_at(tool, end, d_u);
+            let follows = self.follows(&turn, end, tool);
+            let (number, at) = (tool, self.tool_position(tool, end, d_u));
+            let tool = &self.tools[tool];
             let obstacle = &tool.obstacle;
             let now = |a: usize| match a < self.mesh.nodes().len() {
                 true => self.position(a) + moved(a),
                 false => at,
             };
-            let x = tool.seen(motion_row.relative(now), &turn);
-            let slip = match self.follows(&turn) {
+            let place = motion_row.relative(now);
+            let lever = self.lever(number, end, &place);
+            let x = tool.seen(place, &turn);
+            let slip = match follows {
                 true => turned(obstacle.way(&self.seen(p, motion_row), &x), &turn),
                 false => slip,
             };
@@ -87,6 +118,7 @@ impl<const D: usize> Driver<D> {
                 let gap = p.gap(obstacle.as_ref(), |a| tool.seen(now(a) - at, &turn));
                 let n = turned(obstacle.normal(&x), &turn);
                 let mut kinematics = Kinematics::new(p, &n, gap, &slip, free);
+                kinematics.lever = lever;
                 if self.has_large_strains() {
                     let axes = [0, 1, 2].map(|k| {
                         let e = SVector::from_fn(|i, _| if i == k { 1.0 } else { 0.0 });
@@ -103,6 +135,7 @@ impl<const D: usize> Driver<D> {
             let axis = turned(corner.axis, &turn);
             let mut kinematics = Kinematics::new(&blunt, &axis, gap, &slip, free);
             kinematics.at_corner = true;
+            kinematics.lever = lever;
             kinematics
         };
         let mut all: Vec<_> = self.points.iter().zip(&self.footing.rows).map(at).collect();
@@ -129,6 +162,9 @@ impl<const D: usize> Driver<D> {
                 for i in 0..D {
                     forces.add(D * a + i, w * f[i]);
                 }
+            }
+            if let Some((dof, lever)) = &k.lever {
+                forces.add(*dof, -lever.dot(&f));
             }
         }
         forces

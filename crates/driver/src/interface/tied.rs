@@ -6,8 +6,9 @@ use crate::error::Inaccurate;
 use crate::interface::condensation::{Elimination, row};
 use crate::linear::suspension::STIFFER;
 use crate::linear::system::System;
+use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
-use crate::model::points::Kinematics;
+use crate::model::points::{ContactPoint, Kinematics};
 use crate::settings::{Nesting, Seam};
 use crate::vector::SparseVector;
 use crate::vector::largest;
@@ -452,20 +453,40 @@ impl<const D: usize> Tied<'_, D> {
 
 impl<const D: usize> Driver<D> {
     /// The nodes that the contacts couple, where contacts may be tied in the factor.
-    pub(crate) fn coupled(&self, seam: Seam) -> Option<Vec<Vec<usize>>> {
+    pub(crate) fn coupled(&self, seam: Seam, loading: &Loading<D>) -> Option<Vec<Vec<usize>>> {
         let method = self.settings.contact.springs();
         // Which nodes are coupled must not change within an increment.
         let may = !self.repairs()
             && self.settings.nesting == Nesting::Inside
             && seam != Seam::Condensed
             && method.is_some();
-        may.then(|| {
-            self.footing
-                .rows
-                .iter()
-                .map(RelativeMotionRow::nodes)
-                .collect()
-        })
+        may.then(|| self.nodes_of_points(loading, |_| true))
+    }
+
+    /// The nodes that contact forces couple which turn with tools under large strains, where these are driven.
+    pub(crate) fn turned(&self, loading: &Loading<D>) -> Vec<Vec<usize>> {
+        let is_driven = |&tool: &usize| {
+            let node = self.tool_node(tool);
+            loading.axle_of(tool).is_some()
+                || (D * node..D * node + D).any(|dof| !loading.displacement.contains_key(&dof))
+        };
+        let large = self.has_large_strains();
+        self.nodes_of_points(loading, |p| large && p.tool.as_ref().is_some_and(is_driven))
+    }
+
+    /// The nodes of the rows of some contact points, that of the turn of a tool with them.
+    fn nodes_of_points(
+        &self,
+        loading: &Loading<D>,
+        of: impl Fn(&ContactPoint<D>) -> bool,
+    ) -> Vec<Vec<usize>> {
+        let pairs = self.points.iter().zip(&self.footing.rows);
+        let nodes = |(point, row): (&ContactPoint<D>, &RelativeMotionRow<D>)| {
+            let turns = point.tool.filter(|&tool| loading.axle_of(tool).is_some());
+            let turn = turns.map(|tool| self.turn_dof(tool) / D);
+            row.nodes().into_iter().chain(turn).collect()
+        };
+        pairs.filter(|(p, _)| of(p)).map(nodes).collect()
     }
 }
 

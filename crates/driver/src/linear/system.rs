@@ -317,7 +317,7 @@ impl<const D: usize, F: Fn(usize) -> bool> Choice<'_, D, F> {
         let facets = facets.flatten().map(|&f| mesh.facet_nodes(f).collect());
         let facets: BTreeSet<Vec<usize>> = facets.collect();
         groups.extend(facets.iter().map(Vec::as_slice));
-        let coupled = self.contacts.coupled.into_iter().flatten();
+        let coupled = self.contacts.coupled.unwrap_or(self.contacts.turned).iter();
         groups.extend(coupled.map(Vec::as_slice));
         let mut own = vec![false; position.len() / D];
         groups
@@ -342,11 +342,13 @@ pub(crate) struct Contacts<'a> {
     pub(crate) nodes: &'a [usize],
     /// A node that no contact needs and that is treated as they are.
     pub(crate) pivot: Option<usize>,
-    /// Number of tools: nodes after those of the mesh, without stiffness.
+    /// Number of nodes of tools: after those of the mesh, without stiffness.
     pub(crate) tools: usize,
     pub(crate) seam: Seam,
     /// The nodes that each contact couples, where it may be tied.
     pub(crate) coupled: Option<&'a [Vec<usize>]>,
+    /// The nodes that contact forces couple which turn with tools, where these are driven.
+    pub(crate) turned: &'a [Vec<usize>],
 }
 
 impl System {
@@ -371,8 +373,9 @@ impl System {
             tools,
             seam,
             coupled,
+            turned,
         } = contacts;
-        let condensed = || Numbering::new(mesh, &fixed, interface_nodes, pivot, tools, &[]);
+        let condensed = || Numbering::new(mesh, &fixed, interface_nodes, pivot, tools, turned);
         let tied = coupled.and_then(|coupled| {
             let tied = || Numbering::new(mesh, &fixed, &[], None, tools, coupled);
             let room = bytes.map_or(f64::INFINITY, |b| b as f64 / size_of::<f64>() as f64);

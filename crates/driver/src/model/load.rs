@@ -98,6 +98,11 @@ pub(crate) enum Condition<const D: usize> {
         axis: Axis,
         force: f64,
     },
+    Moment {
+        name: String,
+        axis: [f64; 3],
+        moment: f64,
+    },
 }
 
 impl<const D: usize> Condition<D> {
@@ -111,6 +116,7 @@ impl<const D: usize> Condition<D> {
                 pressure: value, ..
             }
             | Self::Turn { angle: value, .. }
+            | Self::Moment { moment: value, .. }
             | Self::Push { force: value, .. } => *value *= share,
             Self::Force { force: vector, .. }
             | Self::Traction {
@@ -245,6 +251,17 @@ impl<const D: usize> Step<D> {
         })
     }
 
+    /// Turns a tool about its reference point by a total moment on it \[N·mm\], which it hands on to what it touches:
+    /// counter-clockwise in the plane, and in space about `axis`, which has any length and keeps its direction. It turns
+    /// as this asks, whatever [`Step::turn`] says of it.
+    pub fn moment(self, name: &str, axis: [f64; 3], moment: f64) -> Self {
+        self.with(Condition::Moment {
+            name: name.into(),
+            axis,
+            moment,
+        })
+    }
+
     /// Number of conditions, one for each axis, group and tool of which it says something.
     pub fn len(&self) -> usize {
         self.conditions.len()
@@ -326,8 +343,8 @@ pub(crate) fn facet_of(entry: usize) -> Facet {
     }
 }
 
-/// All that acts on the model at an instant: totals, not increments. A tool is a body of one node,
-/// after those of the mesh.
+/// All that acts on the model at an instant: totals, not increments. A tool is a body of two nodes after those of the
+/// mesh: one for its translation, and after these one whose first component is how far a moment has turned it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Loading<const D: usize> {
     /// Prescribed displacements by degree of freedom, `D·node + axis`, along its direction \[mm\].
@@ -339,8 +356,11 @@ pub struct Loading<const D: usize> {
     /// Pressures that follow their surface, under large strains \[MPa\]: on side s of cell c the entry 6c + s.
     pub pressure: SparseVector,
     /// How far tools have turned \[rad\]: of tool k the components 3k, 3k + 1 and 3k + 2 of a vector along
-    /// the axis, as long as the angle.
+    /// the axis, as long as the angle. Nothing of a tool that a moment turns.
     pub turn: SparseVector,
+    /// Axes of the moments that turn tools: of tool k the components 3k, 3k + 1 and 3k + 2 of a unit vector. The moment
+    /// itself is a force, see [`Driver::tool_turn`](crate::Driver::tool_turn).
+    pub axle: SparseVector,
 }
 
 impl<const D: usize> Loading<D> {
@@ -366,6 +386,7 @@ impl<const D: usize> Loading<D> {
             force: self.force.with(&end.force, mix),
             pressure: self.pressure.with(&end.pressure, mix),
             turn: self.turn.with(&end.turn, mix),
+            axle: end.axle.clone(),
         }
     }
 
@@ -403,6 +424,21 @@ impl<const D: usize> Loading<D> {
     /// How far a tool has turned.
     pub(crate) fn turn_of(&self, tool: usize) -> Turn {
         Turn::from_fn(|i, _| self.turn.at(3 * tool + i))
+    }
+
+    /// The axis of the moment that turns a tool; `None` of one that turns as told.
+    pub(crate) fn axle_of(&self, tool: usize) -> Option<Turn> {
+        let axle = Turn::from_fn(|i, _| self.axle.at(3 * tool + i));
+        (axle.norm() > 0.0).then_some(axle)
+    }
+
+    /// Takes out how far the tools have turned that moments turn.
+    pub(crate) fn release_turns(&mut self) {
+        let turn = std::mem::take(&mut self.turn);
+        let told = turn
+            .into_iter()
+            .filter(|(k, _)| self.axle_of(k / 3).is_none());
+        self.turn = told.collect();
     }
 
     /// The first number that is not finite, or that is of none of so many degrees of freedom or of no facet of
@@ -457,7 +493,7 @@ impl<const D: usize> Loading<D> {
                 return Err(error(format!("pressure on cell {}", k / SIDES), pressure));
             }
         }
-        for (k, angle) in self.turn.iter() {
+        for (k, angle) in self.turn.iter().chain(self.axle.iter()) {
             if !angle.is_finite() {
                 return Err(error(format!("turn of tool {}", k / 3), angle));
             }
@@ -499,6 +535,7 @@ impl<const D: usize> Loading<D> {
             force: self.force.with(&more.force, sum),
             pressure: self.pressure.with(&more.pressure, sum),
             turn: self.turn.with(&more.turn, sum),
+            axle: self.axle.clone(),
         }
     }
 
@@ -514,6 +551,7 @@ impl<const D: usize> Loading<D> {
             force: self.force.with(&start.force, |b, a| b - a),
             pressure: self.pressure.with(&start.pressure, |b, a| b - a),
             turn: self.turn.with(&start.turn, |b, a| b - a),
+            axle: self.axle.clone(),
         }
     }
 }

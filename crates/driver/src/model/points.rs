@@ -40,6 +40,11 @@ impl<const D: usize> Tool<D> {
     }
 }
 
+/// A vector of the plane or of space, in space.
+pub(crate) fn in_space<const D: usize>(v: &SVector<f64, D>) -> Vector3<f64> {
+    Vector3::from_fn(|i, _| if i < D { v[i] } else { 0.0 })
+}
+
 /// R v.
 pub(crate) fn turned<const D: usize>(v: SVector<f64, D>, turn: &Turn) -> SVector<f64, D> {
     match turn.norm() > 0.0 {
@@ -136,6 +141,8 @@ pub(crate) struct Kinematics<const D: usize> {
     pub(crate) at_corner: bool,
     /// ∂n/∂x of what is opposite, where forces turn with it \[1/mm\].
     pub(crate) curvature: SMatrix<f64, D, D>,
+    /// The degree of freedom of the turn of a tool that a moment turns, and how the tool moves here with that.
+    pub(crate) lever: Option<(usize, SVector<f64, D>)>,
     /// The law between them.
     pub(crate) law: Friction,
 }
@@ -207,6 +214,7 @@ impl<const D: usize> Kinematics<D> {
             active: [false; D],
             at_corner: false,
             curvature: SMatrix::zeros(),
+            lever: None,
             law,
         }
     }
@@ -214,6 +222,12 @@ impl<const D: usize> Kinematics<D> {
     /// Force on the body in space, for a force t in the frame \[N\].
     pub(crate) fn force(&self, t: &Local<D>) -> SVector<f64, D> {
         self.axes * t
+    }
+
+    /// The entry of a component of the relative displacement at the turn of the tool.
+    pub(crate) fn turning(&self, component: usize) -> Option<(usize, f64)> {
+        let (dof, lever) = self.lever.as_ref()?;
+        Some((*dof, -self.axes.column(component).dot(lever)))
     }
 
     /// A force in space, seen in the frame \[N\].

@@ -60,13 +60,14 @@ impl<const D: usize> Driver<D> {
         let corners = (0..contacts.len()).filter(touches).collect();
         let displacement = self.displacement_after(&d_u, end);
         let moved = largest(displacement[..self.mesh_dofs()].iter().copied());
+        let loading = self.loading_after(&d_u, end);
         let last = self.repeatable(d_u, end);
         self.state = State {
             increment: self.state.increment + 1,
             displacement,
             last: Some((last, end.increment_from(start))),
             internal,
-            loading: end.clone(),
+            loading,
             energies,
             contacts,
             contact,
@@ -175,6 +176,16 @@ impl<const D: usize> Driver<D> {
             end.directions.set(dof, u, &mut displacement);
         }
         displacement
+    }
+
+    /// What holds at the end of an increment, with the turns that moments have made.
+    fn loading_after(&self, d_u: &[f64], end: &Loading<D>) -> Loading<D> {
+        let mut loading = end.clone();
+        for tool in (0..self.tools.len()).filter(|&tool| end.axle_of(tool).is_some()) {
+            let turn = self.turn_at(tool, end, d_u);
+            (0..3).for_each(|i| loading.turn.add(3 * tool + i, turn[i]));
+        }
+        loading
     }
 
     /// What is told of the increment that has just been committed.

@@ -58,6 +58,7 @@ impl<const D: usize> Control<'_, D> {
         Loading {
             pressure: start.pressure.with(&self.grows.pressure, grown),
             turn: start.turn.clone(),
+            axle: start.axle.clone(),
             displacement: start.displacement.clone(),
             directions: start.directions.clone(),
             force: start.force.with(&self.grows.force, grown),

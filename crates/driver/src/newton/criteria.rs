@@ -62,7 +62,9 @@ impl<const D: usize> Driver<D> {
         d_u: &[f64],
         (start, end): (&Loading<D>, &Loading<D>),
     ) -> bool {
-        let moved = largest(d_u[..self.mesh_dofs()].iter().copied());
+        let mesh = d_u[..self.mesh_dofs()].iter().copied();
+        let turns = (0..self.tools.len()).map(|tool| d_u[self.turn_dof(tool)]);
+        let moved = largest(mesh.chain(turns));
         let prescribed = end.displacement.iter();
         let told = largest(prescribed.map(|(dof, u)| u - start.displacement.get(dof).unwrap_or(u)));
         let reach = self.mesh.size() + told;

@@ -5,10 +5,12 @@ use crate::driver::Driver;
 use crate::error::{IncrementError, ModelError};
 use crate::linear::system::System;
 use crate::model::load::{Loading, axis_letter};
-use crate::model::points::Kinematics;
+use crate::model::motion_row::RelativeMotionRow;
+use crate::model::points::{Kinematics, in_space};
 use crate::newton::iterate::Iterate;
 use crate::vector::SparseVector;
 use moreau_laws::Local;
+use nalgebra::{SMatrix, SVector};
 
 /// Parts of what flow adds to the stiffness that are tried in turn where the tangent is a mechanism.
 const BLENDS: [f64; 4] = [1.0 - 1e-4, 0.99, 0.8, 0.0];
@@ -36,7 +38,7 @@ impl<const D: usize> Driver<D> {
             now.assembly = self.assemble(system, end, (&now.d_u, missing), tangent);
         }
         if turns {
-            self.add_turning(system, contact);
+            self.add_turning(system, end, contact);
         }
         match system.is_tied() {
             true => Ok(()),
@@ -45,29 +47,36 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Adds the stiffness of contact forces that turn with the normal of their tool, W = ∂n/∂x: the force n t_n + τ
-    /// changes by t_n W v − n (τ · W v). Where n is held, as in contact, its symmetric part is as good:
-    /// −t_n W + n ⊗ W τ + W τ ⊗ n. That of a tool that is driven by its force is left out.
+    /// changes by t_n W v − n (τ · W v) with the relative displacement v. Where n is held, as in contact, its symmetric
+    /// part is as good: −t_n W + n ⊗ W τ + W τ ⊗ n. With a tool that a moment turns, see [`add_spin`].
     fn add_turning(
         &self,
         system: &mut System,
+        end: &Loading<D>,
         (kinematics, force): (&[Kinematics<D>], &[Local<D>]),
     ) {
-        for ((motion_row, k), t) in self.footing.rows.iter().zip(kinematics).zip(force) {
-            if k.curvature.amax() == 0.0 || t.norm() == 0.0 {
+        let rows = self.points.iter().zip(&self.footing.rows);
+        for (((point, motion_row), k), t) in rows.zip(kinematics).zip(force) {
+            if t.norm() == 0.0 || k.curvature.amax() == 0.0 && k.lever.is_none() {
                 continue;
             }
             let n = k.axes.column(0);
             let along = k.curvature * (k.force(t) - n * t[0]);
             let own = n * along.transpose();
             let stiffness = own + own.transpose() - k.curvature * t[0];
-            for &(a, w) in &motion_row.own {
-                for &(b, v) in &motion_row.own {
+            for (a, w) in motion_row.weights() {
+                for (b, v) in motion_row.weights() {
                     let entry = |ij: usize| {
                         let (i, j) = (ij / D, ij % D);
                         (D * a + i, D * b + j, w * v * stiffness[(i, j)])
                     };
                     system.add((0..D * D).map(entry));
                 }
+            }
+            if let Some(axle) = point.tool.and_then(|tool| end.axle_of(tool)) {
+                let spin = axle.cross(&in_space(&k.force(t))) / self.mesh.size();
+                let spin = SVector::from_fn(|i, _| spin[i]);
+                add_spin(system, motion_row, k.lever.as_ref(), &stiffness, &spin);
             }
         }
     }
@@ -132,4 +141,26 @@ impl<const D: usize> Driver<D> {
             position: self.mesh.nodes()[dof / D].to_vec(),
         })
     }
+}
+
+/// Adds what the turn w of a tool adds to the stiffness S of contact forces f that turn: the relative displacement is
+/// v − l w with the lever l, f turns with the tool by s w, s = e × f, and its moment changes by f · (e × v). All of
+/// that is −(v − l w) · s w and its transpose, of which the square of w is taken once.
+fn add_spin<const D: usize>(
+    system: &mut System,
+    motion_row: &RelativeMotionRow<D>,
+    lever: Option<&(usize, SVector<f64, D>)>,
+    stiffness: &SMatrix<f64, D, D>,
+    spin: &SVector<f64, D>,
+) {
+    let Some((turn, lever)) = lever else { return };
+    let along = stiffness * lever;
+    let across = -along - spin;
+    for (a, w) in motion_row.weights() {
+        let entry = |i: usize| (D * a + i, w * across[i]);
+        system.add((0..D).map(entry).map(|(dof, k)| (dof, *turn, k)));
+        system.add((0..D).map(entry).map(|(dof, k)| (*turn, dof, k)));
+    }
+    let own = lever.dot(&along) + lever.dot(spin);
+    system.add(std::iter::once((*turn, *turn, own)));
 }

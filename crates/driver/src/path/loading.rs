@@ -8,6 +8,9 @@ use crate::model::points::{Turn, tool_index};
 use crate::vector::SparseVector;
 use std::collections::{BTreeMap, BTreeSet};
 
+/// Sine of the angle between two axes that is rounding.
+const TILTED: f64 = 1e-9;
+
 impl<const D: usize> Driver<D> {
     /// The loading at the end of a step.
     ///
@@ -51,7 +54,10 @@ impl<const D: usize> Driver<D> {
                         loading.push(node, share, density);
                     }
                 }
-                Condition::Tool { .. } | Condition::Turn { .. } | Condition::Push { .. } => {}
+                Condition::Tool { .. }
+                | Condition::Turn { .. }
+                | Condition::Push { .. }
+                | Condition::Moment { .. } => {}
             }
         }
         loading.directions = self.displace_along(step, &mut moved)?;
@@ -64,6 +70,7 @@ impl<const D: usize> Driver<D> {
                 loading.force.add(dof, *force);
             }
         }
+        self.drive_turns(step, &mut moved, &mut loading)?;
         loading.displacement = moved;
         loading.check(mesh, self.state.displacement.len())?;
         Ok(loading)
@@ -132,6 +139,41 @@ impl<const D: usize> Driver<D> {
         Ok(turns)
     }
 
+    /// Lets moments turn tools: about axes of which the largest component is positive, so that a moment that changes its
+    /// sign keeps its axis.
+    fn drive_turns(
+        &self,
+        step: &Step<D>,
+        moved: &mut BTreeMap<usize, f64>,
+        loading: &mut Loading<D>,
+    ) -> Result<(), ModelError> {
+        for condition in &step.conditions {
+            let Condition::Moment { name, axis, moment } = condition else {
+                continue;
+            };
+            let tool = tool_index(&self.tools, name)?;
+            let axle = self.turn(name, axis, 1.0)?;
+            let axle = axle * axle[axle.iamax()].signum();
+            let turned = self.state.loading.turn_of(tool);
+            if axle.cross(&turned).norm() > TILTED * turned.norm() {
+                return Err(ModelError::TiltedAxle {
+                    tool: name.clone(),
+                    axis: axis.to_vec(),
+                    turned: turned.iter().copied().collect(),
+                });
+            }
+            let sign = axle.dot(&Turn::from(*axis)).signum();
+            let dof = self.turn_dof(tool);
+            if loading.axle_of(tool).is_none() {
+                (0..3).for_each(|i| loading.axle.add(3 * tool + i, axle[i]));
+            }
+            moved.remove(&dof);
+            loading.force.add(dof, sign * moment / self.mesh.size());
+        }
+        loading.release_turns();
+        Ok(())
+    }
+
     /// The degree of freedom along which a force drives a tool.
     fn pushed(&self, name: &str, axis: Axis) -> Result<usize, ModelError> {
         let node = self.tool_node(tool_index(&self.tools, name)?);
@@ -192,11 +234,23 @@ impl<const D: usize> Driver<D> {
     pub(crate) fn start_of(&self, end: &Loading<D>) -> Loading<D> {
         let state = &self.state;
         let mut start = state.loading.clone();
+        start.axle = end.axle.clone();
+        start.release_turns();
         let held = state.loading.displacement.keys().map(|dof| dof / D);
         let held: BTreeSet<usize> = held.collect();
         for node in held {
             let released = end.free_at(node).part(&self.nodal_reaction(node));
             start.push(node, 1.0, &released.into());
+        }
+        let rest = vec![0.0; state.displacement.len()];
+        for tool in 0..self.tools.len() {
+            // What turned as told is turned from now on by the moment that this took.
+            if let (Some(axle), None) = (end.axle_of(tool), state.loading.axle_of(tool)) {
+                let moment = self.moment(tool, &rest, &state.contacts).dot(&axle);
+                start
+                    .force
+                    .add(self.turn_dof(tool), moment / self.mesh.size());
+            }
         }
         let at = |(&dof, &u): (&usize, &f64)| {
             let here = end.directions.component(dof, |j| state.displacement[j]);

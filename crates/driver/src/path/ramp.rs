@@ -12,6 +12,7 @@ use crate::saved::{Numbers, Saved};
 use crate::settings::Nesting;
 use crate::vector::SparseVector;
 use crate::vector::largest;
+use moreau_contact::ContactError;
 use std::ops::ControlFlow;
 
 /// A step under way: the loadings at both of its ends, and how far it has come.
@@ -360,11 +361,31 @@ impl<const D: usize> Driver<D> {
                     ramp.path = self.path(ramp).filter(|_| !follows);
                     if ramp.path.is_none() && ramp.length < smallest {
                         let stopped = ramp.stopped(cause, 2.0 * ramp.length);
-                        return Err(self.loose_tool(&ramp.end).map_or(stopped, Into::into));
+                        return Err(self.out_of_hand(ramp, stopped));
                     }
                 }
             }
         }
+    }
+
+    /// Why a step stopped: a tool that nothing holds, if there is one.
+    fn out_of_hand(&self, ramp: &Ramp<D>, stopped: IncrementError) -> IncrementError {
+        let is_singular = |error: &IncrementError| match error {
+            IncrementError::Stopped { cause, .. } => matches!(
+                **cause,
+                IncrementError::Contact {
+                    source: ContactError::Singular,
+                    ..
+                }
+            ),
+            _ => false,
+        };
+        let loose = self.loose_tool(&ramp.end).or_else(|| {
+            is_singular(&stopped)
+                .then(|| self.spinning_tool(&ramp.end))
+                .flatten()
+        });
+        loose.map_or(stopped, Into::into)
     }
 
     /// The loads of a whole step, where the body is now \[N\].
@@ -466,7 +487,7 @@ impl<const D: usize> Driver<D> {
                     let motion = largest(moved.iter().copied());
                     // Where strains are large, loads may fall and rise again.
                     let flat = path.growth <= Collapse::FLAT && !self.has_large_strains();
-                    path.ended = flat || motion > size;
+                    path.ended = flat || motion > size || self.tools_motion() > size;
                     let easy = report.newton_iterations <= 2 * Increments::EASY && halved == 0;
                     if easy && !(self.has_large_strains() && self.last_motion() > SEEN * size) {
                         path.length *= 2.0;
@@ -484,7 +505,7 @@ impl<const D: usize> Driver<D> {
                     halved += 1;
                     if halved > self.settings.cuts {
                         let stopped = ramp.stopped(cause, path.last.abs());
-                        return Err(self.loose_tool(&ramp.end).map_or(stopped, Into::into));
+                        return Err(self.out_of_hand(ramp, stopped));
                     }
                 }
             }
@@ -497,6 +518,14 @@ impl<const D: usize> Driver<D> {
         last.map_or(0.0, |(d_u, _)| {
             largest(d_u[..self.mesh_dofs()].iter().copied())
         })
+    }
+
+    /// Largest motion of a driven tool in the last increment, of its turn at the size of the mesh \[mm\].
+    fn tools_motion(&self) -> f64 {
+        let driven = |dof: &usize| !self.state.loading.displacement.contains_key(dof);
+        let tools = (self.mesh_dofs()..self.state.displacement.len()).filter(driven);
+        let last = self.state.last.as_ref();
+        last.map_or(0.0, |(d_u, _)| largest(tools.map(|dof| d_u[dof])))
     }
 
     /// Work of loads on the displacements of the last increment \[N·mm\].

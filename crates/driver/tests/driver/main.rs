@@ -14,6 +14,7 @@ mod increments;
 mod interrupted;
 mod klarbring;
 mod law;
+mod moments;
 mod panel;
 mod passages;
 mod plane_stress;

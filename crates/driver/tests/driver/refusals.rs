@@ -71,7 +71,8 @@ fn a_loading_of_another_model_is_refused() {
         .fix("block.left", &[Axis::X])
         .displace("punch", Axis::Y, -0.1);
     let loading = driver.loading(&step).expect("valid");
-    let unknown = 2 * driver.mesh().nodes().len() + 2;
+    // A tool has two nodes.
+    let unknown = 2 * (driver.mesh().nodes().len() + 2);
     let (mut forced, mut moved, mut wild) = (loading.clone(), loading.clone(), loading);
     forced.force.add(unknown, 1.0);
     moved.displacement.insert(unknown, 1.0);
@@ -101,8 +102,8 @@ fn a_saved_ramp_of_another_model_is_refused() {
     let ramp = driver.begin(&step, 2).expect("valid");
     let mut numbers = Vec::new();
     ramp.write(&mut numbers);
-    // Prescribed displacements by how many numbers, then no forces, no pressures and no turns, then the same of the end.
-    let loading = 4 + numbers[0] as usize;
+    // Prescribed displacements by how many numbers, then no forces, no pressures, no turns and no axes of moments, then the same of the end.
+    let loading = 5 + numbers[0] as usize;
     assert_eq!(numbers[0], numbers[loading]);
     for first in [1, loading + 1] {
         let mut other = numbers.clone();

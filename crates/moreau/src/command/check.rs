@@ -336,6 +336,14 @@ fn conditions(deck: &Deck) {
                     let all: Vec<String> = motion.chain(turn).collect();
                     format!("tool {}", all.join(" and "))
                 }
+                Action::Moment(m) => {
+                    let axis = match deck.analysis.dimension() {
+                        2 => String::new(),
+                        _ => format!(" about {:?}", m.axis),
+                    };
+                    let unit = deck.units.energy();
+                    format!("tool is turned by the moment {} {unit}{axis}", m.value)
+                }
                 Action::Push(f, None) => format!("tool is driven by {f:?} {force}"),
                 Action::Push(f, Some(u)) => {
                     format!("tool is driven by {f:?} {force}, else moves by {u:?} {length}")

@@ -280,7 +280,7 @@ fn driver<const D: usize>(
 
 fn moments(deck: &Deck) -> bool {
     let mut all = deck.steps.iter().flat_map(|s| &s.conditions);
-    let turns = all.any(|c| matches!(c.action, Action::Tool(_, Some(_))));
+    let turns = all.any(|c| matches!(c.action, Action::Tool(_, Some(_)) | Action::Moment(_)));
     deck.analysis != Analysis::Axisymmetric && (turns || deck.finite.is_some())
 }
 

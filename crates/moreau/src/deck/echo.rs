@@ -290,6 +290,13 @@ fn lists(conditions: &[ConditionEntry], dimension: usize) -> [(&'static str, Vec
                 let all: String = motion.chain(turn).collect();
                 (3, format!("{{ name = {on}{all} }}"))
             }
+            Action::Moment(moment) => {
+                let moment = match dimension {
+                    2 => format!("{:?}", moment.value),
+                    _ => format!("{{ axis = {:?}, value = {:?} }}", moment.axis, moment.value),
+                };
+                (3, format!("{{ name = {on}, moment = {moment} }}"))
+            }
             Action::Push(v, None) => (3, format!("{{ name = {on}, force = {v:?} }}")),
             Action::Push(v, Some(u)) => {
                 (3, format!("{{ name = {on}, move = {u:?}, force = {v:?} }}"))

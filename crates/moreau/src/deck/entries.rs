@@ -395,6 +395,15 @@ pub struct TurnEntry {
     pub angle: f64,
 }
 
+/// A moment that turns a tool.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MomentEntry {
+    /// Along the axis; the normal of the plane in a plane analysis.
+    pub axis: [f64; 3],
+    /// The moment, counter-clockwise about the axis.
+    pub value: f64,
+}
+
 /// What a condition does.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
@@ -418,6 +427,8 @@ pub enum Action {
     Tool(Option<Vec<f64>>, Option<TurnEntry>),
     /// Force on a tool, and its translation where no force drives it.
     Push(Vec<f64>, Option<Vec<f64>>),
+    /// Moment on a tool.
+    Moment(MomentEntry),
 }
 
 /// `[[step]]`.

@@ -384,7 +384,7 @@ pub(super) fn vector(
 }
 
 /// Symbols of formulas, and words that belong one table further in, with the keys that stand for them.
-const SYMBOLS: [(&str, &str); 16] = [
+const SYMBOLS: [(&str, &str); 17] = [
     ("E", "young"),
     ("nu", "poisson"),
     ("sigma_y", "yield-stress"),
@@ -401,6 +401,7 @@ const SYMBOLS: [(&str, &str); 16] = [
     ("body-force", "load"),
     ("displacement", "move"),
     ("turn", "tools"),
+    ("moment", "tools"),
 ];
 
 /// A table, as an inline one or under a header.

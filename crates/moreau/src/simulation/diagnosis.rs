@@ -109,10 +109,11 @@ fn suggestion(
                 | Action::Force(_)
                 | Action::BodyForce(_)
                 | Action::Push(..)
+                | Action::Moment(..)
         )
     });
     let mut conditions = step.conditions.iter();
-    let pushed = conditions.find(|c| matches!(c.action, Action::Push(..)));
+    let pushed = conditions.find(|c| matches!(c.action, Action::Push(..) | Action::Moment(..)));
     let yields = matches!(cause, IncrementError::Mechanism { .. }) || plastic_fraction > WIDESPREAD;
     let exact = deck.solver.method == Method::Exact && !deck.solver.outside;
     match (load, cause) {
@@ -122,9 +123,9 @@ fn suggestion(
             load.on.value
         ),
         (_, IncrementError::Contact { .. }) if exact && pushed.is_some() => format!(
-            "nothing holds the tool \"{}\" against its force, it slides off or its contact opens: turn the \
+            "nothing holds the tool \"{}\" against its force or moment, it slides off or its contact opens: turn the \
              force towards the surface, give the contact friction, or prescribe the motion of the tool \
-             (move) along what slides",
+             (move, turn) along what slides",
             pushed.map_or("", |p| &p.on.value)
         ),
         (_, IncrementError::Contact { .. }) if !exact => {

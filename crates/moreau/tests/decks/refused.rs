@@ -229,6 +229,9 @@ const IN_THE_PLANE: [(&str, &[&str]); 22] = [
             "load = [{ on = \"punch\", force = [0] }]",
             "load = [{ on = \"block\", body-force = 1 }]",
             "tools = [{ name = \"foundation\" }]",
+            "tools = [{ name = \"foundation\", moment = [1] }]",
+            "tools = [{ name = \"foundation\", moment = 1, turn = 1 }]",
+            "tools = [{ name = \"foundation\", moment = { axis = [0, 0, 1], value = 1 } }]",
             "tools = [{ name = \"foundation\", move = [0, 1, 0] }]",
             "tools = [{ name = \"foundation\", force = [0] }]",
         ],
@@ -308,7 +311,13 @@ const IN_SPACE: [(&str, &[&str]); 8] = [
     ),
     (
         "move = [0, -0.2, 0]",
-        &["move = [0, -0.2]", "force = [0, -1]"],
+        &[
+            "move = [0, -0.2]",
+            "force = [0, -1]",
+            "moment = 1",
+            "moment = { axis = [0, 1], value = 1 }",
+            "moment = { axis = [0, 1, 0] }",
+        ],
     ),
 ];
 

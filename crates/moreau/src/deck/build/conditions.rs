@@ -41,6 +41,7 @@ pub(super) fn stages<const D: usize>(deck: &Deck, groups: &Groups<D>) -> Vec<Sta
                     };
                     turn.iter().fold(moved, turned)
                 }
+                Action::Moment(moment) => step.moment(on, moment.axis, moment.value),
                 Action::Push(force, motion) => {
                     let moved = motion.iter().fold(step, |s, u| s.tool(on, fixed(u)));
                     let driven = (0..D).filter(|&i| force[i] != 0.0 || drives(deck, on, i));
@@ -112,6 +113,8 @@ pub(super) fn doubts<const D: usize>(deck: &Deck, gaps: &[LeastGap<D>], findings
                 let moved = motion.as_ref().map_or(0.0, |u| largest(u));
                 Some(moved.max(turn.map_or(0.0, |t| t.angle.abs())))
             }
+            // A roll that turns freely.
+            Action::Moment(moment) => (moment.value != 0.0).then(|| moment.value.abs()),
             Action::Push(force, motion) => {
                 let moved = motion.as_ref().map_or(0.0, |u| largest(u));
                 Some(largest(force).max(moved))

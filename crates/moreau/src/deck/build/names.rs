@@ -91,7 +91,7 @@ fn used<const D: usize>(
 /// What the group of a condition must hold; `None` where the condition is on a tool.
 fn needed(action: &Action) -> Option<Needed> {
     match action {
-        Action::Tool(..) | Action::Push(..) => None,
+        Action::Tool(..) | Action::Push(..) | Action::Moment(_) => None,
         Action::Fix(_)
         | Action::FixAlong(_)
         | Action::Move(_)

@@ -1,6 +1,6 @@
 //! `[[step]]`: increments and conditions as they are given.
 
-use crate::deck::entries::{Action, ConditionEntry, StepEntry, TurnEntry};
+use crate::deck::entries::{Action, ConditionEntry, MomentEntry, StepEntry, TurnEntry};
 use crate::deck::finding::At;
 use crate::deck::reader::{self, Log, Table, Value};
 use crate::driver::Increments;
@@ -15,23 +15,23 @@ pub(super) fn read(table: Table<'_>, dimension: usize) -> Option<StepEntry> {
     let increments = increments.and_then(|v| increments_of(v, &table));
     let until_collapse = table.choice_if("until", &["collapse"]).is_some();
     let mut conditions = Vec::new();
-    for (key, read) in [
-        (
-            "fix",
-            fix as fn(&Table<'_>, usize) -> Option<ConditionEntry>,
-        ),
-        ("move", shift),
-        ("load", load),
+    type Read = fn(&Table<'_>, usize) -> Vec<ConditionEntry>;
+    let kinds: [(&str, Read); 4] = [
+        ("fix", |t, d| fix(t, d).into_iter().collect()),
+        ("move", |t, d| shift(t, d).into_iter().collect()),
+        ("load", |t, d| load(t, d).into_iter().collect()),
         ("tools", tool),
-    ] {
+    ];
+    for (key, read) in kinds {
         let list = table.tables(key, &format!("{key} of a step"));
-        conditions.extend(list.into_iter().filter_map(|t| {
+        conditions.extend(list.into_iter().flat_map(|t| {
             // What is fixed is at rest.
             let value = if key == "fix" { None } else { t.get("table") };
             let table = value.and_then(|v| amplitude(v, t.log()));
-            let condition = read(&t, dimension);
+            let mut read = read(&t, dimension);
             t.finish();
-            condition.map(|c| ConditionEntry { table, ..c })
+            read.iter_mut().for_each(|c| c.table.clone_from(&table));
+            read
         }));
     }
     let span = table.span.clone();
@@ -204,13 +204,36 @@ fn load(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
     condition(on, action, table)
 }
 
-fn tool(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
+/// What moves and presses a tool, and the moment that turns it.
+fn tool(table: &Table<'_>, dimension: usize) -> Vec<ConditionEntry> {
     let log = table.log();
     let name = table.text("name");
+    let given = table.get("moment");
+    if let Some(value) = given.filter(|_| table.get("turn").is_some()) {
+        log.borrow_mut().error(
+            &value.span(),
+            "a tool with a moment and a turn, expected one of both",
+            "what the moment turns is not told how far",
+        );
+        return Vec::new();
+    }
+    let moment = given.and_then(|value| moment(value, dimension, log));
+    let moment = moment.and_then(|m| condition(name.clone(), Action::Moment(m), table));
+    let moves = ["move", "force"].iter().any(|key| table.get(key).is_some());
+    let motion = match given.is_none() || moves {
+        true => motion(name, table, dimension),
+        false => None,
+    };
+    motion.into_iter().chain(moment).collect()
+}
+
+fn motion(name: Option<At<String>>, table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
+    let log = table.log();
+    let motion = |value| Some(reader::vector(value, "move", dimension, log)?.value);
     if let Some(force) = table.get("force") {
         let force = reader::vector(force, "force", dimension, log)?.value;
         let motion = match table.get("move") {
-            Some(value) => Some(reader::vector(value, "move", dimension, log)?.value),
+            Some(value) => Some(motion(value)?),
             None => None,
         };
         return condition(name, Action::Push(force, motion), table);
@@ -219,36 +242,58 @@ fn tool(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
         Some(value) => Some(turn(value, dimension, log)?),
         None => None,
     };
-    let motion = match turn {
+    let given = match turn {
         None => Some(table.need("move", "[ … ]")?),
         Some(_) => table.get("move"),
     };
-    let motion = match motion {
-        Some(value) => Some(reader::vector(value, "move", dimension, log)?.value),
+    let motion = match given {
+        Some(value) => Some(motion(value)?),
         None => None,
     };
     condition(name, Action::Tool(motion, turn), table)
 }
 
+/// A number in the plane, `{ axis = [x, y, z], value = … }` in space.
+fn moment(value: Value<'_>, dimension: usize, log: &Log) -> Option<MomentEntry> {
+    let forms = (
+        "moment",
+        "value",
+        "{ axis = [x, y, z], value = … } in a solid",
+    );
+    let (axis, value) = about(value, dimension, forms, log)?;
+    Some(MomentEntry { axis, value })
+}
+
 /// Degrees in the plane, `{ axis = [x, y, z], angle = … }` in space.
 fn turn(value: Value<'_>, dimension: usize, log: &Log) -> Option<TurnEntry> {
+    let forms = (
+        "turn",
+        "angle",
+        "{ axis = [x, y, z], angle = degrees } in a solid",
+    );
+    let (axis, angle) = about(value, dimension, forms, log)?;
+    Some(TurnEntry { axis, angle })
+}
+
+/// An axis and a number about it: in the plane the number alone.
+fn about(
+    value: Value<'_>,
+    dimension: usize,
+    (key, number, expected): (&'static str, &'static str, &'static str),
+    log: &Log,
+) -> Option<([f64; 3], f64)> {
     if dimension == 2 {
-        let angle = reader::number(value, "turn", log)?.value;
-        let axis = [0.0, 0.0, 1.0];
-        return Some(TurnEntry { axis, angle });
+        let number = reader::number(value, key, log)?.value;
+        return Some(([0.0, 0.0, 1.0], number));
     }
     if !value.get_ref().is_table() {
-        let expected = "{ axis = [x, y, z], angle = degrees } in a solid";
-        return reader::wrong(value, "turn", expected, log);
+        return reader::wrong(value, key, expected, log);
     }
-    let inner = reader::table(value, "turn", "turn", log)?;
+    let inner = reader::table(value, key, key, log)?;
     let axis = inner.need("axis", "[x, y, z]");
     let axis = axis.and_then(|v| reader::vector(v, "axis", 3, log));
-    let angle = inner.number("angle");
+    let number = inner.number(number);
     inner.finish();
     let axis = axis?.value;
-    Some(TurnEntry {
-        axis: [axis[0], axis[1], axis[2]],
-        angle: angle?.value,
-    })
+    Some(([axis[0], axis[1], axis[2]], number?.value))
 }

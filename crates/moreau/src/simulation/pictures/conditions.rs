@@ -233,6 +233,10 @@ impl<'a, const D: usize> Scene<'a, D> {
                 }
                 self.named(on, &said.join(", "), marks);
             }
+            Action::Moment(moment) => {
+                let said = format!("moment {} {}", shown(moment.value, DIGITS), units.energy());
+                self.named(on, &said, marks);
+            }
             Action::Push(force, _) => {
                 let f = components::<D>(force.iter().copied().enumerate());
                 self.tool(on, Some((f, LOAD)), marks);

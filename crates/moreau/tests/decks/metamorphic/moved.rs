@@ -150,8 +150,8 @@ fn a_mirror_and_a_shift_change_nothing() {
             let in_vector = keys.split('.').any(|k| vectors.contains(&k));
             let first = last == "0" && in_vector && !keys.contains(".radii.");
             let in_move = keys.contains("move.") && last == "x";
-            // In the plane; a turn in space is about an axis.
-            let turns = last == "turn";
+            // In the plane; in space both are about an axis.
+            let turns = ["turn", "moment"].contains(&last);
             if first || in_move || turns { -v } else { v }
         };
         tools_moved(&mut mirror, horizontal);

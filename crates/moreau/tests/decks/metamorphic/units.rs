@@ -30,6 +30,7 @@ fn powers(keys: &str) -> (i32, i32) {
         _ if is(&["young", "yield-stress", "hardening", "pressure", "traction"]) => (0, 1),
         _ if is(&["body-force"]) => (-1, 1),
         _ if is(&["force"]) => (2, 1),
+        _ if is(&["moment"]) => (3, 1),
         _ if is(&[
             "x",
             "y",
