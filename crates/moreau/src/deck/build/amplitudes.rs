@@ -128,7 +128,7 @@ fn parts(action: &Action) -> Vec<(Part, f64)> {
             let turn = turn.iter().map(|turn| ((TURN, Way::Axis(0)), turn.angle));
             motion(u).into_iter().chain(turn).collect()
         }
-        Action::Moment(m) => vec![(("moment", 0), m.value)],
+        Action::Moment(m) => vec![(("moment", Way::Axis(0)), m.value)],
         Action::Push(f, u) => [vector("force", f), motion(u)].concat(),
     }
 }
