@@ -10,6 +10,7 @@ use moreau_laws::{Coulomb, VonMises};
 use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
 use nalgebra::DMatrix;
 use std::collections::BTreeSet;
+use std::io::Write;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 
@@ -298,6 +299,7 @@ fn conjugate_gradients_are_those_of_all_processes() {
             10 * iterations.abs_diff(alone) < 3 * alone,
             "{count}: {iterations} and {alone}"
         );
-        eprintln!("{count} {iterations} {alone}");
+        let told = format!("{count} processes: {iterations} iterations, alone {alone}");
+        let _ = writeln!(std::io::stderr(), "{told}");
     }
 }
