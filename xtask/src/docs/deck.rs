@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// The tables of a deck in the order of the page: the name of the definition, and how a deck writes it.
-const TABLES: [(&str, &str); 28] = [
+const TABLES: [(&str, &str); 30] = [
     ("", "The deck"),
     ("mesh", "[mesh]"),
     ("block", "[[mesh.block]]"),
@@ -15,6 +15,8 @@ const TABLES: [(&str, &str); 28] = [
     ("material", "[[material]]"),
     ("hardening", "hardening = { … }"),
     ("kinematic", "kinematic = [{ … }]"),
+    ("orthotropic", "orthotropic = { … }"),
+    ("hill", "hill = { … }"),
     ("tool", "[[tool]]"),
     ("plane", "plane = { … }"),
     ("cylinder", "cylinder = { … }"),

@@ -109,11 +109,12 @@ fn is_axis<const D: usize>(n: &SVector<f64, D>) -> bool {
     n.iter().filter(|x| **x != 0.0).count() == 1
 }
 
-/// The space that unit vectors span, and the components of u along its basis: those of vectors that follow from others
-/// must agree, or the error is such a vector with what the others make of it and what it prescribes.
-fn combined<const D: usize>(
-    all: &Along<D>,
-) -> Result<(Subspace<D>, Vec<f64>), (SVector<f64, D>, f64, f64)> {
+/// A vector that follows from others, the component of u along it that they make, and the one that it prescribes.
+type Contradiction<const D: usize> = (SVector<f64, D>, f64, f64);
+
+/// The space that unit vectors span, and the components of u along its basis; those along vectors that follow from others
+/// must agree.
+fn combined<const D: usize>(all: &Along<D>) -> Result<(Subspace<D>, Vec<f64>), Contradiction<D>> {
     let vectors: Vec<SVector<f64, D>> = all.iter().map(|(n, _)| *n).collect();
     let space = Subspace::spanned(&vectors);
     let largest = all.iter().fold(0.0, |m: f64, (_, u)| m.max(u.abs()));

@@ -2,6 +2,7 @@
 //! history.
 
 mod bands;
+mod drawn;
 mod flat;
 mod layers;
 mod marks;

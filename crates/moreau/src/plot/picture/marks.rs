@@ -1,7 +1,7 @@
 //! Marks on a picture: supports, arrows, surfaces, labels, of a size on paper; not what they stand for.
 
-use super::sheet::Sheet;
-use crate::plot::pen::{FINE, Pen, number, write_text};
+use super::sheet::{Sheet, dot};
+use crate::plot::pen::{FINE, Pen, write_text};
 use std::fmt::Write;
 
 /// A mark on a picture, at places of the body.
@@ -144,17 +144,6 @@ pub(super) fn draw(svg: &mut String, sheet: &Sheet, marks: &[(&Mark<2>, bool)]) 
     }
 }
 
-/// A dot at a place on paper.
-pub(super) fn dot(svg: &mut String, mark: &Mark<2>) {
-    if let Mark::Dot { at: [x, y], colour } = mark {
-        let [x, y] = [x, y].map(|v| number(*v));
-        let _ = write!(
-            svg,
-            r##"<circle cx="{x}" cy="{y}" r="3.6" fill="{colour}" stroke="#ffffff" stroke-width="1.1"/>"##
-        );
-    }
-}
-
 /// Draws a mark that is no label.
 fn symbol(svg: &mut String, sheet: &Sheet, mark: &Mark<2>) {
     match mark {
@@ -201,13 +190,7 @@ fn symbol(svg: &mut String, sheet: &Sheet, mark: &Mark<2>) {
             pen.polyline(points.iter().map(|&x| sheet.place(x)));
             pen.stroke(svg, colour, 4.0, r#" stroke-opacity="0.55""#);
         }
-        Mark::Dot { at, colour } => dot(
-            svg,
-            &Mark::Dot {
-                at: sheet.place(*at),
-                colour,
-            },
-        ),
+        Mark::Dot { at, colour } => dot(svg, sheet.place(*at), colour),
         Mark::Label { .. } => {}
     }
 }

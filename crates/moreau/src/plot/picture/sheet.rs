@@ -1,8 +1,8 @@
 //! The sheet that a picture is drawn on: its size, what stands beside the drawing, and the places
 //! of nodes; not the cells.
 
+use super::Field;
 use super::flat::Flat;
-use super::{Field, Mark};
 use crate::plot::clip::clip;
 use crate::plot::colour::{INK, LEVELS, colour};
 use crate::plot::error::PlotError;
@@ -312,11 +312,7 @@ impl Sheet {
         self.axes(svg, picture);
         let mut x = self.corner[0] + 3.6 * AXIS;
         for (meaning, colour) in picture.keys {
-            let mark = Mark::Dot {
-                at: [x, y - AXES + 8.0],
-                colour,
-            };
-            super::marks::dot(svg, &mark);
+            dot(svg, [x, y - AXES + 8.0], colour);
             write_text(svg, [x + 9.0, y - AXES + 12.3], TICK, "start", "", meaning);
             x += 30.0 + width(meaning, TICK);
         }
@@ -342,4 +338,13 @@ impl Sheet {
             write_text(svg, [at[0], at[1] + 4.0], TICK, "middle", &more, name);
         }
     }
+}
+
+/// A dot at a place on paper.
+pub(super) fn dot(svg: &mut String, at: [f64; 2], colour: &str) {
+    let [x, y] = at.map(number);
+    let _ = write!(
+        svg,
+        r##"<circle cx="{x}" cy="{y}" r="3.6" fill="{colour}" stroke="#ffffff" stroke-width="1.1"/>"##
+    );
 }
