@@ -19,7 +19,8 @@ pub struct Certificate {
     /// Σ b(−u, t) + t·u ≥ 0 over the contacts, of Coulomb's law \[38\] and \[39\]: zero exactly at
     /// the law \[N·mm\].
     pub bipotential_gap: f64,
-    /// Largest penetration ⟨−u_n⟩ \[mm\], where b_c = +∞; the gap above is taken at max(u_n, 0).
+    /// Largest penetration ⟨−u_n⟩ \[mm\], where b_c = +∞; the gap above is taken at max(u_n, 0). Of a tie the largest
+    /// component of u, and zero.
     pub penetration: f64,
     /// Largest distance of a force to the admissible ones \[N\], the Coulomb cone, where b_c = +∞; the gap above is
     /// taken at its projection.
@@ -37,9 +38,8 @@ impl Certificate {
         for ((&law, u), t) in laws.iter().zip(u).zip(t) {
             let law: Friction = law.into();
             let admissible = law.project(t);
-            let mut open = *u;
-            open[0] = open[0].max(0.0);
-            certificate.penetration = certificate.penetration.max(open[0] - u[0]);
+            let open = law.admissible(u);
+            certificate.penetration = certificate.penetration.max((open - u).amax());
             certificate.excess_force = certificate.excess_force.max((t - admissible).norm());
             certificate.bipotential_gap += law.b(&-open, &admissible) + admissible.dot(&open);
         }

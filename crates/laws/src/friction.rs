@@ -6,6 +6,7 @@ pub(crate) mod bounded;
 pub(crate) mod coulomb;
 pub(crate) mod limited;
 pub(crate) mod table;
+pub(crate) mod tie;
 pub(crate) mod tresca;
 
 use crate::duality::Bipotential;
@@ -15,9 +16,10 @@ use bounded::{Bounded, ShearBound};
 use coulomb::Coulomb;
 use limited::LimitedCoulomb;
 use nalgebra::SMatrix;
+use tie::Tie;
 use tresca::{Tresca, clipped};
 
-/// Unilateral contact with friction.
+/// Unilateral contact with friction, or a tie.
 ///
 /// All are solved in one form, t = T(u, t; α) for any α > 0 \[N/mm\]: the prediction from the
 /// displacement and its correction, [`Self::correct`]. Coulomb's law projects t − αũ on its cone,
@@ -42,6 +44,8 @@ pub enum Friction {
     Anisotropic(AnisotropicCoulomb),
     /// ‖t_t‖ ≤ g(t_n), of users too.
     Bounded(Bounded),
+    /// u = 0.
+    Tie(Tie),
 }
 
 /// Part of the force below which α‖u_t‖ is no slip but the rounding of one: its direction is noise,
@@ -75,6 +79,12 @@ impl From<AnisotropicCoulomb> for Friction {
     }
 }
 
+impl From<Tie> for Friction {
+    fn from(law: Tie) -> Self {
+        Self::Tie(law)
+    }
+}
+
 /// A law lives as long as the program: a `static`, or what `Box::leak` leaves of one whose parameters
 /// are read.
 impl<L: ShearBound> From<&'static L> for Friction {
@@ -88,7 +98,7 @@ impl Friction {
     /// limit of the shear is multiplied by it, a coefficient is not.
     pub fn scaled(self, area: f64) -> Self {
         match self {
-            Self::Coulomb(_) | Self::Anisotropic(_) => self,
+            Self::Coulomb(_) | Self::Anisotropic(_) | Self::Tie(_) => self,
             Self::Tresca(law) => Self::Tresca(law.scaled(area)),
             Self::Limited(law) => Self::Limited(law.scaled(area)),
             Self::Bounded(law) => Self::Bounded(law.scaled(area)),
@@ -101,6 +111,22 @@ impl Friction {
     pub fn at_corner(self, half_angle: f64) -> Self {
         let angle = self.coefficient().atan() + half_angle;
         Self::Coulomb(Coulomb::of(angle.min(STEEPEST).tan()))
+    }
+
+    /// Whether the law is a tie: linear, and without a sign of the pressure.
+    #[inline]
+    pub fn is_tie(&self) -> bool {
+        matches!(self, Self::Tie(_))
+    }
+
+    /// The displacement nearest to u at which the law has forces, where b is finite: no penetration, or none at all.
+    pub fn admissible<const D: usize>(&self, u: &Local<D>) -> Local<D> {
+        if self.is_tie() {
+            return Local::zeros();
+        }
+        let mut open = *u;
+        open[0] = open[0].max(0.0);
+        open
     }
 
     /// Whether the law can resist slip at all.
@@ -117,6 +143,7 @@ impl Friction {
             Self::Limited(law) => law.b(x, t),
             Self::Bounded(law) => law.b(x, t),
             Self::Anisotropic(law) => law.b(x, t),
+            Self::Tie(law) => law.b(x, t),
         }
     }
 
@@ -129,6 +156,7 @@ impl Friction {
             Self::Tresca(law) => law.project(q),
             Self::Limited(law) => law.project(q),
             Self::Bounded(law) => law.project(q),
+            Self::Tie(_) => *q,
             Self::Anisotropic(law) => {
                 let m = law.stretch();
                 let stretched = q.component_div(&m);
@@ -147,6 +175,7 @@ impl Friction {
                 let q = t - alpha * u;
                 clipped(&q, self.bound(pressure(&q)))
             }
+            Self::Tie(_) => t - alpha * u,
             Self::Anisotropic(law) => {
                 let m = law.stretch();
                 let (u, t) = (u.component_mul(&m), t.component_div(&m));
@@ -179,6 +208,7 @@ impl Friction {
                 let derivative = self.clipped_jacobian(&(t - alpha * u));
                 (derivative, derivative * alpha)
             }
+            Self::Tie(_) => (SMatrix::identity(), SMatrix::identity() * alpha),
             Self::Anisotropic(law) => {
                 let m: Local<D> = law.stretch();
                 let (u, t) = (u.component_mul(&m), t.component_div(&m));
@@ -204,7 +234,7 @@ impl Friction {
     pub fn shifted<const D: usize>(&self, u: &Local<D>) -> Local<D> {
         match self {
             Self::Coulomb(law) => law.shifted(u),
-            Self::Tresca(_) | Self::Limited(_) | Self::Bounded(_) => *u,
+            Self::Tresca(_) | Self::Limited(_) | Self::Bounded(_) | Self::Tie(_) => *u,
             Self::Anisotropic(law) => {
                 let m = law.stretch();
                 let stretched = law.isotropic().shifted(&u.component_mul(&m));
@@ -214,7 +244,7 @@ impl Friction {
     }
 
     /// The status that the prediction falls in, \[35\]: open without pressure, stick below the
-    /// bound, else slip. Without friction a closed contact slips.
+    /// bound, else slip. Without friction a closed contact slips. A tie is always tied.
     #[inline]
     pub fn status<const D: usize>(&self, u: &Local<D>, t: &Local<D>, alpha: f64) -> Status {
         match self {
@@ -230,6 +260,7 @@ impl Friction {
                     Status::Slip
                 }
             }
+            Self::Tie(_) => Status::Tied,
             Self::Anisotropic(law) => {
                 let m = law.stretch();
                 let (u, t) = (u.component_mul(&m), t.component_div(&m));
@@ -242,6 +273,7 @@ impl Friction {
     #[inline]
     pub fn bound(&self, t_n: f64) -> f64 {
         match self.isotropic() {
+            Self::Tie(_) => f64::INFINITY,
             Self::Tresca(law) => law.limit(),
             Self::Limited(law) => law.bound(t_n),
             Self::Bounded(law) => law.bound(t_n),
@@ -254,7 +286,7 @@ impl Friction {
     pub fn coefficient(&self) -> f64 {
         match self {
             Self::Coulomb(law) => law.friction(),
-            Self::Tresca(_) => 0.0,
+            Self::Tresca(_) | Self::Tie(_) => 0.0,
             Self::Limited(law) => law.friction(),
             Self::Anisotropic(law) => law.isotropic().friction(),
             Self::Bounded(law) => law.slope(0.0),

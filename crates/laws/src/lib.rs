@@ -46,6 +46,7 @@
 //! | contact with Coulomb friction | [`Coulomb`], [`AnisotropicCoulomb`] | bipotential |
 //! | contact with friction limited by a shear | [`LimitedCoulomb`] | neither |
 //! | contact with friction of any bound | [`ShearBound`] | neither |
+//! | surfaces held together | [`Tie`] | superpotential |
 //! | any of these, as a structure sees it | [`Friction`] | as an equation |
 //! | of tests and documents only | [`textbook`] | all |
 //!
@@ -85,6 +86,7 @@ pub use friction::bounded::{Bounded, ShearBound};
 pub use friction::coulomb::Coulomb;
 pub use friction::limited::LimitedCoulomb;
 pub use friction::table::ShearTable;
+pub use friction::tie::Tie;
 pub use friction::tresca::Tresca;
 pub use isotropic::Isotropic;
 pub use large::{LargeResponse, Turned, respond_large, volume_change};

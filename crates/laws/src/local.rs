@@ -9,7 +9,7 @@ use nalgebra::SVector;
 /// the flux conjugate to t is −u.
 pub type Local<const D: usize> = SVector<f64, D>;
 
-/// The three statuses of unilateral contact with friction, \[35\].
+/// The three statuses of unilateral contact with friction, \[35\], and the one of a tie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Status {
     /// No force.
@@ -18,6 +18,8 @@ pub enum Status {
     Stick,
     /// Closed, with slip.
     Slip,
+    /// Held together, whatever the force.
+    Tied,
 }
 
 /// ‖v_t‖, safe from overflow and underflow.

@@ -73,6 +73,11 @@ pub(super) fn solve<const D: usize>(
     bound: Bound,
     guess: &Local<D>,
 ) -> Local<D> {
+    if law.is_tie() {
+        // What W does not see is left as it is.
+        let u = w * guess + q;
+        return w.try_inverse().map_or(*guess, |inverse| guess - inverse * u);
+    }
     if !matches!(law, Friction::Anisotropic(_)) {
         return isotropic((w, q), bound, guess);
     }

@@ -107,18 +107,21 @@ struct Iterate<const D: usize> {
 }
 
 /// Newton on the natural map at u + C (t − t₀*), with a diagonal compliance C \[mm/N\] of every contact
-/// (zero: the exact law) and t₀* = (0, t₀ₜ), the penalty of \[81\]–\[82\] as a spring in series.
+/// (zero: the exact law) and t₀* = (0, t₀ₜ), the penalty of \[81\]–\[82\] as a spring in series. Ties have none.
 pub(super) fn newton<const D: usize>(
     problem: &CondensedProblem<D>,
     compliance: Local<D>,
     guess: Option<&ContactSolution<D>>,
     (tolerance, enough): (Tolerance, f64),
 ) -> Result<ContactSolution<D>, ContactError> {
-    let springs: Vec<Springs<D>> = (problem.previous().iter())
-        .map(|previous| {
+    let springs: Vec<Springs<D>> = (problem.previous().iter().zip(problem.laws()))
+        .map(|(previous, law)| {
             let mut force = *previous;
             force[0] = 0.0;
-            Springs { compliance, force }
+            match law.is_tie() {
+                true => Springs::default(),
+                false => Springs { compliance, force },
+            }
         })
         .collect();
     let zero = vec![Local::zeros(); problem.contacts()];

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::{BlockMatrix, GlobalProblem};
-use moreau_laws::{AnisotropicCoulomb, Coulomb, Friction, LimitedCoulomb, Tresca};
+use moreau_laws::{AnisotropicCoulomb, Coulomb, Friction, LimitedCoulomb, Tie, Tresca};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 
@@ -79,14 +79,15 @@ fn agree<const D: usize>(
     contacts: usize,
     entries: &[f64],
     q: &[f64],
-    mu: f64,
+    (mu, ties): (f64, bool),
 ) -> Result<(), TestCaseError> {
     let (w, q) = random::<D>(contacts, entries, q);
-    let laws = vec![Coulomb::new(mu).expect("valid"); contacts];
+    let mut laws = vec![Friction::from(Coulomb::new(mu).expect("valid")); contacts];
+    (laws.iter_mut().step_by(2).filter(|_| ties)).for_each(|law| *law = Tie.into());
     let condensed = CondensedProblem::from_delassus(w.clone(), &q, laws.clone()).expect("regular");
     let reference = ContactSolver::solve(&SemismoothNewton::default(), &condensed, None)
         .map_err(|error| TestCaseError::fail(error.to_string()))?;
-    let problem = problem(&w, &q, mu);
+    let problem = LocalProblem::new(BlockMatrix::from_dense(&w), q, laws).expect("valid problem");
     let scale = (reference.force.iter().map(|t| t.norm())).fold(1.0, f64::max);
     for method in methods::<D>() {
         let solution = solve(&*method, &problem)?;
@@ -96,6 +97,10 @@ fn agree<const D: usize>(
         let certificate =
             Certificate::new(condensed.laws(), &solution.displacement, &solution.force);
         prop_assert!(certificate.bipotential_gap.abs() <= 1e-9 * scale);
+    }
+    for i in (0..contacts).step_by(2).filter(|_| ties) {
+        prop_assert!(reference.displacement[i].amax() < 1e-9 * scale);
+        prop_assert_eq!(reference.status[i], Status::Tied);
     }
     Ok(())
 }
@@ -116,8 +121,9 @@ proptest! {
         entries in prop::collection::vec(-1.0..1.0f64, 197),
         q in prop::collection::vec(-1.0..0.4f64, 14),
         mu in 0.0..0.35f64,
+        ties in any::<bool>(),
     ) {
-        agree::<2>(contacts, &entries, &q, mu)?;
+        agree::<2>(contacts, &entries, &q, (mu, ties))?;
     }
 
     #[test]
@@ -126,8 +132,9 @@ proptest! {
         entries in prop::collection::vec(-1.0..1.0f64, 229),
         q in prop::collection::vec(-1.0..0.4f64, 17),
         mu in 0.0..0.35f64,
+        ties in any::<bool>(),
     ) {
-        agree::<3>(contacts, &entries, &q, mu)?;
+        agree::<3>(contacts, &entries, &q, (mu, ties))?;
     }
 
     /// Where solutions need not be unique the default ends at one all the same.

@@ -113,7 +113,11 @@ pub fn solve_tied<const D: usize>(
         if !now.residual.is_finite() {
             break;
         }
-        let faint = if cold { now.faint(iterations) } else { 0.0 };
+        let faint = if cold {
+            newton.faint(&now, iterations)
+        } else {
+            0.0
+        };
         let status = newton.statuses(&now, faint);
         let rows = match first.take() {
             Some(guess) => newton.rows_of_guess(&now, &guess),
@@ -153,19 +157,19 @@ pub fn solve_tied<const D: usize>(
     Err(newton.failure(&now, tolerance))
 }
 
-impl<const D: usize> At<D> {
+impl<const D: usize> Tied<'_, '_, D> {
     /// Forces below which a contact counts as open \[N\] in an iteration of a cold start.
-    fn faint(&self, iterations: usize) -> f64 {
+    fn faint(&self, now: &At<D>, iterations: usize) -> f64 {
+        let pairs = now.t.iter().zip(&self.problem.friction);
+        let pressures = pairs.filter(|(_, law)| !law.is_tie()).map(|(t, _)| t[0]);
         match iterations {
             0 => 0.0,
-            1 => FAINT[0] * self.t.iter().map(|t| t[0]).fold(0.0, f64::max),
-            2..=COLD => FAINT[1] * self.residual,
+            1 => FAINT[0] * pressures.fold(0.0, f64::max),
+            2..=COLD => FAINT[1] * now.residual,
             _ => 0.0,
         }
     }
-}
 
-impl<const D: usize> Tied<'_, '_, D> {
     /// Another α, at the same place.
     fn with_part(&mut self, part: usize, now: At<D>) -> At<D> {
         self.part = part;

@@ -62,7 +62,7 @@ impl Coulomb {
     pub fn project<const D: usize>(&self, q: &Local<D>) -> Local<D> {
         match self.branch(q) {
             Status::Open => Local::zeros(),
-            Status::Stick => *q,
+            Status::Stick | Status::Tied => *q,
             Status::Slip => {
                 let generator = self.generator(q);
                 generator * self.along(q)
@@ -78,7 +78,7 @@ impl Coulomb {
     pub fn project_jacobian<const D: usize>(&self, q: &Local<D>) -> SMatrix<f64, D, D> {
         match self.branch(q) {
             Status::Open => SMatrix::zeros(),
-            Status::Stick => SMatrix::identity(),
+            Status::Stick | Status::Tied => SMatrix::identity(),
             Status::Slip => {
                 let (_, sin) = self.half_angle();
                 let tau = direction(q);

@@ -85,7 +85,7 @@ impl RegularisedCoulomb {
         }
         match status {
             Status::Open => {}
-            Status::Stick => {
+            Status::Stick | Status::Tied => {
                 for i in 1..D {
                     tangent[(i, i)] = -self.tangent;
                 }

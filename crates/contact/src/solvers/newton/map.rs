@@ -35,7 +35,7 @@ impl NewtonMap {
         r: &Local<D>,
         u: &Local<D>,
     ) -> Linearised<D> {
-        if self == Self::Natural {
+        if self == Self::Natural || law.is_tie() {
             let rho = rho.mean();
             let (projector, displacement) = law.correct_jacobian(u, r, rho);
             return Linearised {

@@ -67,7 +67,7 @@ impl<const D: usize> Tied<'_, '_, D> {
         let tight = TIGHT * self.problem.structure.stiffness(i);
         let mut tie = match status {
             Status::Open => return SMatrix::zeros(),
-            Status::Stick => SMatrix::identity() * tight,
+            Status::Stick | Status::Tied => SMatrix::identity() * tight,
             Status::Slip => {
                 let mut across = SMatrix::<f64, D, D>::zeros();
                 across[(0, 0)] = tight;
@@ -112,7 +112,8 @@ impl<const D: usize> Tied<'_, '_, D> {
             status: status.to_vec(),
             ..TiedFactor::default()
         };
-        let mut loose: Vec<usize> = (0..count).filter(|&i| status[i] != Status::Stick).collect();
+        let is_loose = |&i: &usize| !matches!(status[i], Status::Stick | Status::Tied);
+        let mut loose: Vec<usize> = (0..count).filter(is_loose).collect();
         loose.sort_by(|&a, &b| u[a][0].total_cmp(&u[b][0]));
         let mut more = 3 * D;
         let mut loose = loose.into_iter();

@@ -25,6 +25,7 @@ impl<const D: usize> Guess<D> {
         let closed = |(i, g): (usize, &Local<D>)| {
             let mut pair = (Local::zeros(), Local::zeros());
             match g[0] <= 0.0 {
+                _ if problem.friction[i].is_tie() => {}
                 true => pair.1[0] = problem.structure.stiffness(i),
                 false => pair.0[0] = g[0],
             }

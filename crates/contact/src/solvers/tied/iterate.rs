@@ -53,9 +53,11 @@ impl<const D: usize> Tied<'_, '_, D> {
         at
     }
 
-    /// Whether the law cannot yet tell if a contact is open: its force is within `faint` \[N\] of the kink.
+    /// Whether the law cannot yet tell if a contact is open: its force is within `faint` \[N\] of the kink, which a tie
+    /// has not.
     fn is_undecided(&self, now: &At<D>, i: usize, faint: f64) -> bool {
-        (now.t[i][0] - self.alpha(i) * now.irreversible[i][0]).abs() < faint
+        !self.problem.friction[i].is_tie()
+            && (now.t[i][0] - self.alpha(i) * now.irreversible[i][0]).abs() < faint
     }
 
     /// The statuses, with what is undecided open.

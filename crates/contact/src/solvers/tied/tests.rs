@@ -5,7 +5,7 @@ use crate::CondensedProblem;
 use crate::problem::stack;
 use crate::solvers::{ContactSolver, SemismoothNewton};
 use crate::tied::{Springs, Structure};
-use moreau_laws::{AnisotropicCoulomb, Coulomb, Friction, LimitedCoulomb, Tresca};
+use moreau_laws::{AnisotropicCoulomb, Coulomb, Friction, LimitedCoulomb, Tie, Tresca};
 use nalgebra::{DMatrix, SMatrix};
 use proptest::prelude::*;
 
@@ -152,7 +152,7 @@ proptest! {
     #[test]
     fn the_solution_is_that_of_the_condensed_problem(
         contacts in 1usize..9, seed in prop::collection::vec(-1.0..1.0f64, 37),
-        kind in 0usize..4, rigid in any::<bool>(),
+        kind in 0usize..5, rigid in any::<bool>(),
     ) {
         let coulomb = |mu: f64| Friction::from(Coulomb::new(mu).expect("valid"));
         let laws = [
@@ -160,6 +160,7 @@ proptest! {
             vec![Tresca::new(0.2).expect("valid").into()],
             vec![LimitedCoulomb::new(0.2, 0.3).expect("valid").into()],
             vec![AnisotropicCoulomb::new(0.05, 0.15).expect("valid").into()],
+            vec![coulomb(0.1), Tie.into()],
         ];
         let (mut structure, problem) = sample::<3>(contacts, &seed, &laws[kind], rigid);
         let expected = SemismoothNewton::default().solve(&problem, None);
