@@ -7,6 +7,7 @@ use crate::error::{IncrementError, LawFault, ModelError};
 use crate::linear::system::{Contacts, System};
 use crate::model::footing::Footing;
 use crate::model::load::Loading;
+use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Tool, in_space, tool_index, turned};
 use crate::model::{Analysis, Contact, Measure, Model};
 use crate::report::{ContactRecord, Energies, IncrementReport, Iteration};
@@ -85,7 +86,10 @@ impl<const D: usize> Driver<D> {
             t: Local::zeros(),
             force: SVector::zeros(),
             area: p.area,
-            status: Status::Open,
+            status: match p.law.is_tie() {
+                true => Status::Tied,
+                false => Status::Open,
+            },
             held: false,
             spring: Local::zeros(),
         };
@@ -496,6 +500,8 @@ impl<const D: usize> Driver<D> {
         for contact in self.contacts.iter().filter(|c| c.pairing.is_some()) {
             interface.extend(self.mesh.node_group(&contact.opposite)?);
         }
+        let ties = self.points.iter().filter_map(|p| p.tied.as_ref());
+        interface.extend(ties.flat_map(RelativeMotionRow::nodes));
         let before = self.timings();
         // Two factors at once may not fit.
         self.system = None;

@@ -116,6 +116,51 @@ pub enum ModelError {
         /// Its position \[mm\].
         position: Vec<f64>,
     },
+    /// A facet that two ties have.
+    #[error(
+        "{group:?} is tied already where it is at {position:?}, by the tie of {surface:?} to {to:?}: \
+         expected surfaces that no other tie has"
+    )]
+    TiedTwice {
+        /// The group with the facet.
+        group: String,
+        /// The surface of the tie before.
+        surface: String,
+        /// What that is tied to.
+        to: String,
+        /// A node of the facet \[mm\].
+        position: Vec<f64>,
+    },
+    /// Surfaces that are not opposite to each other anywhere.
+    #[error(
+        "nothing of {surface:?} is opposite to {to:?}: expected surfaces that lie on each other, with their outsides \
+         together"
+    )]
+    NothingToTie {
+        /// The surface.
+        surface: String,
+        /// What it should be tied to.
+        to: String,
+    },
+    /// Surfaces too far apart, or too deep within each other, to be tied.
+    #[error(
+        "{surface:?} and {to:?} are {apart} apart opposite to node {node} at {position:?}: expected at most {bridged}, a \
+         quarter of a facet"
+    )]
+    TiedApart {
+        /// The surface.
+        surface: String,
+        /// What it should be tied to.
+        to: String,
+        /// The node.
+        node: usize,
+        /// Its position \[mm\].
+        position: Vec<f64>,
+        /// The distance \[mm\].
+        apart: f64,
+        /// The largest that is bridged \[mm\].
+        bridged: f64,
+    },
     /// A body that could move without resistance.
     #[error(
         "the body of cell {cell} is free to move: nothing resists {motion}. \

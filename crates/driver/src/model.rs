@@ -5,6 +5,7 @@ pub(crate) mod footing;
 pub(crate) mod load;
 pub(crate) mod motion_row;
 pub(crate) mod points;
+pub(crate) mod ties;
 
 use crate::assembly::block::{Block, SolidBlock};
 use crate::assembly::cells::{Cells, ElementCells};
@@ -184,7 +185,7 @@ pub(crate) struct Contact {
     pub(crate) surface: String,
     /// Name of a tool or of a surface.
     pub(crate) opposite: String,
-    /// How the surfaces of two bodies are paired; `None` on a tool.
+    /// How the surfaces of two bodies are paired; `None` on a tool, and of a tie.
     pub(crate) pairing: Option<Pairing>,
 }
 
@@ -516,7 +517,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     }
 
     /// Adds the contact points of a surface.
-    fn touch(
+    pub(crate) fn touch(
         &mut self,
         surface: &str,
         opposite: &str,
@@ -554,6 +555,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 area: share.area,
                 kind: share.kind,
                 own,
+                tied: None,
             });
         }
         Ok(())

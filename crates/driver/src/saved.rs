@@ -161,7 +161,7 @@ impl Numbers<'_> {
     }
 
     fn status(&mut self, status: &mut Status) -> Result<(), ModelError> {
-        const STATUSES: [Status; 3] = [Status::Open, Status::Stick, Status::Slip];
+        const STATUSES: [Status; 4] = [Status::Open, Status::Stick, Status::Slip, Status::Tied];
         let place = STATUSES.iter().position(|s| s == status);
         let mut number = place.unwrap_or_default() as f64;
         self.value(&mut number)?;
@@ -169,7 +169,7 @@ impl Numbers<'_> {
         *status = *known.ok_or(ModelError::OutOfRange {
             what: "a saved contact status".into(),
             value: number,
-            expected: "0, 1 or 2",
+            expected: "0, 1, 2 or 3",
         })?;
         Ok(())
     }

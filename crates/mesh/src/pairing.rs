@@ -16,7 +16,7 @@ mod tree;
 
 use crate::Hypothesis;
 use crate::geometry::{diagonal, dot};
-use crate::mesh::{Facet, Mesh, NodeKind};
+use crate::mesh::{Change, Facet, Mesh, NodeKind};
 use crate::sample::facet_samples;
 use face::{Face, Values, unit};
 pub use fold::Fold;
@@ -90,6 +90,22 @@ impl<const D: usize> Mesh<D> {
             Pairing::Mortar => sides.mortar(&measure),
             Pairing::NodeToSurface => sides.node_to_surface(&measure),
         }
+    }
+}
+
+impl<const D: usize> Mesh<D> {
+    /// Outward unit normals of the nodes of a surface, those of its facets there averaged, at the given positions of all
+    /// nodes \[mm\].
+    pub fn node_normals(
+        &self,
+        positions: &[[f64; D]],
+        surface: &[Facet],
+    ) -> BTreeMap<usize, [f64; D]> {
+        let face = |&f: &Facet| {
+            let nodes = self.facet_nodes(f);
+            Face::new(self.facet_kind(f), nodes, positions, Change::default())
+        };
+        normals(&surface.iter().map(face).collect::<Vec<_>>())
     }
 }
 

@@ -12,6 +12,8 @@ use std::collections::BTreeMap;
 pub enum Stopper {
     /// Prescribed displacements.
     Displacement,
+    /// Ties to other bodies.
+    Tie,
     /// Contact normals, which push and do not pull.
     Contact,
     /// Friction, as far as it reaches.
@@ -36,7 +38,7 @@ pub(crate) struct Rows {
     pub(crate) modes: usize,
     translations: usize,
     /// Σ a aᵀ of each kind.
-    gram: [DMatrix<f64>; 3],
+    gram: [DMatrix<f64>; 4],
     /// Σ a² on every mode, by source.
     pub(crate) effect: BTreeMap<Source, DVector<f64>>,
 }

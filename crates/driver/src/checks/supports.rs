@@ -42,7 +42,7 @@ fn resists<const D: usize>(status: Status) -> usize {
     match status {
         Status::Open => 0,
         Status::Slip => 1,
-        Status::Stick => D,
+        Status::Stick | Status::Tied => D,
     }
 }
 
@@ -85,7 +85,12 @@ impl<const D: usize> Driver<D> {
             held.extend(nodes.iter().map(|&node| (node, n, source)));
         }
         let rows = self.rows(held.into_iter(), &loading, Self::may_resist);
-        let kinds = [Stopper::Displacement, Stopper::Contact, Stopper::Friction];
+        let kinds = [
+            Stopper::Displacement,
+            Stopper::Tie,
+            Stopper::Contact,
+            Stopper::Friction,
+        ];
         let free = kinds.map(|kind| null_space(&rows.up_to(kind)));
         let motions = rows.free();
         let support = |body: usize| {
@@ -222,6 +227,7 @@ impl<const D: usize> Driver<D> {
             let place = self.place(motion_row);
             for k in 0..components(self, c) {
                 let kind = match k {
+                    _ if point.law.is_tie() => Stopper::Tie,
                     0 => Stopper::Contact,
                     _ => Stopper::Friction,
                 };

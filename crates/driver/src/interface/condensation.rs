@@ -105,7 +105,7 @@ impl<const D: usize> Condensation<D> {
         let gives = |k: usize| match status[k / D] {
             Status::Open => true,
             Status::Slip => !k.is_multiple_of(D),
-            Status::Stick => false,
+            Status::Stick | Status::Tied => false,
         };
         let free: Vec<usize> = (0..self.active.len())
             .filter(|&k| self.active[k] && gives(k))

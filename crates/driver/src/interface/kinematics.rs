@@ -85,6 +85,14 @@ impl<const D: usize> Driver<D> {
         let size = self.mesh.size();
         let at = |(p, motion_row): (&ContactPoint<D>, &RelativeMotionRow<D>)| {
             let free = &motion_row.free(p.node, |a| system.free_at(a));
+            if p.law.is_tie() {
+                // Of the undeformed bodies, not of the increment: nothing adds up.
+                let apart = motion_row.relative(|a| self.displacement(a) + moved(a));
+                return match motion_row.plane(&SVector::zeros()) {
+                    Some((n, _)) => Kinematics::new(p, &n, 0.0, &apart, free),
+                    None => Kinematics::apart(p.law, 0.0),
+                };
+            }
             let slip = motion_row.relative(moved);
             let Some(tool) = p.tool else {
                 let since = motion_row.relative(|a| moved(a) - self.footing.moved(a));

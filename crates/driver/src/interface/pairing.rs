@@ -6,7 +6,7 @@ use crate::model::Contact;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::ContactPoint;
-use moreau_mesh::Fold;
+use moreau_mesh::{Facet, Fold};
 use nalgebra::SVector;
 use std::collections::BTreeMap;
 
@@ -22,6 +22,7 @@ impl<const D: usize> Driver<D> {
         let rest = vec![0.0; self.state.displacement.len()];
         self.footing.first.clear();
         self.footing.folds = self.folds()?;
+        self.turn_ties()?;
         self.pair_at(loading, &rest)?;
         if self.repairs() {
             self.footing.first.clone_from(&self.footing.rows);
@@ -33,11 +34,11 @@ impl<const D: usize> Driver<D> {
     pub(crate) fn pair_at(&mut self, loading: &Loading<D>, d_u: &[f64]) -> Result<(), ModelError> {
         let on_tool = |p: &ContactPoint<D>| match p.tool {
             Some(tool) => RelativeMotionRow::on_tool(p, self.tool_node(tool)),
-            None => RelativeMotionRow::default(),
+            None => p.tied.clone().unwrap_or_default(),
         };
         let mut rows: Vec<RelativeMotionRow<D>> = self.points.iter().map(on_tool).collect();
         let mut redistributed = Vec::new();
-        if self.contacts.iter().any(|c| c.pairing.is_some()) {
+        if self.points.iter().any(|p| p.tool.is_none()) {
             let position = |a: usize| {
                 let moved = SVector::from_column_slice(&d_u[D * a..D * a + D]);
                 (self.position(a) + moved).into()
@@ -45,6 +46,9 @@ impl<const D: usize> Driver<D> {
             let positions: Vec<[f64; D]> = (0..self.mesh.nodes().len()).map(position).collect();
             for (k, contact) in self.contacts.iter().enumerate() {
                 let Some(pairing) = contact.pairing else {
+                    if let Ok(surface) = self.mesh.facet_group(&contact.surface) {
+                        redistributed.extend(self.hand_over(&mut rows, (k, surface), loading));
+                    }
                     continue;
                 };
                 let surfaces = match self.footing.folds.get(&k) {
@@ -65,13 +69,11 @@ impl<const D: usize> Driver<D> {
                         rows[point] = RelativeMotionRow::on_surface(mortar_row, &positions);
                     }
                 }
-                let met = at.into_values().filter(|&i| rows[i].area > 0.0);
-                let met: Vec<usize> = met.collect();
-                self.redistribute_multipliers(&mut rows, (k, surfaces.0), loading);
-                redistributed.extend(met.into_iter().filter(|&i| rows[i].area <= 0.0));
+                redistributed.extend(self.hand_over(&mut rows, (k, surfaces.0), loading));
             }
             if self.repairs() {
-                for (i, row) in rows.iter_mut().enumerate() {
+                let pairs = rows.iter_mut().zip(&self.points).enumerate();
+                for (i, (row, _)) in pairs.filter(|(_, (_, p))| p.tied.is_none()) {
                     row.settle(&positions);
                     if let Some(first) = self.footing.first.get(i) {
                         row.slide(first, &positions, d_u);
@@ -82,6 +84,43 @@ impl<const D: usize> Driver<D> {
         self.footing.rows = rows;
         self.footing.redistributed = redistributed;
         self.footing.at = d_u.to_vec();
+        Ok(())
+    }
+
+    /// Hands over multipliers as [`Driver::redistribute_multipliers`]; the points that have given theirs.
+    fn hand_over(
+        &self,
+        rows: &mut [RelativeMotionRow<D>],
+        (contact, surface): (usize, &[Facet]),
+        loading: &Loading<D>,
+    ) -> Vec<usize> {
+        let own = (0..rows.len()).filter(|&i| self.points[i].contact == contact);
+        let met: Vec<usize> = own.filter(|&i| rows[i].area > 0.0).collect();
+        self.redistribute_multipliers(rows, (contact, surface), loading);
+        met.into_iter().filter(|&i| rows[i].area <= 0.0).collect()
+    }
+
+    /// Under large strains the frames of ties are those of their surfaces at the start of an increment.
+    fn turn_ties(&mut self) -> Result<(), ModelError> {
+        if !self.has_large_strains() || self.points.iter().all(|p| p.tied.is_none()) {
+            return Ok(());
+        }
+        let nodes = 0..self.mesh.nodes().len();
+        let positions: Vec<[f64; D]> = nodes.map(|a| self.position(a).into()).collect();
+        for (k, contact) in self.contacts.iter().enumerate() {
+            let of_tie = |p: &&mut ContactPoint<D>| p.contact == k && p.tied.is_some();
+            let mut points = self.points.iter_mut().filter(of_tie).peekable();
+            if points.peek().is_none() {
+                continue;
+            }
+            let surface = self.mesh.facet_group(&contact.surface)?;
+            let normals = self.mesh.node_normals(&positions, surface);
+            for point in points {
+                if let (Some(row), Some(n)) = (&mut point.tied, normals.get(&point.node)) {
+                    row.turn_to(-SVector::from(*n));
+                }
+            }
+        }
         Ok(())
     }
 

@@ -35,7 +35,13 @@ impl<const D: usize> Driver<D> {
         loading: &Loading<D>,
     ) {
         let own = |c: usize| self.points[c].node;
-        let is_held = |&c: &usize| loading.free_at(own(c)).dimension() < D;
+        // A node in two ties has a multiplier in the first alone, or the second would say what neighbours say.
+        let before = self.points.iter().take_while(|p| p.contact < contact);
+        let tied: BTreeSet<usize> = (before.filter(|p| p.tied.is_some()))
+            .map(|p| p.node)
+            .collect();
+        let crosses = |c: usize| self.points[c].tied.is_some() && tied.contains(&own(c));
+        let is_held = |&c: &usize| crosses(c) || loading.free_at(own(c)).dimension() < D;
         let meets = |c: &usize| self.points[*c].contact == contact;
         let all: Vec<usize> = (0..self.points.len())
             .filter(|c| meets(c) && motion_rows[*c].plane(&SVector::zeros()).is_some())
@@ -46,6 +52,9 @@ impl<const D: usize> Driver<D> {
         let neighbours = self.neighbours(surface);
         // Those that cannot give way to a pressure, next to others that can.
         let stiff = |&c: &usize| {
+            if crosses(c) {
+                return true;
+            }
             let normal = motion_rows[c].plane(&SVector::zeros()).map(|(n, _)| n);
             let free = &loading.free_at(own(c));
             normal.is_none_or(|n| {

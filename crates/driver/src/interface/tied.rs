@@ -246,7 +246,7 @@ impl<'a, const D: usize> Tied<'a, D> {
             let held = match status {
                 Status::Open => 0,
                 Status::Slip => 1,
-                Status::Stick => D,
+                Status::Stick | Status::Tied => D,
             };
             (0..held).for_each(|j| tie[(j, j)] = FIRM * self.stiffness[i]);
             tie

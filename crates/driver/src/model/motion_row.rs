@@ -4,7 +4,7 @@ use crate::model::points::ContactPoint;
 use crate::vector::subspace::Subspace;
 use moreau_contact::frame;
 use moreau_mesh::MortarRow;
-use nalgebra::{DMatrix, DVector, SVector};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 use std::collections::BTreeMap;
 
 /// Spread of opposite nodes along a direction, over the largest, that is none.
@@ -89,6 +89,51 @@ impl<const D: usize> RelativeMotionRow<D> {
         self.plane = Some((normal, normal.dot(&self.relative(at))));
     }
 
+    /// Puts Σ opposite·x where Σ own·x is, for a tie: rigid motions of both bodies together, and uniform strains, leave no
+    /// relative displacement then, and forces no moment. Along the surface as [`Self::settle`]; what is left of a
+    /// distance is bridged by nodes of the cells behind the surface opposite, `behind` with shares, as its displacements
+    /// go on beyond it.
+    pub(crate) fn close(
+        &mut self,
+        positions: &[[f64; D]],
+        rounding: f64,
+        behind: impl FnOnce() -> BTreeMap<usize, f64>,
+    ) {
+        self.settle(positions);
+        let at = |a: usize| SVector::<f64, D>::from(positions[a]);
+        let missing = self.relative(at);
+        if missing.norm() > rounding {
+            let behind = behind();
+            let total: f64 = behind.values().sum();
+            let sum: SVector<f64, D> = behind.iter().map(|(&a, c)| at(a) * *c).sum();
+            let middle = sum / total;
+            let mut spread = SMatrix::<f64, D, D>::zeros();
+            for (&a, c) in &behind {
+                let off = at(a) - middle;
+                spread += off * off.transpose() * *c;
+            }
+            // Cells have a volume: their nodes spread along all directions.
+            if let Some(inverse) = spread.try_inverse() {
+                let slope = inverse * missing;
+                let mut opposite: BTreeMap<usize, f64> = self.opposite.iter().copied().collect();
+                for (&a, c) in &behind {
+                    *opposite.entry(a).or_insert(0.0) += c * slope.dot(&(at(a) - middle));
+                }
+                self.opposite = opposite.into_iter().collect();
+            }
+        }
+        if let Some((_, gap)) = &mut self.plane {
+            *gap = 0.0;
+        }
+    }
+
+    /// Faces along another normal.
+    pub(crate) fn turn_to(&mut self, normal: SVector<f64, D>) {
+        if let Some(plane) = &mut self.plane {
+            plane.0 = normal;
+        }
+    }
+
     /// Takes note of the slip since the start of the increment, where the row was `first` and the nodes were
     /// `d_u` before these positions: how far, along the surface as it is now, the two points have parted that were opposite to each other
     /// then. It vanishes where the surfaces move as one body, however far (M. A. Puso and T. A. Laursen, *Comput. Methods
@@ -170,7 +215,7 @@ mod tests {
     use moreau_mesh::{
         CellKind, Hypothesis, Mesh, Pairing, PlaneStrain, Solid, block2, block3, uniform,
     };
-    use nalgebra::{Rotation3, SMatrix, Vector3};
+    use nalgebra::{Rotation3, Vector3};
     use proptest::prelude::*;
 
     #[test]

@@ -2,6 +2,7 @@
 
 use crate::error::ModelError;
 use crate::vector::subspace::Subspace;
+use crate::model::motion_row::RelativeMotionRow;
 use moreau_contact::{Obstacle, frame};
 use moreau_laws::{Friction, Local};
 use moreau_mesh::{NodeKind, nearest};
@@ -86,6 +87,8 @@ pub(crate) struct ContactPoint<const D: usize> {
     pub(crate) kind: NodeKind,
     /// Nodes whose displacements, with these weights, are that of the point; they add up to 1.
     pub(crate) own: Vec<(usize, f64)>,
+    /// What it is tied to, by weights of the undeformed bodies.
+    pub(crate) tied: Option<RelativeMotionRow<D>>,
 }
 
 /// Least cosine between normals of a tool over an edge that is one smooth surface there.
@@ -152,7 +155,7 @@ const PRESCRIBED: f64 = 1e-9;
 
 impl<const D: usize> Kinematics<D> {
     /// Of a point, from normal and gap at the end of the step, and the relative displacement of the
-    /// step.
+    /// step; of a tie that since the undeformed bodies.
     pub(crate) fn new(
         point: &ContactPoint<D>,
         n: &SVector<f64, D>,
@@ -163,6 +166,9 @@ impl<const D: usize> Kinematics<D> {
         let projected = free.part(n);
         let length = projected.norm();
         let dimension = free.dimension();
+        if point.law.is_tie() {
+            return Self::tied(point.law, (n, projected), slip, free);
+        }
         if dimension == 0 || length < PRESCRIBED {
             // Nothing left to decide, whatever the prescribed motion does.
             return Self::apart(point.law, gap);
@@ -193,6 +199,36 @@ impl<const D: usize> Kinematics<D> {
                 out.u[k] = e.dot(slip);
             }
         }
+        out
+    }
+
+    /// Of a tie: it holds along every free direction, also where the normal is none of them.
+    fn tied(
+        law: Friction,
+        (n, projected): (&SVector<f64, D>, SVector<f64, D>),
+        apart: &SVector<f64, D>,
+        free: &Subspace<D>,
+    ) -> Self {
+        let mut out = Self::apart(law, 0.0);
+        out.u = Local::zeros();
+        let dimension = free.dimension();
+        let along = projected.try_normalize(PRESCRIBED);
+        let Some(first) = along.or_else(|| free.vectors().next()) else {
+            return out;
+        };
+        let q = match dimension == D {
+            true => frame(n),
+            false => frame_in(&first, free),
+        };
+        // Without its normal a tie has tangents alone.
+        let tangents = usize::from(along.is_none());
+        for k in 0..dimension {
+            let e = q.column(k);
+            out.active[k + tangents] = true;
+            out.axes.set_column(k + tangents, &e);
+            out.u[k + tangents] = e.dot(apart);
+        }
+        out.gap = out.u[0];
         out
     }
 
@@ -302,6 +338,7 @@ mod tests {
             area: 1.0,
             kind: NodeKind::Corner,
             own: vec![(0, 1.0)],
+            tied: None,
         }
     }
 

@@ -162,7 +162,7 @@ impl<const D: usize> Driver<D> {
     /// changes is counted to second order in the increment.
     fn mean_bound(&self, kinematics: &Kinematics<D>, before: f64, now: f64) -> f64 {
         let bound = |t_n: f64| kinematics.law.bound(t_n);
-        match bound(now) > 0.0 {
+        match bound(now) > 0.0 && bound(now).is_finite() {
             true => 0.5 * (bound(before.max(0.0)) / bound(now) + 1.0),
             false => 1.0,
         }

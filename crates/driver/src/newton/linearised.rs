@@ -94,7 +94,7 @@ impl<const D: usize> Driver<D> {
             Some(s) if counts.newton > 1 => &s.force,
             _ => &previous,
         };
-        let springs = springs(&compliance, &suspended, (last, &previous));
+        let springs = springs(&compliance, &suspended, (last, &previous), kinematics);
         let largest_load = tied.largest_load();
         let largest_of =
             |forces: &[Local<D>], other: f64| forces.iter().map(|t| t.norm()).fold(other, f64::max);
@@ -224,15 +224,19 @@ impl<const D: usize> Driver<D> {
     }
 }
 
-/// Springs in series with every contact: those of the method, of which a slip stretches those along it from the
+/// Springs in series with every contact: those of the method, which ties have not, of which a slip stretches those along it from the
 /// forces t₀ at the start of the step, and those of what is suspended, from the last forces.
 fn springs<const D: usize>(
     compliance: &Local<D>,
     suspended: &[Local<D>],
     (last, previous): (&[Local<D>], &[Local<D>]),
+    kinematics: &[Kinematics<D>],
 ) -> Vec<Springs<D>> {
     let of = |i: usize| Springs {
-        compliance: compliance + suspended[i],
+        compliance: match kinematics[i].law.is_tie() {
+            true => suspended[i],
+            false => compliance + suspended[i],
+        },
         force: Local::from_fn(|j, _| match j {
             _ if suspended[i][j] > 0.0 => last[i][j],
             0 => 0.0,

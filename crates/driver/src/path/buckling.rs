@@ -88,7 +88,7 @@ impl<const D: usize> Driver<D> {
         let kinematics = self.kinematics(system, &self.state.loading, &rest);
         let status: Vec<Status> = match &self.state.solution {
             Some(solution) => solution.status.clone(),
-            None => vec![Status::Open; self.points.len()],
+            None => self.state.contacts.iter().map(|c| c.status).collect(),
         };
         if system.is_tied() {
             let held = !system.floats || self.is_held(&self.state.loading, &status);

@@ -26,4 +26,5 @@ mod states;
 mod steps;
 mod surfaces;
 mod team;
+mod ties;
 mod tools;
