@@ -377,5 +377,6 @@ pub(crate) fn status_name(status: Status) -> &'static str {
         Status::Open => "open",
         Status::Stick => "stick",
         Status::Slip => "slip",
+        Status::Tied => "tied",
     }
 }

@@ -76,7 +76,9 @@ pub(super) fn solve<const D: usize>(
     if law.is_tie() {
         // What W does not see is left as it is.
         let u = w * guess + q;
-        return w.try_inverse().map_or(*guess, |inverse| guess - inverse * u);
+        return w
+            .try_inverse()
+            .map_or(*guess, |inverse| guess - inverse * u);
     }
     if !matches!(law, Friction::Anisotropic(_)) {
         return isotropic((w, q), bound, guess);

@@ -39,7 +39,7 @@ impl<const D: usize> Driver<D> {
 
     fn least_gap(&self, contact: usize) -> Option<LeastGap<D>> {
         let pairs = self.points.iter().zip(&self.footing.rows);
-        let own = pairs.filter(|(p, _)| p.contact == contact);
+        let own = pairs.filter(|(p, _)| p.contact == contact && p.tied.is_none());
         let gaps = own.filter_map(|(p, motion_row)| {
             let gap = match p.tool {
                 Some(tool) => {

@@ -92,6 +92,17 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
     for index in 0..deck.contacts.len() {
         contact(deck, setup, index);
     }
+    for (k, tie) in deck.ties.iter().enumerate() {
+        let points = setup.driver.contacts().iter();
+        let points = points
+            .filter(|c| c.contact == deck.contacts.len() + k)
+            .count();
+        say!(
+            "tie        {} to {}, {points} points",
+            tie.surface.value,
+            tie.to.value
+        );
+    }
     say!("solver     {}", method(deck));
 }
 
@@ -277,14 +288,17 @@ fn stopping(deck: &Deck, motion: &RigidMotion) -> String {
         _ => "contact",
     };
     let contact = |&k: &usize| {
-        let contact = &deck.contacts[k];
+        let Some(contact) = deck.contacts.get(k) else {
+            let tie = &deck.ties[k - deck.contacts.len()];
+            return format!("tie of {} to {}", tie.surface.value, tie.to.value);
+        };
         let (surface, opposite) = (&contact.surface.value, &contact.against.value);
         format!("{what} of {surface} with {opposite}")
     };
     let mut list: Vec<String> = motion.groups.iter().map(group).collect();
     list.extend(motion.contacts.iter().map(contact));
     let only = match motion.stopper {
-        Some(Stopper::Displacement) | None => "",
+        Some(Stopper::Displacement | Stopper::Tie) | None => "",
         _ if motion.groups.is_empty() => "only ",
         _ => "",
     };

@@ -352,16 +352,17 @@ fn unfinished(deck: &Deck, given: &Given, findings: &mut Findings) {
     }
 }
 
-/// Surfaces of the contacts between bodies, and probes, without those whose name the history has already.
+/// Surfaces of the contacts between bodies and of the ties, and probes, without those whose name the history has already.
 fn surfaces(deck: &Deck, held: &[[String; 2]]) -> Vec<String> {
     let is_tool = |name: &String| deck.tools.iter().any(|t| t.name.value == *name);
     let is_held = |name: &String| held.iter().any(|[n, _]| n == name);
     let mut list: Vec<String> = Vec::new();
-    for contact in deck.contacts.iter().filter(|c| !is_tool(&c.against.value)) {
-        for name in [&contact.surface.value, &contact.against.value] {
-            if !list.contains(name) && !is_held(name) {
-                list.push(name.clone());
-            }
+    let contacts = deck.contacts.iter().filter(|c| !is_tool(&c.against.value));
+    let contacts = contacts.map(|c| [&c.surface.value, &c.against.value]);
+    let ties = deck.ties.iter().map(|t| [&t.surface.value, &t.to.value]);
+    for name in contacts.chain(ties).flatten() {
+        if !list.contains(name) && !is_held(name) {
+            list.push(name.clone());
         }
     }
     for probe in deck.probes.iter().map(|p| &p.value) {

@@ -101,12 +101,12 @@ const FIXED: [Described; 20] = [
     ),
 ];
 
-const NAMED: &str = "NAME is a group that a step fixes or moves, a tool, a surface of a contact between bodies, or a probe";
+const NAMED: &str = "NAME is a group that a step fixes or moves, a tool, a surface of a contact between bodies or of a tie, or a probe";
 const FORCE: Described = Described::new(
     "force.NAME.AXIS",
     Unit::Force,
     "Force on the body: of a group along the directions in which the step holds or moves it, of a tool, and of a surface by \
-     contact and by what holds it.",
+     contact, by ties and by what holds it.",
 )
 .when(NAMED);
 const DISPLACEMENT: Described = Described::new(

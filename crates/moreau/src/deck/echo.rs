@@ -5,6 +5,7 @@ use super::entries::{
     Action, Adjust, BlockEntry, ConditionEntry, ContactEntry, Deck, Grid, GroupEntry, Hardening,
     MaterialEntry, Method, Part, Shape, StepEntry, ToolEntry, Vtu,
 };
+use super::finding::At;
 use crate::driver::Increments;
 use crate::mesh::Integration;
 use std::fmt::{self, Write};
@@ -54,6 +55,10 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
     }
     for entry in &deck.contacts {
         contact(entry, out)?;
+    }
+    for entry in &deck.ties {
+        writeln!(out, "\n[[tie]]\nsurface = {}", surface(&entry.parts))?;
+        writeln!(out, "to = {}", text(&entry.to.value))?;
     }
     for entry in &deck.steps {
         step(entry, deck.analysis.dimension(), out)?;
@@ -212,12 +217,17 @@ fn tool(tool: &ToolEntry, out: &mut String) -> fmt::Result {
     Ok(())
 }
 
-fn contact(contact: &ContactEntry, out: &mut String) -> fmt::Result {
-    let parts: Vec<String> = contact.parts.iter().map(|p| text(&p.value)).collect();
+/// One group, or several.
+fn surface(parts: &[At<String>]) -> String {
+    let parts: Vec<String> = parts.iter().map(|p| text(&p.value)).collect();
     match parts.as_slice() {
-        [one] => writeln!(out, "\n[[contact]]\nsurface = {one}")?,
-        _ => writeln!(out, "\n[[contact]]\nsurface = [{}]", parts.join(", "))?,
+        [one] => one.clone(),
+        _ => format!("[{}]", parts.join(", ")),
     }
+}
+
+fn contact(contact: &ContactEntry, out: &mut String) -> fmt::Result {
+    writeln!(out, "\n[[contact]]\nsurface = {}", surface(&contact.parts))?;
     writeln!(out, "against = {}", text(&contact.against.value))?;
     writeln!(out, "friction = {}", contact.friction)?;
     if let Some(offset) = &contact.gap_offset {

@@ -373,6 +373,17 @@ pub struct ContactEntry {
     pub adjust: Option<At<Adjust>>,
 }
 
+/// `[[tie]]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TieEntry {
+    /// Group of facets: that of the deck, or that of all of the parts.
+    pub surface: At<String>,
+    /// Groups of the deck that are one surface.
+    pub parts: Vec<At<String>>,
+    /// Group of facets of the body that it is tied to.
+    pub to: At<String>,
+}
+
 /// A condition of a step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConditionEntry {
@@ -541,6 +552,8 @@ pub struct Deck {
     pub tool_names: Vec<String>,
     /// Contacts.
     pub contacts: Vec<ContactEntry>,
+    /// Ties.
+    pub ties: Vec<TieEntry>,
     /// Steps.
     pub steps: Vec<StepEntry>,
     /// Solver.

@@ -135,6 +135,7 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
     }
     let (tools, tool_names) = tool::read_tools(root, analysis, folder);
     let contacts = tool::read_contacts(root, dimension);
+    let ties = tool::read_ties(root);
     let steps = root
         .tables("step", "[[step]]")
         .into_iter()
@@ -160,6 +161,7 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
         tools,
         tool_names,
         contacts,
+        ties,
         steps,
         solver,
         directory: output.directory,

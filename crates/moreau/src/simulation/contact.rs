@@ -82,7 +82,11 @@ pub(super) const COLUMNS: [Described; 22] = [
         Unit::Stress,
         "Shear traction along the second tangent: `t_2` over the same share.",
     ),
-    Described::new("status", Unit::None, "`open`, `stick` or `slip`."),
+    Described::new(
+        "status",
+        Unit::None,
+        "`open`, `stick` or `slip`; of a tie `tied`.",
+    ),
     Described::new(
         "x_now",
         Unit::Length,

@@ -94,6 +94,10 @@ fn unknown_key_in_model(table: &str) -> Option<Vec<String>> {
             "sphere = { center = [0, 0, 0], radius = 1, zzz = 1 }",
         )],
         "contact" => vec![with("friction = 0.1", "friction = 0.1\nzzz = 1")],
+        "tie" => vec![with(
+            "[[contact]]",
+            "[[tie]]\nsurface = \"a\"\nto = \"b\"\nzzz = 1\n[[contact]]",
+        )],
         "friction" => vec![with(
             "friction = 0.1",
             "friction = { coulomb = 0.1, zzz = 1 }",

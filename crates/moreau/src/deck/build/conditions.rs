@@ -167,7 +167,8 @@ pub(super) fn inner_surfaces<const D: usize>(
         .flat_map(|s| &s.conditions)
         .filter(|c| matches!(c.action, Action::Pressure(_) | Action::Traction(_)));
     let surfaces = deck.contacts.iter().map(|c| &c.surface);
-    for on in surfaces.chain(loads.map(|c| &c.on)) {
+    let ties = deck.ties.iter().flat_map(|t| [&t.surface, &t.to]);
+    for on in surfaces.chain(ties).chain(loads.map(|c| &c.on)) {
         let facets = groups.mesh.facet_group(&on.value).unwrap_or_default();
         let inside = facets.iter().filter(|f| !boundary.contains(f)).count();
         if inside > 0 {

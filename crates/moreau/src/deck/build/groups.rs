@@ -1,7 +1,7 @@
 //! The groups of a deck on its mesh: parts by limits and by nearness, and what they measure.
 
 use super::{Body, GroupFacts};
-use crate::deck::entries::{BlockEntry, ContactEntry, Deck, GroupEntry, Part};
+use crate::deck::entries::{BlockEntry, Deck, GroupEntry, Part};
 use crate::deck::finding::{At, Class, Findings, did_you_mean};
 use crate::driver::{Analysis, Support};
 use crate::mesh::{CellKind, Facet, Mesh};
@@ -37,17 +37,18 @@ impl<const D: usize> Groups<D> {
                 groups.broken.push(entry.name.value.clone());
             }
         }
-        for contact in deck.contacts.iter().filter(|c| c.parts.len() > 1) {
-            groups.join(contact);
+        let contacts = deck.contacts.iter().map(|c| (&c.surface.value, &c.parts));
+        let ties = deck.ties.iter().map(|t| (&t.surface.value, &t.parts));
+        for (name, parts) in contacts.chain(ties).filter(|(_, parts)| parts.len() > 1) {
+            groups.join(name, parts);
         }
         groups
     }
 
     /// The facets of all parts of a surface as one group, each once; of parts that have some.
-    fn join(&mut self, contact: &ContactEntry) {
-        let name = &contact.surface.value;
+    fn join(&mut self, name: &String, parts: &[At<String>]) {
         let own = |part: &At<String>| self.mesh.facet_group(&part.value).unwrap_or_default();
-        let facets: BTreeSet<Facet> = contact.parts.iter().flat_map(own).copied().collect();
+        let facets: BTreeSet<Facet> = parts.iter().flat_map(own).copied().collect();
         if self.has(name) || facets.is_empty() {
             return;
         }

@@ -74,6 +74,11 @@ fn used<const D: usize>(
         }
         opposite(&contact.against, deck, groups, &mut used, findings);
     }
+    for tie in &deck.ties {
+        for on in tie.parts.iter().chain([&tie.to]) {
+            group(on, Needed::Facets, tools, groups, &mut used, findings);
+        }
+    }
     for condition in deck.steps.iter().flat_map(|step| &step.conditions) {
         let on = &condition.on;
         match needed(&condition.action) {

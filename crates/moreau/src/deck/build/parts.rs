@@ -439,5 +439,14 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
                 .ok()?;
         }
     }
+    // After the contacts, of which the indices are those of the deck.
+    for entry in &deck.ties {
+        let added = model.tie(&entry.surface.value, &entry.to.value);
+        let at = |error: &ModelError| match error {
+            ModelError::TiedTwice { group, .. } if *group == entry.to.value => &entry.to.span,
+            _ => &entry.surface.span,
+        };
+        model = added.map_err(|e| note(at(&e), e.clone())).ok()?;
+    }
     Some(model)
 }

@@ -1,7 +1,7 @@
 //! `[[tool]]` and `[[contact]]`: surfaces and pairs as they are given.
 
 use crate::deck::entries::{
-    Adjust, Analysis, ContactEntry, FrictionEntry, Shape, SkinEntry, ToolEntry,
+    Adjust, Analysis, ContactEntry, FrictionEntry, Shape, SkinEntry, TieEntry, ToolEntry,
 };
 use crate::deck::finding::At;
 use crate::deck::grammar::material::row;
@@ -205,10 +205,8 @@ pub(super) fn read_contacts(root: &Table<'_>, dimension: usize) -> Vec<ContactEn
             let adjust = adjust(&table);
             table.finish();
             let parts = parts?;
-            let names: Vec<&str> = parts.iter().map(|p| p.value.as_str()).collect();
-            let whole = At::new(names.join("+"), parts.first()?.span.clone());
             Some(ContactEntry {
-                surface: whole,
+                surface: whole(&parts)?,
                 parts,
                 against: against?,
                 // A stand-in for what was refused, so that the names are still looked up.
@@ -218,6 +216,28 @@ pub(super) fn read_contacts(root: &Table<'_>, dimension: usize) -> Vec<ContactEn
             })
         })
         .collect()
+}
+
+pub(super) fn read_ties(root: &Table<'_>) -> Vec<TieEntry> {
+    let read = |table: Table<'_>| {
+        let parts = surface(&table);
+        let to = table.text("to");
+        table.finish();
+        let parts = parts?;
+        Some(TieEntry {
+            surface: whole(&parts)?,
+            parts,
+            to: to?,
+        })
+    };
+    let tables = root.tables("tie", "[[tie]]").into_iter();
+    tables.filter_map(read).collect()
+}
+
+/// The name of a surface of these parts.
+fn whole(parts: &[At<String>]) -> Option<At<String>> {
+    let names: Vec<&str> = parts.iter().map(|p| p.value.as_str()).collect();
+    Some(At::new(names.join("+"), parts.first()?.span.clone()))
 }
 
 /// One group, or several that are one surface.

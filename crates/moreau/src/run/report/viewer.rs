@@ -211,8 +211,12 @@ fn contact_surface<const D: usize>(
         .collect();
     let [pressure, t_1, t_2, gap] = ["p_n", "p_1", "p_2", "gap"].map(|name| table.numbers(name));
     let shear: Vec<f64> = t_1.iter().zip(&t_2).map(|(a, b)| a.hypot(*b)).collect();
-    let statuses = [Status::Open, Status::Stick, Status::Slip].map(status_name);
     let status = table.texts("status");
+    let mut statuses = [Status::Open, Status::Stick, Status::Slip]
+        .map(status_name)
+        .to_vec();
+    let tied = status_name(Status::Tied);
+    statuses.extend(status.iter().any(|name| *name == tied).then_some(tied));
     let status: Vec<f64> = status
         .iter()
         .map(|name| {

@@ -62,6 +62,7 @@ pub(in crate::simulation) fn surface<const D: usize>(driver: &Driver<D>) -> Opti
                         Status::Open => 0.0,
                         Status::Stick => 1.0,
                         Status::Slip => 2.0,
+                        Status::Tied => 3.0,
                     }]
                 }),
             ),
