@@ -255,10 +255,11 @@ fn with_tools<'a, const D: usize>(
 }
 
 /// The statuses of contact with their colours.
-const STATUSES: [(Status, &str); 3] = [
+const STATUSES: [(Status, &str); 4] = [
     (Status::Open, "#9aa1ab"),
     (Status::Stick, "#1f5fbf"),
     (Status::Slip, "#e07b00"),
+    (Status::Tied, "#3a7d44"),
 ];
 
 /// Contact in one increment: along the surfaces of a plane body, on those of a solid.

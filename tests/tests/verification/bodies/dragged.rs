@@ -77,6 +77,7 @@ fn obeys(driver: &Driver<2>) -> Fallible {
         match c.status {
             Status::Open => assert!(c.t.norm() == 0.0 && c.u[0] > 0.0),
             Status::Stick => assert!(c.u[1].abs() <= 1e-9 * PRESSED && c.t[1].abs() <= MU * c.t[0]),
+            Status::Tied => unreachable!("no tie"),
             Status::Slip => {
                 let excess = c.t[1] + MU * c.t[0] * c.u[1].signum();
                 assert!(
