@@ -256,6 +256,7 @@ fn plane_bound(law: &Friction) -> (f64, f64) {
         Friction::Limited(law) => (law.friction(), law.limit()),
         Friction::Anisotropic(law) => (law.friction()[0], f64::INFINITY),
         Friction::Bounded(law) => panic!("{law:?} has no straight edges"),
+        Friction::Tie(law) => panic!("{law:?} has no edges"),
     }
 }
 

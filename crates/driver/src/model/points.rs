@@ -1,8 +1,8 @@
 //! The contact points of a model: their frames, gaps and slips; not the law that holds there.
 
 use crate::error::ModelError;
-use crate::vector::subspace::Subspace;
 use crate::model::motion_row::RelativeMotionRow;
+use crate::vector::subspace::Subspace;
 use moreau_contact::{Obstacle, frame};
 use moreau_laws::{Friction, Local};
 use moreau_mesh::{NodeKind, nearest};

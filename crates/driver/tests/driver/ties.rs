@@ -401,7 +401,8 @@ fn a_tie_under_a_tool_is_the_same_by_every_method() {
     let first = solve(Seam::Condensed, None);
     let force = first.tool_force("die").expect("there");
     assert!(force[1] < -100.0, "{force}");
-    let others: [(Seam, Option<Box<dyn ContactSolver<2>>>, f64); 4] = [
+    type Method = Option<Box<dyn ContactSolver<2>>>;
+    let others: [(Seam, Method, f64); 4] = [
         (Seam::Tied, None, 1e-8),
         (
             Seam::Condensed,

@@ -46,7 +46,7 @@ impl<const D: usize> Groups<D> {
     }
 
     /// The facets of all parts of a surface as one group, each once; of parts that have some.
-    fn join(&mut self, name: &String, parts: &[At<String>]) {
+    fn join(&mut self, name: &str, parts: &[At<String>]) {
         let own = |part: &At<String>| self.mesh.facet_group(&part.value).unwrap_or_default();
         let facets: BTreeSet<Facet> = parts.iter().flat_map(own).copied().collect();
         if self.has(name) || facets.is_empty() {
@@ -56,7 +56,7 @@ impl<const D: usize> Groups<D> {
             .mesh
             .add_facet_group(name, facets.into_iter().collect());
         if joined.is_err() {
-            self.broken.push(name.clone());
+            self.broken.push(name.to_owned());
         }
     }
 

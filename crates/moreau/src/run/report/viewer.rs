@@ -216,7 +216,7 @@ fn contact_surface<const D: usize>(
         .map(status_name)
         .to_vec();
     let tied = status_name(Status::Tied);
-    statuses.extend(status.iter().any(|name| *name == tied).then_some(tied));
+    statuses.extend(status.contains(&tied).then_some(tied));
     let status: Vec<f64> = status
         .iter()
         .map(|name| {
