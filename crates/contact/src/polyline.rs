@@ -498,9 +498,10 @@ mod tests {
             let (n, v) = (line.normal(&x), Vector2::from(by));
             prop_assert!((n.norm() - 1.0).abs() < 1e-12);
             let slope = (line.distance(&(x + v * h)) - line.distance(&(x - v * h))) / (2.0 * h);
-            prop_assert!((slope - n.dot(&v)).abs() < 1e-8, "{slope}");
-            // Where the curvature does not jump in between.
             let pieces = [x + v * h, x - v * h].map(|x| line.nearest(&x).piece);
+            // A jump of the curvature in between leaves an error of first order in h.
+            let within = if pieces[0] == pieces[1] { 1e-8 } else { 10.0 * h };
+            prop_assert!((slope - n.dot(&v)).abs() < within, "{slope}");
             if pieces[0] == pieces[1] {
                 let turn = (line.normal(&(x + v * h)) - line.normal(&(x - v * h))) / (2.0 * h);
                 prop_assert!((turn - line.curvature(&x) * v).norm() < 1e-6, "{turn}");

@@ -559,7 +559,10 @@ impl<const D: usize> Driver<D> {
                 return Err(ModelError::UntouchedTool { tool });
             }
             let least = 1e-9 * moment.abs() * self.mesh.size();
-            if moment != 0.0 && !points.clone().any(|p| most(p)[1] > least) {
+            // A round tool about its centre is not turned away from anything: whether it spins is told elsewhere.
+            let mut works = points.clone().map(|p| most(p)[1]);
+            let never_stands = works.clone().all(|work| work <= least);
+            if moment != 0.0 && never_stands && works.any(|work| work < -least) {
                 return Err(ModelError::TurnedAwayTool {
                     tool: tool.name.clone(),
                     moment,

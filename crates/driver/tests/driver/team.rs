@@ -204,7 +204,7 @@ fn steps() -> [Step<2>; 2] {
         held("press").tool("punch", [0.0, -0.02]),
         held("drag")
             .pressure("block.left", 5.0)
-            .displace_along("block.right", [0.6, 0.8], 0.002)
+            .fix_along("block.right", [0.6, 0.8])
             .tool("punch", [0.02, -0.02]),
     ]
 }

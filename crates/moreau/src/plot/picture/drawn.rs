@@ -3,8 +3,9 @@
 use super::bands::{Corner, Table, combine, fill_bands};
 use super::flat::{Face, Flat};
 use super::layers::{Polygon, hides, layers};
+use super::mark::Mark;
+use super::marks;
 use super::sheet::{Bar, Sheet};
-use super::{Mark, marks};
 use crate::mesh::CellKind;
 use crate::plot::PlotError;
 use crate::plot::clip::{clip, cut};

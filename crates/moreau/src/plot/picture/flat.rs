@@ -1,7 +1,8 @@
 //! What is drawn of a body, on paper: places, faces, lines and marks; not how.
 
+use super::Field;
 use super::layers::Polygon;
-use super::{Field, Mark};
+use super::mark::Mark;
 use crate::mesh::CellKind;
 
 /// A face that is seen: a cell of the plane, or a facet of a solid, with its nodes as a plane cell of its kind has them.

@@ -74,6 +74,7 @@ fn in_units(
         "mm" | "m" | "in" => 1.0 / length,
         "N" | "lbf" => 1.0 / (stress * length * length),
         "N·mm" | "N·m" | "in·lbf" | "lbf·in" => 1.0 / (stress * length.powi(3)),
+        "MPa" | "Pa" | "psi" => 1.0 / stress,
         "" | "°" => 1.0,
         other => panic!("the unit {other}"),
     };
