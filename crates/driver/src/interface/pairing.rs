@@ -33,7 +33,7 @@ impl<const D: usize> Driver<D> {
     /// The same after displacement increments, in the increment that [`Driver::pair`] has begun.
     pub(crate) fn pair_at(&mut self, loading: &Loading<D>, d_u: &[f64]) -> Result<(), ModelError> {
         let on_tool = |p: &ContactPoint<D>| match p.tool {
-            Some(tool) => RelativeMotionRow::on_tool(p, self.tool_node(tool)),
+            Some(tool) => RelativeMotionRow::on_tool(&p.own, p.area, self.tool_node(tool)),
             None => p.tied.clone().unwrap_or_default(),
         };
         let mut rows: Vec<RelativeMotionRow<D>> = self.points.iter().map(on_tool).collect();

@@ -1,6 +1,5 @@
 //! Whose displacements make the relative displacement of a contact point; not its gap on a tool, nor the law.
 
-use crate::model::points::ContactPoint;
 use crate::vector::subspace::Subspace;
 use moreau_contact::frame;
 use moreau_mesh::MortarRow;
@@ -29,11 +28,11 @@ pub(crate) struct RelativeMotionRow<const D: usize> {
 
 impl<const D: usize> RelativeMotionRow<D> {
     /// On a tool, a body of the one node `tool`.
-    pub(crate) fn on_tool(point: &ContactPoint<D>, tool: usize) -> Self {
+    pub(crate) fn on_tool(own: &[(usize, f64)], area: f64, tool: usize) -> Self {
         Self {
-            own: point.own.clone(),
+            own: own.to_vec(),
             opposite: vec![(tool, 1.0)],
-            area: point.area,
+            area,
             ..Self::default()
         }
     }

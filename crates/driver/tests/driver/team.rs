@@ -176,6 +176,8 @@ fn driver(team: Option<SharedTeam>, (seam, large, memory): (Seam, bool, Option<u
     let (soft, firm) = (0..mesh.cell_count()).partition(|c| c % 8 < 3);
     mesh.add_cell_group("soft", soft).expect("cells");
     mesh.add_cell_group("firm", firm).expect("cells");
+    mesh.node_group_where("grip", "block.right", |x| x[1] > 0.1)
+        .expect("nodes");
     let model = match large {
         true => Model::with_large_strains(mesh, PlaneStrain::default()),
         false => Model::new(mesh, PlaneStrain::default()),
@@ -204,7 +206,7 @@ fn steps() -> [Step<2>; 2] {
         held("press").tool("punch", [0.0, -0.02]),
         held("drag")
             .pressure("block.left", 5.0)
-            .fix_along("block.right", [0.6, 0.8])
+            .displace_along("grip", [0.6, 0.8], 0.002)
             .tool("punch", [0.02, -0.02]),
     ]
 }

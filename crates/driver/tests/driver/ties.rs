@@ -1,6 +1,6 @@
 //! Surfaces that are tied: nothing passes from one body to the other but displacements that agree, and their forces.
 
-use moreau_contact::{ContactSolver, GaussSeidel, Penalty, Plane, Uzawa};
+use moreau_contact::{ContactSolver, GaussSeidel, Penalty, Plane};
 use moreau_driver::{
     Analysis, Axis, Driver, Model, ModelError, Numbers, Saved, Seam, Settings, Step,
 };
@@ -387,9 +387,9 @@ fn press() -> Step<2> {
         .tool("die", [0.01, -0.03])
 }
 
-/// A tool presses what only a tie holds; every method and both seams find one answer.
+/// A tool presses what only a tie holds: both seams and springs find one answer. Methods that need an inverse of S refuse it.
 #[test]
-fn a_tie_under_a_tool_is_the_same_by_every_method() {
+fn a_tie_under_a_tool_is_the_same_by_every_way() {
     let solve = |seam, contact: Option<Box<dyn ContactSolver<2>>>| {
         let mut driver = pressed(seam, contact);
         driver.run(&press(), 4, |_, _| {}).expect("converges");
@@ -402,14 +402,8 @@ fn a_tie_under_a_tool_is_the_same_by_every_method() {
     let force = first.tool_force("die").expect("there");
     assert!(force[1] < -100.0, "{force}");
     type Method = Option<Box<dyn ContactSolver<2>>>;
-    let others: [(Seam, Method, f64); 4] = [
+    let others: [(Seam, Method, f64); 2] = [
         (Seam::Tied, None, 1e-8),
-        (
-            Seam::Condensed,
-            Some(Box::new(GaussSeidel::default())),
-            1e-6,
-        ),
-        (Seam::Condensed, Some(Box::new(Uzawa::default())), 1e-6),
         // Springs are those of contacts: they yield by 1e-12 mm, ties not at all.
         (
             Seam::Condensed,
@@ -422,6 +416,8 @@ fn a_tie_under_a_tool_is_the_same_by_every_method() {
         let apart = (driver.tool_force("die").expect("there") - force).norm();
         assert!(apart < within * force.norm(), "{seam:?}: {apart:e}");
     }
+    let mut refused = pressed(Seam::Condensed, Some(Box::new(GaussSeidel::default())));
+    assert!(refused.run(&press(), 4, |_, _| {}).is_err());
 }
 
 #[test]
