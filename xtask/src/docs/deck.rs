@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// The tables of a deck in the order of the page: the name of the definition, and how a deck writes it.
-const TABLES: [(&str, &str); 30] = [
+const TABLES: [(&str, &str); 31] = [
     ("", "The deck"),
     ("mesh", "[mesh]"),
     ("block", "[[mesh.block]]"),
@@ -25,6 +25,7 @@ const TABLES: [(&str, &str); 30] = [
     ("surface", "surface = { … } of a tool"),
     ("contact", "[[contact]]"),
     ("friction", "friction = { … }"),
+    ("tie", "[[tie]]"),
     ("step", "[[step]]"),
     ("increments", "increments = { … }"),
     ("fix", "fix = [{ … }]"),

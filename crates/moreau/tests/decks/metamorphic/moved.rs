@@ -141,6 +141,7 @@ fn a_mirror_and_a_shift_change_nothing() {
                 "normal",
                 "center",
                 "axis",
+                "along",
                 "traction",
                 "force",
                 "move",
