@@ -497,43 +497,6 @@ pub enum IncrementError {
         /// Its value.
         value: f64,
     },
-    /// Conditions at a node that prescribe its displacement along a direction differently.
-    #[error(
-        "step {step:?} prescribes the displacement of node {node} along {} as {first} and as {second} mm, by the \
-         conditions on {}: remove one",
-        list(direction),
-        names(groups)
-    )]
-    ContradictingDisplacements {
-        /// The step.
-        step: String,
-        /// The node.
-        node: usize,
-        /// The unit vector of the last of these conditions.
-        direction: Vec<f64>,
-        /// What the others make of it \[mm\].
-        first: f64,
-        /// What it prescribes \[mm\].
-        second: f64,
-        /// Groups of the node whose displacements are prescribed.
-        groups: Vec<String>,
-    },
-    /// A direction at the axis of symmetry, where nothing moves but along that.
-    #[error(
-        "step {step:?} prescribes the displacement of {group:?} along {}, but its node {node} is on the axis of \
-         symmetry, where nothing moves across it: prescribe x and y there, and keep the node out of the group",
-        list(direction)
-    )]
-    DirectionAtAxis {
-        /// The step.
-        step: String,
-        /// The group.
-        group: String,
-        /// The node.
-        node: usize,
-        /// The unit vector.
-        direction: Vec<f64>,
-    },
     /// Of a law that is given from outside.
     #[error(transparent)]
     Law(#[from] LawFault),
