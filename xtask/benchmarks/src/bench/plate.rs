@@ -24,15 +24,18 @@ const TRAVEL: f64 = 0.02;
 /// Radius of the round punch \[mm\].
 const RADIUS: f64 = 200.0;
 
-/// Half the side of the flat one \[mm\].
+/// Half the side of what it presses \[mm\].
 const HALF: f64 = 25.0;
 
 /// What presses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Punch {
-    /// On a quarter of the top
+    /// On a quarter of the top, its edge between two lines of nodes
     Flat,
+    /// The same with its edge on a line of nodes: those that slide off and those that stick are both in balance,
+    /// so that an increment has several solutions
+    Edge,
     /// A sphere of 200 mm
     Sphere,
 }
@@ -48,7 +51,10 @@ pub(super) enum Law {
 }
 
 /// A flat punch with vertical sides, the quarter of it that is there.
-struct Stamp;
+struct Stamp {
+    /// Half its side \[mm\].
+    half: f64,
+}
 
 impl Obstacle<3> for Stamp {
     fn distance(&self, x: &SVector<f64, 3>) -> f64 {
@@ -71,9 +77,14 @@ impl Obstacle<3> for Stamp {
 }
 
 impl Stamp {
+    /// One that reaches so far beyond the last line of nodes under it \[mm\].
+    fn reaching(beyond: f64) -> Self {
+        Self { half: HALF + beyond }
+    }
+
     /// How far beside it a point is.
     fn out(&self, x: &SVector<f64, 3>) -> SVector<f64, 3> {
-        let beyond = |x: f64| (x - HALF - 1e-3).max(0.0);
+        let beyond = |x: f64| (x - self.half).max(0.0);
         SVector::from([beyond(x[0]), 0.0, beyond(x[2])])
     }
 }
@@ -142,7 +153,9 @@ impl Case {
         let friction = Coulomb::new(self.friction)?;
         let model = model.tool("die", Plane::new([0.0; 3], [0.0, 1.0, 0.0])?)?;
         let model = match self.punch {
-            Punch::Flat => model.tool("punch", Stamp)?,
+            // Nodes of hex20 are half a cell apart.
+            Punch::Flat => model.tool("punch", Stamp::reaching(0.25 * SIDE / self.cells as f64))?,
+            Punch::Edge => model.tool("punch", Stamp::reaching(1e-3))?,
             Punch::Sphere => {
                 model.tool("punch", Ball::new([0.0, THICKNESS + RADIUS, 0.0], RADIUS)?)?
             }
