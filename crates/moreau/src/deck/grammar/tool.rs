@@ -7,7 +7,6 @@ use crate::deck::finding::At;
 use crate::deck::grammar::material::row;
 use crate::deck::reader::{self, Table, Value};
 use crate::files::read_skin;
-use std::path::Path;
 
 const SHAPES: [&str; 6] = [
     "plane", "cylinder", "sphere", "polyline", "profile", "surface",
@@ -17,11 +16,7 @@ const SHAPES: [&str; 6] = [
 const SHARP: f64 = 30.0;
 
 /// The tools, and the names of all of them.
-pub(super) fn read_tools(
-    root: &Table<'_>,
-    analysis: Analysis,
-    folder: &Path,
-) -> (Vec<ToolEntry>, Vec<String>) {
+pub(super) fn read_tools(root: &Table<'_>, analysis: Analysis) -> (Vec<ToolEntry>, Vec<String>) {
     let mut names = Vec::new();
     let tools = root
         .tables("tool", "[[tool]]")
@@ -29,7 +24,7 @@ pub(super) fn read_tools(
         .filter_map(|table| {
             let name = table.name("name");
             names.extend(name.iter().map(|n| n.value.clone()));
-            let shape = shape(&table, analysis, folder);
+            let shape = shape(&table, analysis);
             let reference = table.get("reference").and_then(|value| {
                 reader::vector(value, "reference", analysis.dimension(), table.log())
             });
@@ -44,7 +39,7 @@ pub(super) fn read_tools(
     (tools, names)
 }
 
-fn shape(table: &Table<'_>, analysis: Analysis, folder: &Path) -> Option<At<Shape>> {
+fn shape(table: &Table<'_>, analysis: Analysis) -> Option<At<Shape>> {
     let log = table.log();
     let dimension = analysis.dimension();
     let inside = table.boolean_if("inside");
@@ -86,7 +81,7 @@ fn shape(table: &Table<'_>, analysis: Analysis, folder: &Path) -> Option<At<Shap
     }
     let inner = reader::table(value, key, key, log)?;
     if key == "surface" {
-        let entry = skin(&inner, hollow, folder);
+        let entry = skin(&inner, hollow);
         inner.finish();
         return Some(At::new(Shape::Triangles(entry?), value.span()));
     }
@@ -127,14 +122,14 @@ fn shape(table: &Table<'_>, analysis: Analysis, folder: &Path) -> Option<At<Shap
 }
 
 /// `{ file = "…", group = "…", sharp = 30 }`, and what is in the file.
-fn skin(table: &Table<'_>, hollow: bool, folder: &Path) -> Option<SkinEntry> {
+fn skin(table: &Table<'_>, hollow: bool) -> Option<SkinEntry> {
     let log = table.log();
     let file = table.text("file");
     let group = table.get("group");
     let group = group.and_then(|v| reader::text(v, "group", log));
     let sharp = table.number_if("sharp").map_or(SHARP, |s| s.value);
     let file = file?;
-    let path = folder.join(&file.value);
+    let path = log.path(&file);
     if let Some(group) = group.as_ref().filter(|_| !file.value.ends_with(".msh")) {
         let message = "only a file of Gmsh has groups: of others all is the surface";
         log.borrow_mut()
