@@ -159,7 +159,7 @@ fn deck(root: &Table<'_>) -> Deck {
     let materials = root
         .tables("material", "[[material]]")
         .into_iter()
-        .filter_map(|t| material::read(t, dimension))
+        .flat_map(|t| material::read(t, dimension))
         .collect();
     if root.get("material").is_none() {
         missing(root, "[[material]]", "on, young and poisson");

@@ -202,6 +202,20 @@ impl<'a> Table<'a> {
         text(self.need(key, "\"…\"")?, key, self.log)
     }
 
+    /// A text, or several.
+    pub(super) fn texts(&self, key: &'static str, expected: &str) -> Option<Vec<At<String>>> {
+        let value = self.need(key, expected)?;
+        let items = match value.get_ref().is_array() {
+            true => items(value, key, expected, self.log)?,
+            false => vec![value],
+        };
+        if items.is_empty() {
+            return wrong(value, key, "at least one", self.log);
+        }
+        let each = items.into_iter().map(|item| text(item, key, self.log));
+        each.collect()
+    }
+
     /// A name: letters, digits, `-`, `_` and `.`.
     pub(super) fn name(&self, key: &'static str) -> Option<At<String>> {
         let name = self.text(key)?;

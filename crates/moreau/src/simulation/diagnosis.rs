@@ -3,7 +3,7 @@
 use super::status_name;
 use super::trace::Trace;
 use crate::deck::{Action, Deck, Method, Units};
-use crate::driver::{Driver, Imbalance, IncrementError};
+use crate::driver::{Driver, Imbalance, IncrementError, Step};
 use crate::laws::Status;
 use std::fmt;
 
@@ -44,7 +44,7 @@ impl Diagnosis {
     pub(super) fn new<const D: usize>(
         driver: &Driver<D>,
         deck: &Deck,
-        stage: usize,
+        (stage, step): (usize, Option<&Step<D>>),
         trace: &Trace,
         error: &IncrementError,
     ) -> Self {
@@ -73,7 +73,19 @@ impl Diagnosis {
             .enumerate()
             .filter_map(flip)
             .collect();
-        let suggestion = suggestion(deck, stage, cause, plastic_fraction, !flips.is_empty());
+        let open = trace.statuses.back().filter(|_| trace.is_of_next(driver));
+        let free = step.zip(open).and_then(|(step, open)| {
+            let (cell, motion) = driver.let_go(step, open)?;
+            Some((body_of(driver, cell), motion))
+        });
+        let suggestion = match (free, deck.steps.get(stage)) {
+            (Some((body, motion)), Some(step)) => format!(
+                "nothing holds {body} any longer, free is its {motion}: the contacts that held it are open; end step \
+                 \"{}\" before, or hold it there",
+                step.name.value
+            ),
+            _ => suggestion(deck, stage, cause, plastic_fraction, !flips.is_empty()),
+        };
         let worst = match cause {
             IncrementError::NotConverged { worst, .. } => worst.clone(),
             _ if trace.is_of_next(driver) => driver.worst(&trace.residual),
@@ -87,6 +99,20 @@ impl Diagnosis {
             suggestion,
             units: deck.units,
         }
+    }
+}
+
+/// The body of a cell, by the smallest group of cells that it is in.
+fn body_of<const D: usize>(driver: &Driver<D>, cell: usize) -> String {
+    let mesh = driver.mesh();
+    let own = |name: &&str| {
+        let cells = mesh.cell_group(name).unwrap_or_default();
+        cells.binary_search(&cell).is_ok()
+    };
+    let size = |name: &&str| mesh.cell_group(name).map_or(0, <[usize]>::len);
+    match mesh.group_names().filter(own).min_by_key(size) {
+        Some(name) => format!("the body \"{name}\""),
+        None => format!("the body of cell {cell}"),
     }
 }
 

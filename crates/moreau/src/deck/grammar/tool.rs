@@ -193,7 +193,7 @@ pub(super) fn read_contacts(root: &Table<'_>, dimension: usize) -> Vec<ContactEn
     root.tables("contact", "[[contact]]")
         .into_iter()
         .filter_map(|table| {
-            let parts = surface(&table);
+            let parts = table.texts("surface", "a group of facets, or an array of them");
             let against = table.text("against");
             let friction = friction(&table, dimension);
             let gap_offset = table.number_if("gap-offset");
@@ -215,7 +215,7 @@ pub(super) fn read_contacts(root: &Table<'_>, dimension: usize) -> Vec<ContactEn
 
 pub(super) fn read_ties(root: &Table<'_>) -> Vec<TieEntry> {
     let read = |table: Table<'_>| {
-        let parts = surface(&table);
+        let parts = table.texts("surface", "a group of facets, or an array of them");
         let to = table.text("to");
         table.finish();
         let parts = parts?;
@@ -233,24 +233,6 @@ pub(super) fn read_ties(root: &Table<'_>) -> Vec<TieEntry> {
 fn whole(parts: &[At<String>]) -> Option<At<String>> {
     let names: Vec<&str> = parts.iter().map(|p| p.value.as_str()).collect();
     Some(At::new(names.join("+"), parts.first()?.span.clone()))
-}
-
-/// One group, or several that are one surface.
-fn surface(table: &Table<'_>) -> Option<Vec<At<String>>> {
-    let log = table.log();
-    let expected = "a group of facets, or an array of them";
-    let value = table.need("surface", expected)?;
-    if !value.get_ref().is_array() {
-        return Some(vec![reader::text(value, "surface", log)?]);
-    }
-    let parts = reader::items(value, "surface", expected, log)?.into_iter();
-    let parts: Vec<At<String>> = parts
-        .map(|part| reader::text(part, "a surface", log))
-        .collect::<Option<_>>()?;
-    match parts.is_empty() {
-        true => reader::wrong(value, "surface", "at least one group", log),
-        false => Some(parts),
-    }
 }
 
 /// `adjust = true`, or a distance.
