@@ -174,13 +174,17 @@ impl<const D: usize> Driver<D> {
         free.filter_map(tool).collect()
     }
 
-    /// A rigid motion of a body in a step, in words after a cell of the body, that nothing resists once contact points
-    /// of these statuses are open; the others resist by their normals, and by friction.
-    pub fn let_go(&self, step: &Step<D>, status: &[Status]) -> Option<(usize, String)> {
+    /// A rigid motion of a body in a step, in words after a cell of the body, that nothing resists once some of the
+    /// contact points are open; the others resist by their normals, and by friction.
+    pub fn let_go(
+        &self,
+        step: &Step<D>,
+        is_open: impl Fn(usize) -> bool,
+    ) -> Option<(usize, String)> {
         let loading = self.loading(step).ok()?;
-        let rows = self.resisted(&loading, |driver, k| match status.get(k) {
-            Some(Status::Open) => 0,
-            _ => driver.may_resist(k),
+        let rows = self.resisted(&loading, |driver, k| match is_open(k) {
+            true => 0,
+            false => driver.may_resist(k),
         });
         let bodies = rows.cells.len();
         let (body, motion) = rows.free().into_iter().find(|(body, _)| *body < bodies)?;

@@ -2,7 +2,8 @@
 
 use super::status_name;
 use super::trace::Trace;
-use crate::deck::{Action, Deck, Method, Units};
+use crate::contact::ContactError;
+use crate::deck::{Action, ConditionEntry, Deck, Method, Units};
 use crate::driver::{Driver, Imbalance, IncrementError, Step};
 use crate::laws::Status;
 use std::fmt;
@@ -73,9 +74,19 @@ impl Diagnosis {
             .enumerate()
             .filter_map(flip)
             .collect();
-        let open = trace.statuses.back().filter(|_| trace.is_of_next(driver));
-        let free = step.zip(open).and_then(|(step, open)| {
-            let (cell, motion) = driver.let_go(step, open)?;
+        let last = trace.statuses.back().filter(|_| trace.is_of_next(driver));
+        let singular = matches!(
+            cause,
+            IncrementError::Contact {
+                source: ContactError::Singular,
+                ..
+            }
+        );
+        let free = step.filter(|_| pushed(deck, stage).is_none());
+        let free = free.and_then(|step| {
+            let is_open =
+                |k: usize| singular || last.is_some_and(|all| all.get(k) == Some(&Status::Open));
+            let (cell, motion) = driver.let_go(step, is_open)?;
             Some((body_of(driver, cell), motion))
         });
         let suggestion = match (free, deck.steps.get(stage)) {
@@ -100,6 +111,12 @@ impl Diagnosis {
             units: deck.units,
         }
     }
+}
+
+/// What drives a tool by a force or a moment in a step.
+fn pushed(deck: &Deck, stage: usize) -> Option<&ConditionEntry> {
+    let mut conditions = deck.steps.get(stage)?.conditions.iter();
+    conditions.find(|c| matches!(c.action, Action::Push(..) | Action::Moment(..)))
 }
 
 /// The body of a cell, by the smallest group of cells that it is in.
@@ -138,8 +155,7 @@ fn suggestion(
                 | Action::Moment(..)
         )
     });
-    let mut conditions = step.conditions.iter();
-    let pushed = conditions.find(|c| matches!(c.action, Action::Push(..) | Action::Moment(..)));
+    let pushed = pushed(deck, stage);
     let yields = matches!(cause, IncrementError::Mechanism { .. }) || plastic_fraction > WIDESPREAD;
     let exact = deck.solver.method == Method::Exact && !deck.solver.outside;
     match (load, cause) {
