@@ -81,10 +81,8 @@ fn forces(deck: &str, lower: &str) -> Vec<[f64; 2]> {
     let (simulation, findings) = Simulation::open(deck, &meshes(), &Given::default());
     let shown = || findings.render("deck.toml", deck, false);
     let mut simulation = simulation.unwrap_or_else(|| panic!("{}", shown()));
-    while let Some(_) = simulation
-        .advance(&mut |_, _| ControlFlow::Continue(()))
-        .expect("an increment")
-    {}
+    let mut advance = || simulation.advance(&mut |_, _| ControlFlow::Continue(()));
+    while advance().expect("an increment").is_some() {}
     let column = |axis| {
         simulation
             .history()
