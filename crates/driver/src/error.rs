@@ -352,9 +352,10 @@ pub enum ModelError {
     },
 }
 
-/// A vector as people write one.
+/// A vector as people write one: what is beyond this many digits is rounding.
 pub(crate) fn list(vector: &[f64]) -> String {
-    let all: Vec<String> = vector.iter().map(|x| format!("{:?}", *x as f32)).collect();
+    let rounded = |x: &f64| format!("{x:.11e}").parse().unwrap_or(*x);
+    let all: Vec<String> = vector.iter().map(|x| format!("{:?}", rounded(x))).collect();
     format!("({})", all.join(", "))
 }
 
@@ -604,4 +605,19 @@ fn collapse_hint(
         "Plastic flow is widespread: the load is probably at the limit load{estimate}; prescribe \
          displacements to pass it. "
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::list;
+
+    #[test]
+    fn a_vector_has_the_digits_that_it_was_given() {
+        let given = [0.1 + 0.2, -12_345.678_901, 1.0, 1e-50, f64::MAX];
+        assert_eq!(
+            list(&given),
+            "(0.3, -12345.678901, 1.0, 1e-50, 1.79769313486e308)"
+        );
+        assert_eq!(list(&[f64::NAN, f64::INFINITY]), "(NaN, inf)");
+    }
 }

@@ -4,6 +4,7 @@
 mod arc;
 mod groups;
 mod integrals;
+mod placed;
 mod positive;
 mod pressure;
 mod topology;

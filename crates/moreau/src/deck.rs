@@ -41,13 +41,15 @@ mod entries;
 mod finding;
 mod formula;
 mod grammar;
+mod include;
 mod reader;
+mod source;
 mod units;
 
 pub use build::{Body, GroupFacts, Problem, Setup, Stage};
 pub use entries::{
     Action, Adjust, Analysis, AxesEntry, BlockEntry, ConditionEntry, ContactEntry, Deck,
-    DirectionsEntry, Expectation, FrictionEntry, Grid, GroupEntry, Hardening, HillEntry,
+    DirectionsEntry, Expectation, FileEntry, FrictionEntry, Grid, GroupEntry, Hardening, HillEntry,
     MaterialEntry, Method, Part, Shape, SoilEntry, SolverEntry, StepEntry, ToolEntry, Vtu,
 };
 pub use finding::{At, Class, Finding, Findings, Severity};
@@ -97,13 +99,17 @@ pub fn open_in(text: &str, folder: &Path) -> (Deck, Option<Problem>, Findings) {
 /// As [`open_in`], with what is given beside the text.
 pub fn open_with(text: &str, folder: &Path, given: &Given) -> (Deck, Option<Problem>, Findings) {
     let (mut deck, mut findings) = grammar::read(text, folder, &given.parameters);
-    let mesh = deck.mesh_file.as_ref().and_then(|file| {
-        let wanted = absolute(&file.value).ok()?;
+    if grammar::includes_fail(&findings) {
+        return (deck, None, findings);
+    }
+    let at_hand = |entry: &FileEntry| {
+        let wanted = absolute(&entry.file.value).ok()?;
         let is_wanted = |path: &Path| absolute(folder.join(path)).is_ok_and(|at| at == wanted);
         let found = given.meshes.iter().find(|(path, _)| is_wanted(path));
         found.map(|(_, bytes)| bytes.as_slice())
-    });
-    let mut problem = build::build(&mut deck, mesh, given, &mut findings);
+    };
+    let files: Vec<Option<&[u8]>> = deck.mesh_files.iter().map(at_hand).collect();
+    let mut problem = build::build(&mut deck, &files, given, &mut findings);
     if let Some(problem) = &problem {
         let columns = match problem {
             Problem::Plane(setup) => columns(setup),

@@ -163,7 +163,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>, FileError> {
     size.and_then(|_| fs::read(path))
         .map_err(|source| FileError::Read {
             nearest: match source.kind() {
-                std::io::ErrorKind::NotFound => nearest_file(path),
+                std::io::ErrorKind::NotFound => nearest_file(path, &["msh", "inp", "stl"]),
                 _ => None,
             },
             path: path.into(),
@@ -171,8 +171,8 @@ fn bytes(path: &Path) -> Result<Vec<u8>, FileError> {
         })
 }
 
-/// The mesh file in the folder of a missing one whose name is nearest.
-fn nearest_file(missing: &Path) -> Option<String> {
+/// The file in the folder of a missing one whose name is nearest, of those with some endings.
+pub(crate) fn nearest_file(missing: &Path, endings: &[&str]) -> Option<String> {
     let folder = match missing.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -180,7 +180,7 @@ fn nearest_file(missing: &Path) -> Option<String> {
     let entries = fs::read_dir(folder).ok()?;
     let names: Vec<String> = entries
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-        .filter(|name| ["msh", "inp", "stl"].contains(&ending(Path::new(name)).as_str()))
+        .filter(|name| endings.contains(&ending(Path::new(name)).as_str()))
         .collect();
     let name = missing.file_name()?.to_string_lossy();
     nearest(&name, names.iter().map(String::as_str)).map(Into::into)

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 /// Between two looks at the signals of the interpreter, which other threads may hold.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// Severity, class, message, label, help, line and column.
+/// Severity, class, message, label, help, line and column, and the file if it is one that the deck includes.
 type Found = (
     &'static str,
     &'static str,
@@ -27,6 +27,7 @@ type Found = (
     Option<String>,
     usize,
     usize,
+    Option<PathBuf>,
 );
 
 /// Name, unit and values: bytes of numbers, bytes of whole numbers, or texts.
@@ -237,6 +238,7 @@ fn found(findings: &Findings, text: &str) -> Vec<Found> {
         };
         let (message, label) = (finding.message.clone(), finding.label.clone());
         let help = finding.help.clone();
+        let file = findings.file(&finding.span).map(PathBuf::from);
         (
             severity,
             finding.class.name(),
@@ -245,6 +247,7 @@ fn found(findings: &Findings, text: &str) -> Vec<Found> {
             help,
             line,
             column,
+            file,
         )
     };
     findings.places(text).map(one).collect()

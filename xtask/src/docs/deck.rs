@@ -6,9 +6,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// The tables of a deck in the order of the page: the name of the definition, and how a deck writes it.
-const TABLES: [(&str, &str); 31] = [
+const TABLES: [(&str, &str); 32] = [
     ("", "The deck"),
     ("mesh", "[mesh]"),
+    ("part", "[[mesh.part]]"),
     ("block", "[[mesh.block]]"),
     ("lines", "x = { … } of a block"),
     ("group", "[[mesh.group]]"),
@@ -67,7 +68,9 @@ pub fn keys(schema: &Value, decks: &[(String, toml::Table)]) -> Vec<Key> {
     for (table, part) in parts(schema) {
         for (name, key) in part["properties"].as_object().into_iter().flatten() {
             let text = |keyword: &str| key[keyword].as_str().map(str::to_owned);
-            let mut required = part["required"].as_array().into_iter().flatten();
+            // Of the deck where it includes nothing.
+            let given = [&part["required"], &part["then"]["required"]];
+            let mut required = given.into_iter().filter_map(Value::as_array).flatten();
             let own = key["examples"].as_array().and_then(|list| list.first());
             let own = own.and_then(|value| toml::Value::try_from(value).ok());
             let own = own.map(|value| (inline(&value), None));

@@ -174,6 +174,23 @@ impl<const D: usize> Driver<D> {
         free.filter_map(tool).collect()
     }
 
+    /// A rigid motion of a body in a step, in words after a cell of the body, that nothing resists once some of the
+    /// contact points are open; the others resist by their normals, and by friction.
+    pub fn let_go(
+        &self,
+        step: &Step<D>,
+        is_open: impl Fn(usize) -> bool,
+    ) -> Option<(usize, String)> {
+        let loading = self.loading(step).ok()?;
+        let rows = self.resisted(&loading, |driver, k| match is_open(k) {
+            true => 0,
+            false => driver.may_resist(k),
+        });
+        let bodies = rows.cells.len();
+        let (body, motion) = rows.free().into_iter().find(|(body, _)| *body < bodies)?;
+        Some((rows.cells[body], motion))
+    }
+
     fn resisted(&self, loading: &Loading<D>, components: impl Fn(&Self, usize) -> usize) -> Rows {
         let held = loading.displacement.range(..self.mesh_dofs());
         let held = held.map(|(&dof, _)| (dof / D, loading.directions.along(dof), (0, 0)));

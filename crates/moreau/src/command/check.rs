@@ -114,8 +114,8 @@ fn mesh<const D: usize>(deck: &Deck, setup: &Setup<D>) {
         mesh.cell_count(),
         D * mesh.nodes().len()
     );
-    if let Some(file) = &deck.mesh_file {
-        say!("           from {}", file.value.display());
+    for entry in &deck.mesh_files {
+        say!("           from {}", entry.file.value.display());
     }
 }
 

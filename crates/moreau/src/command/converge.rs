@@ -120,7 +120,7 @@ pub(super) fn converge(path: &Path, given: &Given) -> u8 {
     };
     let mut all: Vec<(Finer, [Outcome; 3])> = Vec::new();
     for finer in [Finer::Mesh, Finer::Increments] {
-        if matches!(finer, Finer::Mesh) && deck.mesh_file.is_some() {
+        if matches!(finer, Finer::Mesh) && !deck.mesh_files.is_empty() {
             say!("the mesh is a file: refine it where it was made");
             continue;
         }

@@ -23,6 +23,7 @@ use crate::mesh::{
     Axisymmetric, CellKind, Integration, Mesh, MeshError, PlaneStrain, PlaneStress, Solid,
 };
 use groups::Groups;
+use meshes::Files;
 pub(super) use parts::quadratures;
 use std::ops::Range;
 
@@ -102,24 +103,24 @@ pub enum Problem {
     Solid(Box<Setup<3>>),
 }
 
-/// Builds what the deck describes, on its mesh file if that is not on disk, and with what is given beside its text;
-/// `None` if that has errors.
+/// Builds what the deck describes, on those of its mesh files that are not on disk, and with what is given beside its
+/// text; `None` if that has errors.
 pub(super) fn build(
     deck: &mut Deck,
-    file: Option<&[u8]>,
+    files: Files<'_>,
     given: &Given,
     findings: &mut Findings,
 ) -> Option<Problem> {
     match deck.analysis {
-        Analysis::PlaneStrain => slice(deck, PlaneStrain::new, (file, given), findings),
-        Analysis::PlaneStress => slice(deck, PlaneStress::new, (file, given), findings),
+        Analysis::PlaneStrain => slice(deck, PlaneStrain::new, (files, given), findings),
+        Analysis::PlaneStress => slice(deck, PlaneStress::new, (files, given), findings),
         Analysis::Axisymmetric => {
-            let mesh = meshes::meridian(deck, file, findings);
+            let mesh = meshes::meridian(deck, files, findings);
             setup(deck, mesh, Axisymmetric, (parts::profile, given), findings)
                 .map(|s| Problem::Plane(Box::new(s)))
         }
         Analysis::Solid => {
-            let mesh = meshes::solid(deck, file, findings);
+            let mesh = meshes::solid(deck, files, findings);
             setup(deck, mesh, Solid, (parts::surface, given), findings)
                 .map(|s| Problem::Solid(Box::new(s)))
         }
@@ -130,7 +131,7 @@ pub(super) fn build(
 fn slice<H: driver::Analysis<2> + Default>(
     deck: &mut Deck,
     hypothesis: fn(f64) -> Result<H, MeshError>,
-    (file, given): (Option<&[u8]>, &Given),
+    (files, given): (Files<'_>, &Given),
     findings: &mut Findings,
 ) -> Option<Problem> {
     let hypothesis = hypothesis(deck.thickness.value).unwrap_or_else(|error| {
@@ -138,7 +139,7 @@ fn slice<H: driver::Analysis<2> + Default>(
         findings.error(&deck.thickness.span, error.to_string(), expected);
         H::default()
     });
-    let mesh = meshes::plane(deck, file, findings);
+    let mesh = meshes::plane(deck, files, findings);
     setup(deck, mesh, hypothesis, (parts::profile, given), findings)
         .map(|s| Problem::Plane(Box::new(s)))
 }

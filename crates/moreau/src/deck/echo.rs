@@ -2,8 +2,8 @@
 
 use super::build::quadratures;
 use super::entries::{
-    Action, Adjust, BlockEntry, ConditionEntry, ContactEntry, Deck, Grid, GroupEntry, Hardening,
-    MaterialEntry, Method, Part, Shape, StepEntry, ToolEntry, Vtu,
+    Action, Adjust, BlockEntry, ConditionEntry, ContactEntry, Deck, FileEntry, Grid, GroupEntry,
+    Hardening, MaterialEntry, Method, Part, Shape, StepEntry, ToolEntry, TurnEntry, Vtu,
 };
 use super::finding::At;
 use crate::driver::Increments;
@@ -41,6 +41,7 @@ fn text(value: &str) -> String {
 
 fn write(deck: &Deck, out: &mut String) -> fmt::Result {
     head(deck, out)?;
+    files(deck, out)?;
     for entry in &deck.blocks {
         block(entry, out)?;
     }
@@ -79,12 +80,44 @@ fn head(deck: &Deck, out: &mut String) -> fmt::Result {
     if deck.analysis.has_thickness() {
         writeln!(out, "thickness = {:?}", deck.thickness.value)?;
     }
-    if let Some(file) = &deck.mesh_file {
+    Ok(())
+}
+
+/// The mesh files: one as it is, or each a part.
+fn files(deck: &Deck, out: &mut String) -> fmt::Result {
+    let dimension = deck.analysis.dimension();
+    for (k, part) in deck.mesh_files.iter().enumerate() {
         // What is written stands in another folder than the deck.
-        let path = std::path::absolute(&file.value).unwrap_or_else(|_| file.value.clone());
-        writeln!(out, "\n[mesh]\nfile = {}", text(&path.to_string_lossy()))?;
+        let file = &part.file.value;
+        let path = std::path::absolute(file).unwrap_or_else(|_| file.clone());
+        let is_plain = *part == FileEntry::plain(part.file.clone(), dimension);
+        let table = if is_plain && k == 0 {
+            "[mesh]"
+        } else {
+            "[[mesh.part]]"
+        };
+        writeln!(out, "\n{table}\nfile = {}", text(&path.to_string_lossy()))?;
+        if is_plain {
+            continue;
+        }
+        if let Some(name) = &part.name {
+            writeln!(out, "name = {}", text(&name.value))?;
+        }
+        writeln!(out, "scale = {:?}", part.scale)?;
+        if let Some(turn) = &part.turn {
+            writeln!(out, "turn = {}", turned(turn, dimension))?;
+        }
+        writeln!(out, "position = {:?}", part.position)?;
     }
     Ok(())
+}
+
+/// A turn: a number in the plane.
+fn turned(turn: &TurnEntry, dimension: usize) -> String {
+    match dimension {
+        2 => format!("{:?}", turn.angle),
+        _ => format!("{{ axis = {:?}, angle = {:?} }}", turn.axis, turn.angle),
+    }
 }
 
 fn block(block: &BlockEntry, out: &mut String) -> fmt::Result {
@@ -290,13 +323,8 @@ fn lists(conditions: &[ConditionEntry], dimension: usize) -> [(&'static str, Vec
             Action::BodyForce(v) => (2, format!("{{ on = {on}, body-force = {v:?} }}")),
             Action::Tool(motion, turn) => {
                 let motion = motion.iter().map(|v| format!(", move = {v:?}"));
-                let turn = turn.iter().map(|turn| match dimension {
-                    2 => format!(", turn = {:?}", turn.angle),
-                    _ => format!(
-                        ", turn = {{ axis = {:?}, angle = {:?} }}",
-                        turn.axis, turn.angle
-                    ),
-                });
+                let turn = turn.iter();
+                let turn = turn.map(|turn| format!(", turn = {}", turned(turn, dimension)));
                 let all: String = motion.chain(turn).collect();
                 (3, format!("{{ name = {on}{all} }}"))
             }

@@ -4,7 +4,7 @@ use super::finding::At;
 use super::units::Units;
 use crate::driver::Increments;
 use crate::mesh::{CellKind, Integration, Skin};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 use std::fmt;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -73,6 +73,34 @@ impl Grid {
         match self {
             Self::Range([a, b], cells) => crate::mesh::uniform(*a, *b, *cells),
             Self::Lines(lines) => lines.clone(),
+        }
+    }
+}
+
+/// `file` of `[mesh]`, or a `[[mesh.part]]`: a mesh file and where it is put.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileEntry {
+    /// Path of the file.
+    pub file: At<PathBuf>,
+    /// What its groups are called by, before their own names; none: by these alone.
+    pub name: Option<At<String>>,
+    /// Factor of its coordinates.
+    pub scale: f64,
+    /// Turn about its origin.
+    pub turn: Option<TurnEntry>,
+    /// Where its origin is put, once it is stretched and turned.
+    pub position: Vec<f64>,
+}
+
+impl FileEntry {
+    /// A file that is taken as it is, with its groups.
+    pub fn plain(file: At<PathBuf>, dimension: usize) -> Self {
+        Self {
+            file,
+            name: None,
+            scale: 1.0,
+            turn: None,
+            position: vec![0.0; dimension],
         }
     }
 }
@@ -406,6 +434,14 @@ pub struct TurnEntry {
     pub angle: f64,
 }
 
+impl TurnEntry {
+    /// The turn as a matrix; `None` without an axis.
+    pub fn rotation(&self) -> Option<Matrix3<f64>> {
+        let axis = Vector3::from(self.axis).try_normalize(1e-9)?;
+        Some(Rotation3::new(axis * self.angle.to_radians()).into_inner())
+    }
+}
+
 /// A moment that turns a tool.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MomentEntry {
@@ -536,8 +572,8 @@ pub struct Deck {
     pub finite: Option<At<bool>>,
     /// Thickness of plane strain.
     pub thickness: At<f64>,
-    /// Path of the mesh file, if there is one.
-    pub mesh_file: Option<At<PathBuf>>,
+    /// Mesh files.
+    pub mesh_files: Vec<FileEntry>,
     /// Blocks.
     pub blocks: Vec<BlockEntry>,
     /// Groups.

@@ -1,8 +1,10 @@
 //! What is found wrong or doubtful in a deck, and where; not the decision to go on or to stop.
 
+use super::source::{Included, file_at, text_at};
 use annotate_snippets::renderer::DecorStyle;
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use std::ops::Range;
+use std::path::Path;
 
 /// A value of a deck and the bytes of the file that it was read from.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,6 +36,8 @@ pub enum Severity {
 pub enum Class {
     /// The file is no TOML.
     Syntax,
+    /// A file that cannot be included, or that says otherwise than what includes it.
+    Includes,
     /// A key that does not exist, or one that is missing.
     Keys,
     /// A value of the wrong type or out of its range.
@@ -54,8 +58,9 @@ pub enum Class {
 
 impl Class {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Syntax,
+        Self::Includes,
         Self::Keys,
         Self::Values,
         Self::Names,
@@ -69,7 +74,8 @@ impl Class {
     /// Name of the section.
     pub fn name(self) -> &'static str {
         [
-            "syntax", "keys", "values", "names", "groups", "meshes", "bodies", "steps", "warnings",
+            "syntax", "includes", "keys", "values", "names", "groups", "meshes", "bodies", "steps",
+            "warnings",
         ][self as usize]
     }
 }
@@ -87,6 +93,8 @@ pub struct Finding {
     pub label: String,
     /// The place in the text.
     pub span: Range<usize>,
+    /// Another place that it is about, with what stands there.
+    pub also: Option<(Range<usize>, String)>,
     /// What to do, if there is more to say.
     pub help: Option<String>,
 }
@@ -97,6 +105,11 @@ impl Finding {
         self.class = class;
     }
 
+    /// Says of another place that it is about.
+    pub(super) fn and_at(&mut self, span: &Range<usize>, label: impl Into<String>) {
+        self.also = Some((span.clone(), label.into()));
+    }
+
     /// What to do, and where to read more.
     fn advice(&self) -> String {
         let class = self.class.name();
@@ -104,21 +117,23 @@ impl Finding {
         let help = help.map_or_else(String::new, |help| format!("{help}; "));
         format!("{help}see docs/errors.md#{class}")
     }
+}
 
-    /// The part of its place on the first line, which is enough, and within the text.
-    fn shown(&self, text: &str) -> Range<usize> {
-        let start = (0..=self.span.start.min(text.len())).rfind(|&k| text.is_char_boundary(k));
-        let start = start.unwrap_or_default();
-        let piece = text.get(start..self.span.end.clamp(start, text.len()));
-        let line = piece.and_then(|piece| piece.lines().next());
-        start..start + line.map_or(0, str::len)
-    }
+/// The part of a place on its first line, which is enough, and within the text.
+fn shown(span: &Range<usize>, text: &str) -> Range<usize> {
+    let start = (0..=span.start.min(text.len())).rfind(|&k| text.is_char_boundary(k));
+    let start = start.unwrap_or_default();
+    let piece = text.get(start..span.end.clamp(start, text.len()));
+    let line = piece.and_then(|piece| piece.lines().next());
+    start..start + line.map_or(0, str::len)
 }
 
 /// All findings of a deck, in the order in which they were made.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Findings {
     list: Vec<Finding>,
+    /// Files that the deck includes.
+    files: Vec<Included>,
 }
 
 impl Findings {
@@ -177,6 +192,7 @@ impl Findings {
                     message,
                     label,
                     span: span.clone(),
+                    also: None,
                     help,
                 });
                 self.list.len() - 1
@@ -190,10 +206,32 @@ impl Findings {
         self.list.iter()
     }
 
-    /// All of them, with line and column of their places in the text of the deck, from 1.
+    /// Tells which files the deck includes.
+    pub(super) fn include(&mut self, files: Vec<Included>) {
+        self.files = files;
+    }
+
+    /// The file that a place is in, of those that the deck includes; `None` for its own.
+    pub fn file(&self, place: &Range<usize>) -> Option<&Path> {
+        Some(&file_at(&self.files, place.start)?.file)
+    }
+
+    /// The turn in which the file of a place is joined with the others, the deck last.
+    pub(super) fn turn(&self, place: &Range<usize>) -> usize {
+        file_at(&self.files, place.start).map_or(usize::MAX, |file| file.turn)
+    }
+
+    /// The folder that a path at a place is relative to, of those files; `None` for the deck itself.
+    pub(super) fn folder(&self, place: &Range<usize>) -> Option<&Path> {
+        Some(file_at(&self.files, place.start)?.folder())
+    }
+
+    /// All of them, with line and column of their places in the text of the deck or of the [file](Findings::file) that
+    /// they are in, from 1.
     pub fn places(&self, text: &str) -> impl Iterator<Item = (&Finding, usize, usize)> {
         self.list.iter().map(move |finding| {
-            let before = &text[..finding.shown(text).start];
+            let (text, span) = text_at(text, &self.files, &finding.span);
+            let before = &text[..shown(&span, text).start];
             let (line, column) = match before.rsplit_once('\n') {
                 Some((above, own)) => (2 + above.matches('\n').count(), own),
                 None => (1, before),
@@ -232,11 +270,31 @@ impl Findings {
                 Severity::Error => Level::ERROR,
                 Severity::Warning => Level::WARNING,
             };
-            let place = AnnotationKind::Primary.span(finding.shown(text));
-            let source = Snippet::source(text).path(file);
+            let (own, place) = text_at(text, &self.files, &finding.span);
+            let at = |span: &Range<usize>| self.file(span).map(|file| file.display().to_string());
+            let path = |span: &Range<usize>| at(span).unwrap_or_else(|| file.to_owned());
+            let primary = AnnotationKind::Primary.span(shown(&place, own));
+            let source = Snippet::source(own).path(path(&finding.span));
+            let mut snippets = vec![source.annotation(primary.label(finding.label.as_str()))];
+            if let Some((span, label)) = &finding.also {
+                let (other, place) = text_at(text, &self.files, span);
+                let context = AnnotationKind::Context.span(shown(&place, other));
+                let context = context.label(label.as_str());
+                match at(span) == at(&finding.span) {
+                    true => {
+                        snippets = snippets
+                            .into_iter()
+                            .map(|s| s.annotation(context.clone()))
+                            .collect()
+                    }
+                    false => {
+                        snippets.push(Snippet::source(other).path(path(span)).annotation(context))
+                    }
+                }
+            }
             let shown = level
                 .primary_title(finding.message.as_str())
-                .element(source.annotation(place.label(finding.label.as_str())))
+                .elements(snippets)
                 .element(Level::HELP.message(finding.advice()));
             out.push_str(&renderer.render(&[shown]));
             out.push_str("\n\n");

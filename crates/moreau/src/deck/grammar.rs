@@ -10,6 +10,7 @@ mod tool;
 use super::entries::{Analysis, Deck};
 use super::finding::{At, Class, Findings, did_you_mean};
 use super::formula;
+use super::include::{self, Joining};
 use super::reader::{self, Log, Table, Value};
 use super::units::Units;
 use std::collections::BTreeMap;
@@ -20,25 +21,55 @@ use toml::de::DeTable;
 /// Reads a deck whose paths are relative to a folder. What was not understood is left out, and
 /// noted.
 pub(super) fn read(text: &str, folder: &Path, given: &BTreeMap<String, f64>) -> (Deck, Findings) {
+    let log = Log::new(folder);
+    let (includes, files) = include::read(text, folder, &log);
+    log.borrow_mut().include(files.clone());
+    let joining = Joining {
+        own: text,
+        files: &files,
+        parse,
+        log: &log,
+    };
+    let document = joining.with(&includes, parse(text, 0, &log));
+    let root = Table::new(&document, 0..0, "the deck", &log);
+    if includes_fail(&log.borrow()) {
+        // What else would be said is mostly that what is not there is missing.
+        let silent = Log::new(folder);
+        let deck = deck(&Table::new(&document, 0..0, "the deck", &silent));
+        return (deck, log.into_inner());
+    }
+    let parameters = parameters(&root, given);
+    let deck = deck(&root);
+    // For editors, and joined already.
+    root.get("include");
+    root.finish();
+    for name in parameters.iter().filter(|name| !log.uses(&name.value)) {
+        // What is included may be for several decks.
+        if log.borrow().file(&name.span).is_none() {
+            let message = format!("no formula uses the parameter \"{}\"", name.value);
+            log.borrow_mut()
+                .warning(&name.span, message, "as in friction = \"= mu\"");
+        }
+    }
+    (deck, log.into_inner())
+}
+
+/// Whether a deck is not whole because of what it includes.
+pub(super) fn includes_fail(findings: &Findings) -> bool {
+    findings.iter().any(|f| f.class == Class::Includes)
+}
+
+/// The table of a text whose places begin at one; what is no TOML in it is noted.
+fn parse<'t>(text: &'t str, start: usize, log: &Log) -> DeTable<'t> {
     let (document, errors) = DeTable::parse_recoverable(text);
-    let log = Log::default();
     for error in errors {
         let span = error.span().unwrap_or(0..0);
         let message = not_toml(text, &span, error.message());
         log.borrow_mut()
-            .error(&span, message, "here")
+            .error(&(span.start + start..span.end + start), message, "here")
             .about(Class::Syntax);
     }
-    let root = Table::new(document.get_ref(), 0..0, "the deck", &log);
-    let parameters = parameters(&root, given);
-    let deck = deck(&root, folder);
-    root.finish();
-    for name in parameters.iter().filter(|name| !log.uses(&name.value)) {
-        let message = format!("no formula uses the parameter \"{}\"", name.value);
-        log.borrow_mut()
-            .warning(&name.span, message, "as in friction = \"= mu\"");
-    }
-    (deck, log.into_inner())
+    include::shifted_table(document.into_inner(), start)
 }
 
 /// Defines the parameters of a deck, in the order of the file; those that are given have other values. Their names.
@@ -94,7 +125,7 @@ fn not_toml(text: &str, span: &Range<usize>, said: &str) -> String {
     }
 }
 
-fn deck(root: &Table<'_>, folder: &Path) -> Deck {
+fn deck(root: &Table<'_>) -> Deck {
     let log = root.log();
     let title = root
         .get("title")
@@ -123,17 +154,17 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
         );
     }
     let before = log.borrow().errors();
-    let mesh = mesh::read(root, dimension, folder);
+    let mesh = mesh::read(root, dimension);
     let mesh_understood = log.borrow().errors() == before;
     let materials = root
         .tables("material", "[[material]]")
         .into_iter()
-        .filter_map(|t| material::read(t, dimension))
+        .flat_map(|t| material::read(t, dimension))
         .collect();
     if root.get("material").is_none() {
         missing(root, "[[material]]", "on, young and poisson");
     }
-    let (tools, tool_names) = tool::read_tools(root, analysis, folder);
+    let (tools, tool_names) = tool::read_tools(root, analysis);
     let contacts = tool::read_contacts(root, dimension);
     let ties = tool::read_ties(root);
     let steps = root
@@ -153,7 +184,7 @@ fn deck(root: &Table<'_>, folder: &Path) -> Deck {
         analysis,
         finite: finite.filter(|f| f.value),
         thickness: thickness.unwrap_or(At::new(1.0, 0..0)),
-        mesh_file: mesh.file,
+        mesh_files: mesh.files,
         blocks: mesh.blocks,
         groups: mesh.groups,
         mesh_understood,

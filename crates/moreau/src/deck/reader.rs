@@ -5,21 +5,40 @@ use super::formula::{self, Mistake};
 use std::cell::{Ref, RefCell, RefMut};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// A value with its place.
 pub(super) type Value<'a> = &'a Spanned<DeValue<'a>>;
 
-/// Where findings are collected while a deck is read, with the parameters that formulas may use.
-#[derive(Default)]
+/// Where findings are collected while a deck is read, with the parameters that formulas may use, and what paths are
+/// relative to.
 pub(super) struct Log {
+    folder: PathBuf,
     findings: RefCell<Findings>,
     parameters: RefCell<BTreeMap<String, f64>>,
     used: RefCell<BTreeSet<String>>,
 }
 
 impl Log {
+    /// Of a deck whose paths are relative to a folder.
+    pub(super) fn new(folder: &Path) -> Self {
+        Self {
+            folder: folder.to_owned(),
+            findings: RefCell::default(),
+            parameters: RefCell::default(),
+            used: RefCell::default(),
+        }
+    }
+
+    /// A path that is relative to the folder of the file in which it stands.
+    pub(super) fn path(&self, given: &At<String>) -> PathBuf {
+        let findings = self.findings.borrow();
+        let folder = findings.folder(&given.span).unwrap_or(&self.folder);
+        folder.join(&given.value)
+    }
+
     pub(super) fn borrow(&self) -> Ref<'_, Findings> {
         self.findings.borrow()
     }
@@ -144,14 +163,15 @@ impl<'a> Table<'a> {
         value
     }
 
-    /// Keys and values, in the order of the file, for tables whose keys are names of the user.
+    /// Keys and values, in the order of the files, for tables whose keys are names of the user.
     pub(super) fn entries(&self) -> Vec<(At<String>, Value<'a>)> {
         let mut list: Vec<_> = self
             .table
             .iter()
             .map(|(k, v)| (At::new(k.get_ref().to_string(), k.span()), v))
             .collect();
-        list.sort_by_key(|(key, _)| key.span.start);
+        let findings = self.log.borrow();
+        list.sort_by_key(|(key, _)| (findings.turn(&key.span), key.span.start));
         list
     }
 
@@ -180,6 +200,20 @@ impl<'a> Table<'a> {
 
     pub(super) fn text(&self, key: &'static str) -> Option<At<String>> {
         text(self.need(key, "\"…\"")?, key, self.log)
+    }
+
+    /// A text, or several.
+    pub(super) fn texts(&self, key: &'static str, expected: &str) -> Option<Vec<At<String>>> {
+        let value = self.need(key, expected)?;
+        let items = match value.get_ref().is_array() {
+            true => items(value, key, expected, self.log)?,
+            false => vec![value],
+        };
+        if items.is_empty() {
+            return wrong(value, key, "at least one", self.log);
+        }
+        let each = items.into_iter().map(|item| text(item, key, self.log));
+        each.collect()
     }
 
     /// A name: letters, digits, `-`, `_` and `.`.

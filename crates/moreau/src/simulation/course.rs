@@ -172,7 +172,9 @@ impl<const D: usize> Course<D> {
             }
             StepError::Increment(cause) => {
                 let (driver, trace) = (&self.setup.driver, &self.trace);
-                Some(Diagnosis::new(driver, deck, self.stage, trace, cause))
+                let step = self.setup.stages.get(self.stage).map(|s| &s.step);
+                let at = (self.stage, step);
+                Some(Diagnosis::new(driver, deck, at, trace, cause))
             }
         };
         self.failed = Some((error.clone(), diagnosis));

@@ -2,8 +2,9 @@
 
 use super::status_name;
 use super::trace::Trace;
-use crate::deck::{Action, Deck, Method, Units};
-use crate::driver::{Driver, Imbalance, IncrementError};
+use crate::contact::ContactError;
+use crate::deck::{Action, ConditionEntry, Deck, Method, Units};
+use crate::driver::{Driver, Imbalance, IncrementError, Step};
 use crate::laws::Status;
 use std::fmt;
 
@@ -44,7 +45,7 @@ impl Diagnosis {
     pub(super) fn new<const D: usize>(
         driver: &Driver<D>,
         deck: &Deck,
-        stage: usize,
+        (stage, step): (usize, Option<&Step<D>>),
         trace: &Trace,
         error: &IncrementError,
     ) -> Self {
@@ -73,7 +74,29 @@ impl Diagnosis {
             .enumerate()
             .filter_map(flip)
             .collect();
-        let suggestion = suggestion(deck, stage, cause, plastic_fraction, !flips.is_empty());
+        let last = trace.statuses.back().filter(|_| trace.is_of_next(driver));
+        let singular = matches!(
+            cause,
+            IncrementError::Contact {
+                source: ContactError::Singular,
+                ..
+            }
+        );
+        let free = step.filter(|_| pushed(deck, stage).is_none());
+        let free = free.and_then(|step| {
+            let is_open =
+                |k: usize| singular || last.is_some_and(|all| all.get(k) == Some(&Status::Open));
+            let (cell, motion) = driver.let_go(step, is_open)?;
+            Some((body_of(driver, cell), motion))
+        });
+        let suggestion = match (free, deck.steps.get(stage)) {
+            (Some((body, motion)), Some(step)) => format!(
+                "nothing holds {body} any longer, free is its {motion}: the contacts that held it are open; end step \
+                 \"{}\" before, or hold it there",
+                step.name.value
+            ),
+            _ => suggestion(deck, stage, cause, plastic_fraction, !flips.is_empty()),
+        };
         let worst = match cause {
             IncrementError::NotConverged { worst, .. } => worst.clone(),
             _ if trace.is_of_next(driver) => driver.worst(&trace.residual),
@@ -87,6 +110,26 @@ impl Diagnosis {
             suggestion,
             units: deck.units,
         }
+    }
+}
+
+/// What drives a tool by a force or a moment in a step.
+fn pushed(deck: &Deck, stage: usize) -> Option<&ConditionEntry> {
+    let mut conditions = deck.steps.get(stage)?.conditions.iter();
+    conditions.find(|c| matches!(c.action, Action::Push(..) | Action::Moment(..)))
+}
+
+/// The body of a cell, by the smallest group of cells that it is in.
+fn body_of<const D: usize>(driver: &Driver<D>, cell: usize) -> String {
+    let mesh = driver.mesh();
+    let own = |name: &&str| {
+        let cells = mesh.cell_group(name).unwrap_or_default();
+        cells.binary_search(&cell).is_ok()
+    };
+    let size = |name: &&str| mesh.cell_group(name).map_or(0, <[usize]>::len);
+    match mesh.group_names().filter(own).min_by_key(size) {
+        Some(name) => format!("the body \"{name}\""),
+        None => format!("the body of cell {cell}"),
     }
 }
 
@@ -112,8 +155,7 @@ fn suggestion(
                 | Action::Moment(..)
         )
     });
-    let mut conditions = step.conditions.iter();
-    let pushed = conditions.find(|c| matches!(c.action, Action::Push(..) | Action::Moment(..)));
+    let pushed = pushed(deck, stage);
     let yields = matches!(cause, IncrementError::Mechanism { .. }) || plastic_fraction > WIDESPREAD;
     let exact = deck.solver.method == Method::Exact && !deck.solver.outside;
     match (load, cause) {

@@ -181,3 +181,33 @@ fn a_run_that_is_killed_or_interrupted_goes_on() {
         equal_but_for_times(&whole, &out);
     }
 }
+
+/// The results of a deck in several files hold all of it: they go on whatever has become of the files.
+#[test]
+fn results_need_no_included_file() {
+    let at = directory("included");
+    fs::create_dir_all(&at).expect("a directory");
+    let punched = punched();
+    let (head, tail) = punched.split_once("[[material]]").expect("a material");
+    let (material, tail) = tail.split_once("[[tool]]").expect("a tool");
+    let (deck, part) = (at.join("deck.toml"), at.join("steel.toml"));
+    let output = "[output]\ncheckpoint = 3\n";
+    let whole = format!("include = \"steel.toml\"\n{head}[[tool]]{tail}\n{output}");
+    fs::write(&deck, whole).expect("a deck");
+    fs::write(&part, format!("[[material]]{material}")).expect("a part");
+    let out = at.join("out");
+    let to = out.to_string_lossy();
+    let run = moreau(&["run", &deck.to_string_lossy(), "--out", &to, "--verify"]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let read = |name: &str| fs::read(out.join(name)).expect("a file");
+    let before = ["history.csv", "deck.resolved.toml"].map(read);
+    assert!(text(&before[1]).contains("yield-stress = 300.0"));
+    fs::remove_file(&part).expect("removed");
+    let run = moreau(&["resume", &to]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    assert!(["history.csv", "deck.resolved.toml"].map(read) == before);
+    // The deck itself is no longer whole.
+    let run = moreau(&["run", &deck.to_string_lossy(), "--out", &to]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("cannot read the included file"));
+}

@@ -477,3 +477,46 @@ fn a_tolerance_is_between_rounding_and_no_answer() {
         );
     }
 }
+
+/// A material on several groups is one on each of them.
+#[test]
+fn a_material_may_be_on_several_groups() {
+    let second = "[[mesh.block]]\nname = \"second\"\nelement = \"quad4\"\nx = [60, 70]\ny = [0, 1]\ncells = [1, 1]\n";
+    let fixed = "fix = [{ on = \"second\", u = [\"x\", \"y\"] }, ";
+    let with = |on: &str| {
+        let deck = DECK.replace(
+            "[[material]]\non = \"block\"",
+            &format!("{second}[[material]]\non = {on}"),
+        );
+        deck.replace("fix = [", fixed)
+    };
+    let (list, problem, findings) = open(&with("[\"block\", \"second\"]"));
+    assert!(problem.is_some() && findings.warnings() == 0);
+    let (_, material) = DECK
+        .split_once("[[material]]\non = \"block\"")
+        .expect("a material");
+    let (material, _) = material.split_once("[[tool]]").expect("a tool");
+    let each = with("\"block\"").replace(
+        "[[tool]]",
+        &format!("[[material]]\non = \"second\"{material}[[tool]]"),
+    );
+    assert_eq!(list.resolved(), open(&each).0.resolved());
+    for (on, words) in [
+        ("[]", "on is an array of 0, expected at least one"),
+        ("[1]", "on is the integer 1, expected a text in quotes"),
+        ("[\"block\", \"sekond\"]", "did you mean \"second\"?"),
+        ("[\"block\", \"block.top\"]", "\"block.top\" holds facets"),
+        (
+            "[\"block\", \"second\", \"block\"]",
+            "\"block\" has a material already",
+        ),
+    ] {
+        let text = with(on);
+        let (_, problem, findings) = open(&text);
+        let out = findings.render("deck.toml", &text, false);
+        assert!(problem.is_none() && out.contains(words), "{words} in {out}");
+    }
+    // What is wrong with it is said once.
+    let text = with("[\"block\", \"second\"]").replace("0.3", "0.7");
+    assert_eq!(open(&text).2.errors(), 1);
+}

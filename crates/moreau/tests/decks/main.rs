@@ -2,12 +2,14 @@
 
 mod along;
 mod amplitudes;
+mod includes;
 mod keys;
 mod laws;
 mod meshes;
 mod metamorphic;
 mod mutants;
 mod parameters;
+mod parts;
 mod refused;
 mod rules;
 mod schema;

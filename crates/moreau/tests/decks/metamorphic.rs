@@ -6,7 +6,7 @@ mod moved;
 mod units;
 
 use super::{folder, temporary};
-use moreau::deck::Given;
+use moreau::deck::{Given, open_in};
 use moreau::run::{Directory, Watch, resume, run};
 use moreau::simulation::{Converged, Simulation};
 use std::fs;
@@ -25,6 +25,12 @@ fn examples() -> Vec<(String, Table)> {
         let name = path.file_stem().expect("a name").to_string_lossy();
         let text = fs::read_to_string(&path).expect("a deck");
         let mut deck: Table = text.parse().expect("toml");
+        if deck.contains_key("include") {
+            let whole = open_in(&text, &folder("docs/examples")).0.resolved();
+            deck = whole.parse().expect("toml");
+            // Nothing but defaults, which have no units.
+            deck.remove("solver");
+        }
         let solid = is_solid(&deck);
         let blocks = deck["mesh"].as_table_mut().expect("a mesh");
         let blocks = blocks.get_mut("block").and_then(Value::as_array_mut);

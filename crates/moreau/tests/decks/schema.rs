@@ -55,6 +55,10 @@ fn unknown_key_in_model(table: &str) -> Option<Vec<String>> {
     Some(match table {
         "" => vec![with("title =", "zzz = 1\ntitle =")],
         "mesh" => vec![with("[[mesh.block]]", "[mesh]\nzzz = 1\n[[mesh.block]]")],
+        "part" => vec![with(
+            "[[mesh.block]]",
+            "[[mesh.part]]\nfile = \"none.msh\"\nzzz = 1\n[[mesh.block]]",
+        )],
         "block" => vec![
             with("element =", "zzz = 1\nelement ="),
             solid_with("element =", "zzz = 1\nelement ="),

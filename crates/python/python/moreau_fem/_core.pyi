@@ -1,10 +1,11 @@
 from collections.abc import Mapping
 from os import PathLike
+from pathlib import Path
 from typing import Literal
 
 from .law import Asked
 
-Found = tuple[str, str, str, str, str | None, int, int]
+Found = tuple[str, str, str, str, str | None, int, int, Path | None]
 Values = (
     tuple[Literal["numbers"], bytearray]
     | tuple[Literal["counts"], bytearray]

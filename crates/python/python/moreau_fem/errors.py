@@ -6,6 +6,8 @@ import warnings
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from ._core import Found
     from .result import Result
 
@@ -27,6 +29,8 @@ class Finding(NamedTuple):
     """Line of the deck's text, from 1."""
     column: int
     """Column in that line, from 1."""
+    file: Path | None = None
+    """The file that the line is of, if the deck includes it; else it is of the deck itself."""
 
 
 def findings(found: list[Found]) -> list[Finding]:

@@ -157,7 +157,7 @@ pub(super) fn inner_surfaces<const D: usize>(
     findings: &mut Findings,
 ) {
     // The sides of a block are on its boundary.
-    if deck.mesh_file.is_none() {
+    if deck.mesh_files.is_empty() {
         return;
     }
     let boundary: HashSet<Facet> = groups.mesh.boundary_facets().into_iter().collect();

@@ -1,7 +1,7 @@
 //! The groups of a deck on its mesh: parts by limits and by nearness, and what they measure.
 
 use super::{Body, GroupFacts};
-use crate::deck::entries::{BlockEntry, Deck, GroupEntry, Part};
+use crate::deck::entries::{BlockEntry, Deck, FileEntry, GroupEntry, Part};
 use crate::deck::finding::{At, Class, Findings, did_you_mean};
 use crate::driver::{Analysis, Support};
 use crate::mesh::{CellKind, Facet, Mesh};
@@ -240,7 +240,18 @@ impl<const D: usize> Groups<D> {
         let bodies = self.mesh.bodies();
         let body = bodies.iter().position(|b| b.binary_search(&cell).is_ok());
         let name = body.map_or_else(String::new, |k| self.body_name(k, &bodies[k]));
-        let span = deck.mesh_file.as_ref().map_or(0..0, |f| f.span.clone());
+        // Of a part that has no name, the first of them.
+        let holds = |part: &FileEntry| match &part.name {
+            Some(name) => {
+                let cells = self.mesh.cell_group(&name.value);
+                cells.is_ok_and(|cells| cells.binary_search(&cell).is_ok())
+            }
+            None => false,
+        };
+        let named = deck.mesh_files.iter().find(|part| holds(part));
+        let other = || deck.mesh_files.iter().find(|part| part.name.is_none());
+        let part = named.or_else(other);
+        let span = part.map_or(0..0, |part| part.file.span.clone());
         (name, span)
     }
 

@@ -114,7 +114,8 @@ fn idle_names<const D: usize>(
     used: &BTreeSet<String>,
     findings: &mut Findings,
 ) {
-    let (Some(file), Some(groups), 0) = (&deck.mesh_file, groups, findings.errors()) else {
+    let (Some(first), Some(groups), 0) = (deck.mesh_files.first(), groups, findings.errors())
+    else {
         return;
     };
     let of_deck = |name: &str| {
@@ -122,7 +123,9 @@ fn idle_names<const D: usize>(
             let rest = name.strip_prefix(b.name.value.as_str());
             rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
         });
-        of_block || deck.groups.iter().any(|g| g.name.value == name)
+        let mut parts = deck.mesh_files.iter().flat_map(|part| &part.name);
+        let is_part = parts.any(|part| part.value == name);
+        of_block || is_part || deck.groups.iter().any(|g| g.name.value == name)
     };
     let idle: Vec<String> = groups
         .names()
@@ -131,7 +134,7 @@ fn idle_names<const D: usize>(
         .collect();
     if !idle.is_empty() {
         let message = format!("nothing uses these groups of the mesh: {}", idle.join(", "));
-        findings.warning(&file.span, message, "has groups that are not used");
+        findings.warning(&first.file.span, message, "has groups that are not used");
     }
 }
 

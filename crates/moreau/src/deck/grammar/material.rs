@@ -6,9 +6,10 @@ use crate::deck::finding::At;
 use crate::deck::reader::{self, Log, Table, Value};
 use crate::mesh::Integration;
 
-pub(super) fn read(table: Table<'_>, dimension: usize) -> Option<MaterialEntry> {
+/// A material for each of the groups that it is on.
+pub(super) fn read(table: Table<'_>, dimension: usize) -> Vec<MaterialEntry> {
     let log = table.log();
-    let on = table.text("on");
+    let on = table.texts("on", "a group of cells, or an array of them");
     let axes = axes::read(&table, dimension);
     let (young, poisson) = match axes.as_ref().and_then(|a| a.elastic.as_ref()) {
         // What the size of stresses is compared with.
@@ -45,19 +46,20 @@ pub(super) fn read(table: Table<'_>, dimension: usize) -> Option<MaterialEntry> 
         }
     }
     table.finish();
-    Some(MaterialEntry {
-        on: on?,
+    let each = |on| MaterialEntry {
+        on,
         // Stand-ins for what was refused, so that the rest is still checked.
-        young: young.unwrap_or(At::new(1.0, 0..0)),
-        poisson: poisson.unwrap_or(At::new(0.0, 0..0)),
-        yield_stress,
-        isotropic,
-        kinematic,
-        soil,
-        axes,
-        quadrature,
+        young: young.clone().unwrap_or(At::new(1.0, 0..0)),
+        poisson: poisson.clone().unwrap_or(At::new(0.0, 0..0)),
+        yield_stress: yield_stress.clone(),
+        isotropic: isotropic.clone(),
+        kinematic: kinematic.clone(),
+        soil: soil.clone(),
+        axes: axes.clone(),
+        quadrature: quadrature.clone(),
         kinds: Vec::new(),
-    })
+    };
+    on.into_iter().flatten().map(each).collect()
 }
 
 /// `cohesion` and the angles.

@@ -1,10 +1,11 @@
-//! `[mesh]`, `[[mesh.block]]` and `[[mesh.group]]`; no mesh is made here.
+//! `[mesh]`, `[[mesh.part]]`, `[[mesh.block]]` and `[[mesh.group]]`; no mesh is made here.
 
-use crate::deck::entries::{BlockEntry, Grid, GroupEntry, Part};
+use super::step::turn as turn_of;
+use crate::deck::entries::{BlockEntry, FileEntry, Grid, GroupEntry, Part, TurnEntry};
 use crate::deck::finding::{At, Class};
-use crate::deck::reader::{self, Table, Value};
+use crate::deck::reader::{self, Log, Table, Value};
 use crate::mesh::CellKind;
-use std::path::{Path, PathBuf};
+use std::ops::Range;
 
 /// Most cells of all blocks together that a deck may ask for.
 const MOST_CELLS: f64 = 2e6;
@@ -16,13 +17,12 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// What a deck says of its mesh.
 #[derive(Default)]
 pub(super) struct MeshEntries {
-    /// Path of the file.
-    pub(super) file: Option<At<PathBuf>>,
+    pub(super) files: Vec<FileEntry>,
     pub(super) blocks: Vec<BlockEntry>,
     pub(super) groups: Vec<GroupEntry>,
 }
 
-pub(super) fn read(root: &Table<'_>, dimension: usize, folder: &Path) -> MeshEntries {
+pub(super) fn read(root: &Table<'_>, dimension: usize) -> MeshEntries {
     let log = root.log();
     let Some(value) = root.need("mesh", "{ file = \"…\" }, or [[mesh.block]]") else {
         return MeshEntries::default();
@@ -31,8 +31,11 @@ pub(super) fn read(root: &Table<'_>, dimension: usize, folder: &Path) -> MeshEnt
         return MeshEntries::default();
     };
     let file = mesh.get("file");
-    let path = file.and_then(|v| reader::text(v, "file", log));
-    let given = mesh.get("block").is_some();
+    let plain = file.and_then(|v| path(v, dimension, log));
+    let parts = mesh.tables("part", "[[mesh.part]]").into_iter();
+    let parts = parts.filter_map(|t| part(t, dimension));
+    let files = plain.into_iter().chain(parts).collect();
+    let given = ["block", "part"].iter().any(|key| mesh.get(key).is_some());
     let blocks: Vec<BlockEntry> = mesh
         .tables("block", "[[mesh.block]]")
         .into_iter()
@@ -46,8 +49,8 @@ pub(super) fn read(root: &Table<'_>, dimension: usize, folder: &Path) -> MeshEnt
     if !given && file.is_none() {
         log.borrow_mut().error(
             &mesh.span,
-            "the mesh has neither a file nor a [[mesh.block]], expected at least one of them",
-            "file = \"…\" or [[mesh.block]] is missing",
+            "the mesh has neither a file nor a [[mesh.block]] nor a [[mesh.part]], expected at least one of them",
+            "file = \"…\", [[mesh.block]] or [[mesh.part]] is missing",
         );
     }
     let cells = |b: &BlockEntry| {
@@ -68,10 +71,61 @@ pub(super) fn read(root: &Table<'_>, dimension: usize, folder: &Path) -> MeshEnt
     }
     mesh.finish();
     MeshEntries {
-        file: path.map(|path| At::new(folder.join(path.value), path.span)),
+        files,
         blocks,
         groups,
     }
+}
+
+/// A file that is taken as it is.
+fn path(value: Value<'_>, dimension: usize, log: &Log) -> Option<FileEntry> {
+    let given = reader::text(value, "file", log)?;
+    let file = At::new(log.path(&given), given.span);
+    Some(FileEntry::plain(file, dimension))
+}
+
+fn part(table: Table<'_>, dimension: usize) -> Option<FileEntry> {
+    let log = table.log();
+    let file = table.need("file", "\"…\"");
+    let plain = file.and_then(|v| path(v, dimension, log));
+    let name = table.get("name").map(|_| table.name("name"));
+    let scale = table.number_if("scale");
+    if let Some(scale) = scale.as_ref().filter(|s| s.value <= 0.0) {
+        let message = format!("scale is {}, expected a positive number", scale.value);
+        log.borrow_mut().error(
+            &scale.span,
+            message,
+            "of another sign: a part is not mirrored",
+        );
+    }
+    let turn = table.get("turn");
+    let turn = turn.map(|v| (turn_of(v, dimension, log), v.span()));
+    let position = table.get("position");
+    let position = position.map(|v| reader::vector(v, "position", dimension, log));
+    table.finish();
+    let plain = plain?;
+    Some(FileEntry {
+        name: name.map_or(Some(None), |name| name.map(Some))?,
+        scale: scale.map_or(1.0, |s| s.value),
+        turn: match turn {
+            Some((turn, span)) => Some(about_an_axis(turn?, &span, log)?),
+            None => None,
+        },
+        position: match position {
+            Some(position) => position?.value,
+            None => plain.position,
+        },
+        ..plain
+    })
+}
+
+fn about_an_axis(turn: TurnEntry, span: &Range<usize>, log: &Log) -> Option<TurnEntry> {
+    if turn.rotation().is_some() {
+        return Some(turn);
+    }
+    let message = "turn has an axis of no length, expected a direction";
+    log.borrow_mut().error(span, message, "no direction");
+    None
 }
 
 fn block(table: Table<'_>, dimension: usize) -> Option<BlockEntry> {

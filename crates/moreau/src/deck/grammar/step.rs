@@ -265,7 +265,7 @@ fn moment(value: Value<'_>, dimension: usize, log: &Log) -> Option<MomentEntry> 
 }
 
 /// Degrees in the plane, `{ axis = [x, y, z], angle = … }` in space.
-fn turn(value: Value<'_>, dimension: usize, log: &Log) -> Option<TurnEntry> {
+pub(super) fn turn(value: Value<'_>, dimension: usize, log: &Log) -> Option<TurnEntry> {
     let forms = (
         "turn",
         "angle",

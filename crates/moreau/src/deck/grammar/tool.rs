@@ -7,7 +7,6 @@ use crate::deck::finding::At;
 use crate::deck::grammar::material::row;
 use crate::deck::reader::{self, Table, Value};
 use crate::files::read_skin;
-use std::path::Path;
 
 const SHAPES: [&str; 6] = [
     "plane", "cylinder", "sphere", "polyline", "profile", "surface",
@@ -17,11 +16,7 @@ const SHAPES: [&str; 6] = [
 const SHARP: f64 = 30.0;
 
 /// The tools, and the names of all of them.
-pub(super) fn read_tools(
-    root: &Table<'_>,
-    analysis: Analysis,
-    folder: &Path,
-) -> (Vec<ToolEntry>, Vec<String>) {
+pub(super) fn read_tools(root: &Table<'_>, analysis: Analysis) -> (Vec<ToolEntry>, Vec<String>) {
     let mut names = Vec::new();
     let tools = root
         .tables("tool", "[[tool]]")
@@ -29,7 +24,7 @@ pub(super) fn read_tools(
         .filter_map(|table| {
             let name = table.name("name");
             names.extend(name.iter().map(|n| n.value.clone()));
-            let shape = shape(&table, analysis, folder);
+            let shape = shape(&table, analysis);
             let reference = table.get("reference").and_then(|value| {
                 reader::vector(value, "reference", analysis.dimension(), table.log())
             });
@@ -44,7 +39,7 @@ pub(super) fn read_tools(
     (tools, names)
 }
 
-fn shape(table: &Table<'_>, analysis: Analysis, folder: &Path) -> Option<At<Shape>> {
+fn shape(table: &Table<'_>, analysis: Analysis) -> Option<At<Shape>> {
     let log = table.log();
     let dimension = analysis.dimension();
     let inside = table.boolean_if("inside");
@@ -86,7 +81,7 @@ fn shape(table: &Table<'_>, analysis: Analysis, folder: &Path) -> Option<At<Shap
     }
     let inner = reader::table(value, key, key, log)?;
     if key == "surface" {
-        let entry = skin(&inner, hollow, folder);
+        let entry = skin(&inner, hollow);
         inner.finish();
         return Some(At::new(Shape::Triangles(entry?), value.span()));
     }
@@ -127,14 +122,14 @@ fn shape(table: &Table<'_>, analysis: Analysis, folder: &Path) -> Option<At<Shap
 }
 
 /// `{ file = "…", group = "…", sharp = 30 }`, and what is in the file.
-fn skin(table: &Table<'_>, hollow: bool, folder: &Path) -> Option<SkinEntry> {
+fn skin(table: &Table<'_>, hollow: bool) -> Option<SkinEntry> {
     let log = table.log();
     let file = table.text("file");
     let group = table.get("group");
     let group = group.and_then(|v| reader::text(v, "group", log));
     let sharp = table.number_if("sharp").map_or(SHARP, |s| s.value);
     let file = file?;
-    let path = folder.join(&file.value);
+    let path = log.path(&file);
     if let Some(group) = group.as_ref().filter(|_| !file.value.ends_with(".msh")) {
         let message = "only a file of Gmsh has groups: of others all is the surface";
         log.borrow_mut()
@@ -198,7 +193,7 @@ pub(super) fn read_contacts(root: &Table<'_>, dimension: usize) -> Vec<ContactEn
     root.tables("contact", "[[contact]]")
         .into_iter()
         .filter_map(|table| {
-            let parts = surface(&table);
+            let parts = table.texts("surface", "a group of facets, or an array of them");
             let against = table.text("against");
             let friction = friction(&table, dimension);
             let gap_offset = table.number_if("gap-offset");
@@ -220,7 +215,7 @@ pub(super) fn read_contacts(root: &Table<'_>, dimension: usize) -> Vec<ContactEn
 
 pub(super) fn read_ties(root: &Table<'_>) -> Vec<TieEntry> {
     let read = |table: Table<'_>| {
-        let parts = surface(&table);
+        let parts = table.texts("surface", "a group of facets, or an array of them");
         let to = table.text("to");
         table.finish();
         let parts = parts?;
@@ -238,24 +233,6 @@ pub(super) fn read_ties(root: &Table<'_>) -> Vec<TieEntry> {
 fn whole(parts: &[At<String>]) -> Option<At<String>> {
     let names: Vec<&str> = parts.iter().map(|p| p.value.as_str()).collect();
     Some(At::new(names.join("+"), parts.first()?.span.clone()))
-}
-
-/// One group, or several that are one surface.
-fn surface(table: &Table<'_>) -> Option<Vec<At<String>>> {
-    let log = table.log();
-    let expected = "a group of facets, or an array of them";
-    let value = table.need("surface", expected)?;
-    if !value.get_ref().is_array() {
-        return Some(vec![reader::text(value, "surface", log)?]);
-    }
-    let parts = reader::items(value, "surface", expected, log)?.into_iter();
-    let parts: Vec<At<String>> = parts
-        .map(|part| reader::text(part, "a surface", log))
-        .collect::<Option<_>>()?;
-    match parts.is_empty() {
-        true => reader::wrong(value, "surface", "at least one group", log),
-        false => Some(parts),
-    }
 }
 
 /// `adjust = true`, or a distance.

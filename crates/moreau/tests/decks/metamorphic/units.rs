@@ -35,6 +35,8 @@ fn powers(keys: &str) -> (i32, i32) {
             "x",
             "y",
             "z",
+            "scale",
+            "position",
             "gap-offset",
             "point",
             "nearest",
