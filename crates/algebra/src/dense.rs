@@ -1,9 +1,12 @@
-//! Products and Cholesky factors of dense matrices, those of an interface; not of sparse ones.
+//! Products and factors of dense symmetric matrices, those of an interface; not of sparse ones.
 
+use crate::engine::Inertia;
+use faer::diag::{DiagMut, DiagRef};
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor;
+use faer::linalg::cholesky::{lblt, llt::factor};
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve;
+use faer::perm::PermRef;
 use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::{DMatrix, DVector};
 
@@ -66,6 +69,94 @@ impl DenseCholesky {
     }
 }
 
+/// L B Lᵀ = P A Pᵀ with blocks B of one or two rows, of a matrix of any sign.
+pub struct DenseLdlt {
+    /// L below the diagonal, on it that of B.
+    factor: DMatrix<f64>,
+    /// Entries of B beside its diagonal, zero where a block has one row.
+    beside: Vec<f64>,
+    forward: Vec<usize>,
+    inverse: Vec<usize>,
+}
+
+impl DenseLdlt {
+    /// Factorises a symmetric matrix, of which the lower triangle is read; `None` if it holds what is not finite.
+    pub fn new(mut a: DMatrix<f64>) -> Option<Self> {
+        if !a.iter().all(|x| x.is_finite()) {
+            return None;
+        }
+        let n = a.nrows();
+        let mut beside = vec![0.0; n];
+        let (mut forward, mut inverse) = (vec![0usize; n], vec![0usize; n]);
+        let own = Default::default();
+        let request =
+            lblt::factor::cholesky_in_place_scratch::<usize, f64>(n, Par::Seq, own);
+        let mut memory = MemBuffer::try_new(request).ok()?;
+        // One thread: the same factor to the bit wherever it runs.
+        lblt::factor::cholesky_in_place(
+            MatMut::from_column_major_slice_mut(a.as_mut_slice(), n, n),
+            DiagMut::from_slice_mut(&mut beside),
+            &mut forward,
+            &mut inverse,
+            Par::Seq,
+            MemStack::new(&mut memory),
+            Default::default(),
+        );
+        Some(Self {
+            factor: a,
+            beside,
+            forward,
+            inverse,
+        })
+    }
+
+    /// Signs of the eigenvalues of A, of which those of a block of B that are not larger than `none` are zero.
+    pub fn inertia(&self, none: f64) -> Inertia {
+        let mut inertia = Inertia::default();
+        let mut count = |value: f64| match value {
+            v if v > none => inertia.positive += 1,
+            v if v < -none => inertia.negative += 1,
+            _ => inertia.zero += 1,
+        };
+        let mut k = 0;
+        while k < self.beside.len() {
+            let (a, b) = (self.factor[(k, k)], self.beside[k]);
+            if b == 0.0 {
+                count(a);
+                k += 1;
+                continue;
+            }
+            let c = self.factor[(k + 1, k + 1)];
+            let (mean, radius) = (0.5 * (a + c), (0.5 * (a - c)).hypot(b));
+            count(mean + radius);
+            count(mean - radius);
+            k += 2;
+        }
+        inertia
+    }
+
+    /// x ← A⁻¹ x; no numbers where A is singular.
+    pub fn solve(&self, x: &mut DVector<f64>) {
+        let n = x.len();
+        let factor = MatRef::from_column_major_slice(self.factor.as_slice(), n, n);
+        let diagonal: Vec<f64> = self.factor.diagonal().iter().copied().collect();
+        let request = lblt::solve::solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq);
+        let Ok(mut memory) = MemBuffer::try_new(request) else {
+            x.fill(f64::NAN);
+            return;
+        };
+        lblt::solve::solve_in_place(
+            factor,
+            DiagRef::from_slice(&diagonal),
+            DiagRef::from_slice(&self.beside),
+            PermRef::new_checked(&self.forward, &self.inverse, n),
+            MatMut::from_column_major_slice_mut(x.as_mut_slice(), n, 1),
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+    }
+}
+
 /// L Lᵀ of a lower triangular L.
 pub fn square(l: &DMatrix<f64>) -> DMatrix<f64> {
     let n = l.nrows();
@@ -89,6 +180,32 @@ pub fn square(l: &DMatrix<f64>) -> DMatrix<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// A = C D Cᵀ has the signs of D, by Sylvester's law.
+        #[test]
+        fn signs_are_those_of_the_eigenvalues(
+            n in 1usize..70, entries in prop::collection::vec(-1.0..1.0f64, 97),
+            signs in prop::collection::vec(-1i32..2, 70),
+        ) {
+            let c = DMatrix::from_fn(n, n, |i, j| {
+                entries[(i * 31 + j * 7) % 97] + if i == j { n as f64 } else { 0.0 }
+            });
+            let d = DMatrix::from_fn(n, n, |i, j| if i == j { f64::from(signs[i]) } else { 0.0 });
+            let a = &c * d * c.transpose();
+            let factor = DenseLdlt::new(a.clone()).expect("finite");
+            let of = |sign: i32| signs[..n].iter().filter(|s| **s == sign).count();
+            let expected = Inertia { positive: of(1), negative: of(-1), zero: of(0) };
+            prop_assert_eq!(factor.inertia(1e-10 * (1.0 + a.amax())), expected);
+            if of(0) == 0 {
+                let x = DVector::from_fn(n, |i, _| (i as f64).sin());
+                let mut solved = &a * &x;
+                factor.solve(&mut solved);
+                prop_assert!((solved - x).norm() < 1e-8);
+            }
+        }
+    }
 
     #[test]
     fn factors_solve_and_are_refused_where_there_is_none() {
@@ -116,5 +233,8 @@ mod tests {
         indefinite[(40, 40)] = -1.0;
         assert!(DenseCholesky::new(indefinite).is_none());
         assert!(DenseCholesky::new(DMatrix::from_element(2, 2, f64::NAN)).is_none());
+        assert!(DenseLdlt::new(DMatrix::from_element(2, 2, f64::NAN)).is_none());
+        let nothing = DenseLdlt::new(DMatrix::zeros(0, 0)).expect("nothing to refuse");
+        assert_eq!(nothing.inertia(0.0), Inertia::default());
     }
 }

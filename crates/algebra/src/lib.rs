@@ -14,7 +14,7 @@
 //! | what a factor will take, before there is one | [`Cost`] |
 //! | fewer unknowns that the others follow, and Pᵀ A P | [`CoarseSpace`] |
 //! | conjugate gradients, preconditioned by sweeps and the factor of a coarse space | [`ConjugateGradients`] |
-//! | factors of dense matrices | [`DenseCholesky`], [`Lu`] |
+//! | factors of dense matrices | [`DenseCholesky`], [`DenseLdlt`], [`Lu`] |
 //! | L U = P A of sparse unsymmetric matrices | [`SparseLu`] of [`Rows`] |
 //! | processes that hold one matrix together, and factorise it | [`Team`] |
 //!
@@ -66,7 +66,7 @@ mod team;
 pub use cholesky::Cholesky;
 pub use coarse::{CoarseError, CoarseSpace};
 pub use conjugate::{ConjugateGradients, Interface, Operator, Stop};
-pub use dense::{DenseCholesky, square};
+pub use dense::{DenseCholesky, DenseLdlt, square};
 pub use either::Either;
 pub use engine::{Cost, Engine, EngineError, Inertia, TooLarge};
 pub use ldlt::Ldlt;
