@@ -89,8 +89,7 @@ impl DenseLdlt {
         let mut beside = vec![0.0; n];
         let (mut forward, mut inverse) = (vec![0usize; n], vec![0usize; n]);
         let own = Default::default();
-        let request =
-            lblt::factor::cholesky_in_place_scratch::<usize, f64>(n, Par::Seq, own);
+        let request = lblt::factor::cholesky_in_place_scratch::<usize, f64>(n, Par::Seq, own);
         let mut memory = MemBuffer::try_new(request).ok()?;
         // One thread: the same factor to the bit wherever it runs.
         lblt::factor::cholesky_in_place(

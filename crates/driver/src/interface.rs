@@ -2,6 +2,8 @@
 //! them; not its solution.
 
 pub(crate) mod condensation;
+pub(crate) mod elimination;
+pub(crate) mod free;
 pub(crate) mod kinematics;
 pub(crate) mod pairing;
 pub(crate) mod redistribution;

@@ -12,5 +12,6 @@ pub(crate) mod line_search;
 pub(crate) mod linearised;
 pub(crate) mod nested;
 pub(crate) mod pressures;
+pub(crate) mod stability;
 pub(crate) mod tangent;
 pub(crate) mod unsymmetric;

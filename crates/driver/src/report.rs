@@ -110,7 +110,9 @@ pub struct IncrementReport {
     /// the last iteration; `None` where nothing touches, where contacts are tied in the factor, on a path of unknown load factor, and under
     /// the paper's nesting.
     pub criticality: Option<(usize, f64)>,
-    /// Negative eigenvalues of the last tangent under large strains, with what may touch held where it is: the
+    /// Negative eigenvalues of the last tangent under large strains on the displacements that the statuses leave free:
+    /// what is open moves as it will, what slips along its surface, what sticks not at all; a penalty is a spring. Of
+    /// slip under friction, whose tangent is not symmetric, shears are taken for forces that stay what they are. The
     /// equilibrium is unstable, and since it was not a limit point or a bifurcation has been passed.
     pub negative_eigenvalues: usize,
     /// How the body gives way, by `D·node + axis`, of size 1 at the node that moves most: in the first of the increments

@@ -1,16 +1,16 @@
 //! The contact problem condensed from the interface unknowns, and the way back to them; not how
 //! it is solved.
 
+use crate::interface::elimination::{Elimination, Transformation, row};
+use crate::interface::free::gives_way;
 use crate::linear::suspension::Suspended;
 use crate::linear::system::System;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Kinematics};
-use crate::vector::directions::Directions;
 use moreau_algebra::DenseCholesky;
 use moreau_contact::{CondensedProblem, ContactError};
 use moreau_laws::{Local, Status};
 use nalgebra::{DMatrix, DVector};
-use std::collections::BTreeMap;
 
 /// The contact problem of a linearised increment, and the way back to the interface unknowns.
 ///
@@ -40,35 +40,12 @@ impl<const D: usize> Condensation<D> {
         kinematics: &[Kinematics<D>],
         (previous, force): (Vec<Local<D>>, &[Local<D>]),
     ) -> Result<Self, ContactError> {
-        let mut rows = Elimination::new(load.len());
-        let mut suspended = Vec::new();
-        for (c, k) in kinematics.iter().enumerate() {
-            for j in (0..D).filter(|&j| k.active[j]) {
-                let given = (&motion_rows[c], &system.prescribed().directions);
-                let row = row(given, k, j, |dof| system.interface_index(dof));
-                let own = (0..D).filter_map(|i| system.interface_index(D * points[c].node + i));
-                let own: Vec<usize> = own.collect();
-                if row.is_empty() {
-                    return Err(ContactError::Overconstrained { contact: c });
-                }
-                if !rows.solve(D * c + j, &row, &own) {
-                    let (component, force) = (D * c + j, force[c][j]);
-                    suspended.push(Suspended {
-                        component,
-                        row,
-                        force,
-                    });
-                }
-            }
-        }
-        let transformation = rows.finish(D * points.len());
-        let springs: Vec<f64> = suspended.iter().map(|s| s.spring(&stiffness)).collect();
-        let mut stiffness = transformation.congruence(stiffness);
-        let mut load = transformation.transposed(load);
-        for (own, spring) in suspended.iter().zip(springs) {
-            let row = transformation.combination(&own.row);
-            own.add(spring, &row, (&mut stiffness, &mut load));
-        }
+        let contacts = (points, motion_rows);
+        let InFrames {
+            transformation,
+            stiffness,
+            load,
+        } = InFrames::new(system, (stiffness, load), contacts, kinematics, force)?;
         let (mut stiffness, load, rest) =
             InternalUnknowns::condense(stiffness, load, D * points.len())?;
         // Components switched off: alone on their diagonal, of the size of their neighbours.
@@ -102,13 +79,8 @@ impl<const D: usize> Condensation<D> {
 
     /// The interface as it is under these statuses; `None` if they leave it a rigid motion.
     pub(crate) fn yielding(&self, status: &[Status]) -> Option<Yielding<'_, D>> {
-        let gives = |k: usize| match status[k / D] {
-            Status::Open => true,
-            Status::Slip => !k.is_multiple_of(D),
-            Status::Stick | Status::Tied => false,
-        };
         let free: Vec<usize> = (0..self.active.len())
-            .filter(|&k| self.active[k] && gives(k))
+            .filter(|&k| self.active[k] && gives_way(status[k / D], k % D))
             .collect();
         let stiffness = self.problem.stiffness();
         let own = DMatrix::from_fn(free.len(), free.len(), |i, j| stiffness[(free[i], free[j])]);
@@ -118,6 +90,63 @@ impl<const D: usize> Condensation<D> {
             condensation: self,
             factor,
             free,
+        })
+    }
+}
+
+/// The condensed system in (u, y), before y is condensed out.
+pub(crate) struct InFrames {
+    pub(crate) transformation: Transformation,
+    /// Tᵀ S T \[N/mm\], and the springs of what is suspended.
+    pub(crate) stiffness: DMatrix<f64>,
+    load: DVector<f64>,
+}
+
+impl InFrames {
+    /// Of a stiffness and a load of the interface unknowns; `force` are the last contact forces that were found.
+    ///
+    /// # Errors
+    /// [`ContactError::Overconstrained`] where displacement conditions leave contacts no freedom.
+    pub(crate) fn new<const D: usize>(
+        system: &System,
+        (stiffness, load): (DMatrix<f64>, &DVector<f64>),
+        (points, motion_rows): (&[ContactPoint<D>], &[RelativeMotionRow<D>]),
+        kinematics: &[Kinematics<D>],
+        force: &[Local<D>],
+    ) -> Result<Self, ContactError> {
+        let mut rows = Elimination::new(load.len());
+        let mut suspended = Vec::new();
+        for (c, k) in kinematics.iter().enumerate() {
+            for j in (0..D).filter(|&j| k.active[j]) {
+                let given = (&motion_rows[c], &system.prescribed().directions);
+                let row = row(given, k, j, |dof| system.interface_index(dof));
+                let own = (0..D).filter_map(|i| system.interface_index(D * points[c].node + i));
+                let own: Vec<usize> = own.collect();
+                if row.is_empty() {
+                    return Err(ContactError::Overconstrained { contact: c });
+                }
+                if !rows.solve(D * c + j, &row, &own) {
+                    let (component, force) = (D * c + j, force[c][j]);
+                    suspended.push(Suspended {
+                        component,
+                        row,
+                        force,
+                    });
+                }
+            }
+        }
+        let transformation = rows.finish(D * points.len());
+        let springs: Vec<f64> = suspended.iter().map(|s| s.spring(&stiffness)).collect();
+        let mut stiffness = transformation.congruence(stiffness);
+        let mut load = transformation.transposed(load);
+        for (own, spring) in suspended.iter().zip(springs) {
+            let row = transformation.combination(&own.row);
+            own.add(spring, &row, (&mut stiffness, &mut load));
+        }
+        Ok(Self {
+            transformation,
+            stiffness,
+            load,
         })
     }
 }
@@ -152,212 +181,6 @@ impl<const D: usize> Yielding<'_, D> {
         }
         let y = rest.expand(&u, load);
         transformation.apply(&u, &y)
-    }
-}
-
-/// A component of the relative displacement as a combination of unknowns, those that a degree of
-/// freedom is given by.
-pub(crate) fn row<const D: usize>(
-    (motion_row, directions): (&RelativeMotionRow<D>, &Directions),
-    kinematics: &Kinematics<D>,
-    component: usize,
-    unknown: impl Fn(usize) -> Option<usize>,
-) -> BTreeMap<usize, f64> {
-    let mut row = BTreeMap::new();
-    for (a, w) in motion_row.weights() {
-        for i in 0..D {
-            let along = |dof: usize| kinematics.axes[(dof - D * a, component)];
-            let coefficient = w * directions.component(D * a + i, along);
-            if let Some(dof) = unknown(D * a + i)
-                && coefficient != 0.0
-            {
-                *row.entry(dof).or_insert(0.0) += coefficient;
-            }
-        }
-    }
-    if let Some((dof, coefficient)) = kinematics.turning(component)
-        && let Some(dof) = unknown(dof)
-        && coefficient != 0.0
-    {
-        row.insert(dof, coefficient);
-    }
-    row
-}
-
-/// A coefficient below this part of the relative displacement's is none.
-const NONE: f64 = 1e-8;
-
-/// Coefficient of an own unknown, over the largest, from which on it is the one solved for.
-const OWN: f64 = 0.05;
-
-/// Gauss–Jordan elimination of the rows B x = u, each for one interface unknown.
-pub(crate) struct Elimination {
-    /// Which of the solved unknowns each one is.
-    place: Vec<Option<usize>>,
-    solved: Vec<Solved>,
-}
-
-/// x_dof = Σ u-coefficients u + Σ x-coefficients x.
-struct Solved {
-    dof: usize,
-    u: BTreeMap<usize, f64>,
-    x: BTreeMap<usize, f64>,
-}
-
-impl Elimination {
-    pub(crate) fn new(unknowns: usize) -> Self {
-        Self {
-            place: vec![None; unknowns],
-            solved: Vec::new(),
-        }
-    }
-
-    /// Whether a row says something that those solved do not: whether after them a coefficient is left
-    /// that is above a part of its largest.
-    pub(crate) fn is_independent(&self, row: &BTreeMap<usize, f64>, part: f64) -> bool {
-        let largest =
-            |row: &BTreeMap<usize, f64>| row.values().fold(0.0, |m: f64, c| m.max(c.abs()));
-        largest(&self.reduced(row.clone()).1) > part * largest(row)
-    }
-
-    /// Solves Σ row x = u_component, for one of the `own` unknowns if it can; false if no unknown
-    /// is left to solve for.
-    pub(crate) fn solve(
-        &mut self,
-        component: usize,
-        row: &BTreeMap<usize, f64>,
-        own: &[usize],
-    ) -> bool {
-        let (u, x) = self.reduced(row.clone());
-        let largest = |among: &mut dyn Iterator<Item = (&usize, &f64)>| {
-            among
-                .map(|(&dof, &c)| (dof, c))
-                .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
-        };
-        let Some(any) = largest(&mut x.iter()).filter(|(_, c)| c.abs() > NONE) else {
-            return false;
-        };
-        let (dof, pivot) = largest(&mut x.iter().filter(|(dof, _)| own.contains(dof)))
-            .filter(|(_, c)| c.abs() >= OWN * any.1.abs())
-            .unwrap_or(any);
-        let over = |all: BTreeMap<usize, f64>| all.into_iter().map(move |(k, c)| (k, -c / pivot));
-        let mut u: BTreeMap<usize, f64> = over(u).collect();
-        u.insert(component, 1.0 / pivot);
-        let x = over(x).filter(|(k, _)| *k != dof).collect();
-        self.place[dof] = Some(self.solved.len());
-        self.solved.push(Solved { dof, u, x });
-        true
-    }
-
-    /// A combination of unknowns with those that are solved replaced.
-    fn reduced(&self, mut x: BTreeMap<usize, f64>) -> (BTreeMap<usize, f64>, BTreeMap<usize, f64>) {
-        let mut u = BTreeMap::new();
-        // One that was solved earlier may bring in later ones, never the other way round.
-        let first = |x: &BTreeMap<usize, f64>| {
-            let places = x.keys().filter_map(|&dof| self.place[dof]);
-            places.min()
-        };
-        while let Some(solved) = first(&x).map(|k| &self.solved[k]) {
-            let c = x.remove(&solved.dof).unwrap_or(0.0);
-            add(&mut u, &solved.u, c);
-            add(&mut x, &solved.x, c);
-        }
-        (u, x)
-    }
-
-    /// Every unknown by the u of all components and the unknowns never solved for.
-    fn finish(mut self, components: usize) -> Transformation {
-        for k in (0..self.solved.len()).rev() {
-            let x = std::mem::take(&mut self.solved[k].x);
-            // All of those solved later have been finished.
-            let (u, x) = self.reduced(x);
-            add(&mut self.solved[k].u, &u, 1.0);
-            self.solved[k].x = x;
-        }
-        let unknowns = self.place.len();
-        let mut column = components;
-        let mut columns = vec![0; unknowns];
-        for dof in (0..unknowns).filter(|&dof| self.place[dof].is_none()) {
-            columns[dof] = column;
-            column += 1;
-        }
-        let row = |dof: usize| match self.place[dof] {
-            None => vec![(columns[dof], 1.0)],
-            Some(k) => {
-                let Solved { u, x, .. } = &self.solved[k];
-                let rest = x.iter().map(|(&dof, &c)| (columns[dof], c));
-                u.iter().map(|(&k, &c)| (k, c)).chain(rest).collect()
-            }
-        };
-        Transformation {
-            rows: (0..unknowns).map(row).collect(),
-            columns: column,
-        }
-    }
-}
-
-fn add(to: &mut BTreeMap<usize, f64>, from: &BTreeMap<usize, f64>, factor: f64) {
-    for (&k, &c) in from {
-        *to.entry(k).or_insert(0.0) += factor * c;
-    }
-}
-
-/// The sparse matrix T of x = T (u, y), by rows.
-struct Transformation {
-    rows: Vec<Vec<(usize, f64)>>,
-    columns: usize,
-}
-
-impl Transformation {
-    fn apply(&self, u: &DVector<f64>, y: &DVector<f64>) -> DVector<f64> {
-        let z = |k: usize| if k < u.len() { u[k] } else { y[k - u.len()] };
-        let row = |row: &Vec<(usize, f64)>| row.iter().map(|&(k, c)| c * z(k)).sum();
-        DVector::from_iterator(self.rows.len(), self.rows.iter().map(row))
-    }
-
-    /// Σ row x by (u, y).
-    fn combination(&self, row: &BTreeMap<usize, f64>) -> BTreeMap<usize, f64> {
-        let mut sum = BTreeMap::new();
-        for (&x, &c) in row {
-            for &(z, t) in &self.rows[x] {
-                *sum.entry(z).or_insert(0.0) += c * t;
-            }
-        }
-        sum
-    }
-
-    /// Tᵀ f.
-    fn transposed(&self, f: &DVector<f64>) -> DVector<f64> {
-        let mut out = DVector::zeros(self.columns);
-        for (row, f) in self.rows.iter().zip(f.iter()) {
-            for &(k, c) in row {
-                out[k] += c * f;
-            }
-        }
-        out
-    }
-
-    /// Tᵀ S T of a symmetric S.
-    fn congruence(&self, s: DMatrix<f64>) -> DMatrix<f64> {
-        let own = |(i, row): (usize, &Vec<(usize, f64)>)| {
-            let row = row.iter().map(move |&(k, c)| (i, k, c));
-            row.collect::<Vec<_>>()
-        };
-        let entries: Vec<(usize, usize, f64)> =
-            self.rows.iter().enumerate().flat_map(own).collect();
-        let mut out = DMatrix::zeros(self.columns, self.columns);
-        let mut column = DVector::zeros(self.columns);
-        for (s, row) in s.column_iter().zip(&self.rows) {
-            column.fill(0.0);
-            for &(i, k, c) in &entries {
-                column[k] += c * s[i];
-            }
-            for &(k, c) in row {
-                out.column_mut(k).axpy(c, &column, 1.0);
-            }
-        }
-        out.fill_upper_triangle_with_lower_triangle();
-        out
     }
 }
 
@@ -422,50 +245,6 @@ impl InternalUnknowns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        /// Rows that share unknowns, chained and in cycles: B T is the identity on u.
-        #[test]
-        fn the_transformation_inverts_the_rows(
-            entries in prop::collection::vec(-1.0..1.0f64, 24),
-            mask in prop::collection::vec(any::<bool>(), 24),
-        ) {
-            let (rows, unknowns) = (4, 6);
-            let mut b = DMatrix::zeros(rows, unknowns);
-            for (k, (&v, &m)) in entries.iter().zip(&mask).enumerate() {
-                b[(k / unknowns, k % unknowns)] = if m { v } else { 0.0 };
-            }
-            for r in 0..rows {
-                b[(r, r)] += 2.5;
-            }
-            let mut elimination = Elimination::new(unknowns);
-            for r in 0..rows {
-                let row = (0..unknowns).filter(|&i| b[(r, i)] != 0.0).map(|i| (i, b[(r, i)]));
-                prop_assert!(elimination.solve(r, &row.collect(), &[r]));
-            }
-            let t = elimination.finish(rows);
-            prop_assert_eq!(t.columns, unknowns);
-            let identity = t.congruence(DMatrix::identity(unknowns, unknowns));
-            let mut product = DMatrix::zeros(rows, unknowns);
-            for k in 0..unknowns {
-                let z = DVector::from_fn(unknowns, |i, _| f64::from(u8::from(i == k)));
-                let x = t.apply(&z.rows(0, rows).into_owned(), &z.rows(rows, unknowns - rows).into_owned());
-                product.set_column(k, &(&b * &x));
-                prop_assert!((x.norm_squared() - identity[(k, k)]).abs() < 1e-10 * identity.amax());
-            }
-            prop_assert!((product - DMatrix::identity(rows, unknowns)).amax() < 1e-10);
-        }
-    }
-
-    #[test]
-    fn a_row_without_freedom_is_refused() {
-        let mut elimination = Elimination::new(2);
-        let row = |c: [f64; 2]| -> BTreeMap<usize, f64> { [(0, c[0]), (1, c[1])].into() };
-        assert!(elimination.solve(0, &row([1.0, 2.0]), &[0]));
-        assert!(elimination.solve(1, &row([1.0, -1.0]), &[0]));
-        assert!(!elimination.solve(2, &row([3.0, 1.0]), &[0]));
-    }
 
     /// The Schur complement is what the whole system answers on what is kept.
     #[test]

@@ -10,7 +10,7 @@
 //! comes to first stops it, and what others at the same distance would bear nothing decides.
 
 use crate::driver::Driver;
-use crate::interface::condensation::{Elimination, row};
+use crate::interface::elimination::{Elimination, row};
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::Kinematics;

@@ -3,7 +3,7 @@
 
 use crate::driver::Driver;
 use crate::error::Inaccurate;
-use crate::interface::condensation::{Elimination, row};
+use crate::interface::elimination::{Elimination, row};
 use crate::linear::suspension::STIFFER;
 use crate::linear::system::System;
 use crate::model::load::Loading;
@@ -238,9 +238,13 @@ impl<'a, const D: usize> Tied<'a, D> {
         compliance
     }
 
-    /// Factorises with what touches held to its surface, and what sticks in its place; false where that leaves
-    /// a motion without stiffness.
-    pub(crate) fn hold_statuses(&mut self, status: &[Status]) -> bool {
+    /// Factorises with what touches held to its surface, and what sticks in its place, by springs of a compliance
+    /// \[mm/N\] where they have one; false where that leaves a motion without stiffness.
+    pub(crate) fn hold_statuses(
+        &mut self,
+        status: &[Status],
+        compliance: impl Fn(usize) -> Local<D>,
+    ) -> bool {
         let of = |(i, status): (usize, &Status)| {
             let mut tie = SMatrix::<f64, D, D>::zeros();
             let held = match status {
@@ -248,7 +252,8 @@ impl<'a, const D: usize> Tied<'a, D> {
                 Status::Slip => 1,
                 Status::Stick | Status::Tied => D,
             };
-            (0..held).for_each(|j| tie[(j, j)] = FIRM * self.stiffness[i]);
+            let (firm, springs) = (FIRM * self.stiffness[i], compliance(i));
+            (0..held).for_each(|j| tie[(j, j)] = firm / (1.0 + firm * springs[j]));
             tie
         };
         let ties: Vec<_> = status.iter().enumerate().map(of).collect();

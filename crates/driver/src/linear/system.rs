@@ -697,7 +697,7 @@ impl System {
         self.gave_up
     }
 
-    /// Whether the matrix that the factor was made of has negative eigenvalues, its kept unknowns aside.
+    /// Whether the matrix that the factor was made of has negative eigenvalues, its interface aside.
     pub(crate) fn is_indefinite(&self) -> bool {
         self.negative > 0
     }
@@ -707,7 +707,7 @@ impl System {
         self.unstable
     }
 
-    /// How many it has.
+    /// How many it has: K without its interface, or K and what is tied.
     pub(crate) fn negative(&self) -> usize {
         self.negative
     }
@@ -750,6 +750,10 @@ impl System {
             self.engine.factorise(&sum)
         });
         let holds = outcome.is_ok() && self.engine.least_pivot() > RIGID;
+        if let (Ok(inertia), true) = (outcome, holds) {
+            self.negative = inertia.negative;
+            self.unstable |= self.is_indefinite();
+        }
         if let Some(others) = &mut self.others {
             others.factorised(holds);
         }

@@ -87,7 +87,6 @@ impl<'a, 'c, const D: usize> Increment<'a, 'c, D> {
     pub(crate) fn count(&mut self, system: &System) {
         let (factorisations, conjugate) = self.counts.before;
         self.counts.factorisations = system.factorisations - factorisations;
-        self.counts.negative = system.negative();
         self.counts.linear += system.conjugate - conjugate;
     }
 }
@@ -123,7 +122,7 @@ impl<const D: usize> Driver<D> {
         self.check_snap(system, (start, end), &candidate, watch)?;
         let unstable = candidate.counts.negative > 0;
         let mode = match unstable && !self.unstable {
-            true => self.unstable_mode(system),
+            true => self.unstable_mode(system, &candidate),
             false => None,
         };
         let report = self.commit(start, end, candidate)?;
@@ -282,6 +281,9 @@ impl<const D: usize> Driver<D> {
             let balance = self.balance_of(system, &mut increment)?;
             self.tell(&increment, &balance, watch)?;
             if let Some(solution) = self.accepted(system, &mut increment, &balance) {
+                let state = (balance.kinematics.as_slice(), solution.status.as_slice());
+                let held = &mut increment.held;
+                increment.counts.negative = self.negative_eigenvalues(system, state, held);
                 increment.count(system);
                 return Ok(Candidate {
                     d_u: increment.iterate.d_u,

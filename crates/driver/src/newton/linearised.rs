@@ -158,14 +158,19 @@ impl<const D: usize> Driver<D> {
         let mut step = vec![0.0; load.len()];
         linearised.missing.add_to(&mut step, 1.0);
         let mut condensed = system.condense(load);
+        let mut stiffness = system.schur();
         let border = linearised.border.map(|(load, compliance, missing)| {
-            system.border(&mut condensed, load, (compliance, missing))
+            system.border(
+                (&mut stiffness, &mut condensed),
+                load,
+                (compliance, missing),
+            )
         });
         let iteration = counts.newton;
         let contact = |source: ContactError| IncrementError::Contact { iteration, source };
         let clock = Clock::start();
         let points = (self.points.as_slice(), self.footing.rows.as_slice());
-        let seam = (std::mem::take(&mut condensed.stiffness), &condensed.load);
+        let seam = (stiffness, &condensed.load);
         let previous = self.previous_forces(kinematics);
         let force = match guess {
             Some(s) if counts.newton > 1 => s.force.clone(),

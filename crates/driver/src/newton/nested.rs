@@ -4,6 +4,7 @@
 use crate::driver::Driver;
 use crate::error::IncrementError;
 use crate::interface::condensation::Condensation;
+use crate::interface::tied::Held;
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::model::points::Kinematics;
@@ -116,6 +117,9 @@ impl<const D: usize> Driver<D> {
             }
             if left <= tolerance * scale {
                 self.check_passage(&iterate.d_u, end)?;
+                let state = (response.kinematics.as_slice(), response.status.as_slice());
+                let held = &mut Held::default();
+                increment.counts.negative = self.negative_eigenvalues(system, state, held);
                 increment.count(system);
                 let out_of_balance = largest(residual.into_iter());
                 let candidate = candidate(increment, uzawa.force, response, out_of_balance);
@@ -151,7 +155,7 @@ impl<const D: usize> Driver<D> {
         self.factorise(system, &mut increment.iterate, given, false)?;
         let condensed = system.condense(vec![0.0; increment.iterate.d_u.len()]);
         let points = (self.points.as_slice(), self.footing.rows.as_slice());
-        let seam = (condensed.stiffness, &condensed.load);
+        let seam = (system.schur(), &condensed.load);
         let forces = (force.clone(), force.as_slice());
         let condensation =
             Condensation::new(system, seam, points, &kinematics, forces).map_err(contact)?;

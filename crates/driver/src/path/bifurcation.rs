@@ -2,9 +2,11 @@
 
 use super::buckling::noise;
 use crate::driver::Driver;
+use crate::interface::free::Free;
 use crate::linear::system::System;
+use crate::newton::candidate::Candidate;
 use crate::vector::SparseVector;
-use moreau_algebra::Interface;
+use moreau_algebra::{DenseLdlt, Interface};
 use nalgebra::{DMatrix, DVector};
 
 /// Directions of Lanczos' method at most: past a bifurcation one eigenvalue is far nearer to zero than the others.
@@ -14,9 +16,20 @@ const SETTLED: f64 = 1e-9;
 
 impl<const D: usize> Driver<D> {
     /// The eigenvector v of the negative eigenvalue nearest to zero of the factorised tangent, K v = λ v with what
-    /// may touch held where it is: displacement at every degree of freedom, of size 1 at the node that moves most. By
+    /// the statuses of a converged increment leave free: displacement at every degree of freedom, of size 1 at the node that moves most. By
     /// Lanczos' method on K⁻¹; `None` where it finds no negative eigenvalue.
-    pub(crate) fn unstable_mode(&self, system: &mut System) -> Option<Vec<f64>> {
+    pub(crate) fn unstable_mode(
+        &self,
+        system: &mut System,
+        candidate: &Candidate<D>,
+    ) -> Option<Vec<f64>> {
+        let status = &candidate.solution.status;
+        let free = match system.is_tied() {
+            true => None,
+            false => self.free(system, &candidate.kinematics, status),
+        };
+        let factor = free.as_ref().and_then(Free::factor);
+        let interface = free.as_ref().zip(factor.as_ref());
         let (n, dofs) = (self.state.displacement.len(), self.mesh_dofs());
         let mut directions: Vec<DVector<f64>> = Vec::new();
         let mut projected = DMatrix::zeros(MOST, MOST);
@@ -24,7 +37,7 @@ impl<const D: usize> Driver<D> {
         let mut least = 0.0;
         let mut weights = DVector::zeros(0);
         for k in 0..MOST {
-            let mut next = self.compliance(system, q.as_slice().to_vec())?;
+            let mut next = self.compliance(system, interface, q.as_slice().to_vec())?;
             directions.push(q);
             // Twice is enough for directions that stay orthogonal to rounding.
             for pass in 0..2 {
@@ -74,8 +87,13 @@ impl<const D: usize> Driver<D> {
         (largest > 0.0).then(|| motion.iter().map(|x| x / largest).collect())
     }
 
-    /// K⁻¹ f with what may touch held, or tied as it touches.
-    fn compliance(&self, system: &mut System, force: Vec<f64>) -> Option<DVector<f64>> {
+    /// K⁻¹ f on what the interface leaves free, or with contacts tied as they are.
+    fn compliance(
+        &self,
+        system: &mut System,
+        interface: Option<(&Free, &DenseLdlt)>,
+        force: Vec<f64>,
+    ) -> Option<DVector<f64>> {
         let mut v = vec![0.0; force.len()];
         if system.is_tied() {
             let mut x = system.at_unknowns(|dof| force[dof]);
@@ -83,9 +101,12 @@ impl<const D: usize> Driver<D> {
             system.spread(&x, &mut v);
         } else {
             let condensed = system.condense(force);
-            let held = DVector::zeros(condensed.load.len());
+            let x = match interface {
+                Some((free, factor)) => free.displacement(factor, &condensed.load),
+                None => DVector::zeros(condensed.load.len()),
+            };
             let nothing = (&SparseVector::default(), Interface::Held);
-            system.expand(condensed, &held, nothing, &mut v).ok()?;
+            system.expand(condensed, &x, nothing, &mut v).ok()?;
         }
         v.iter()
             .all(|x| x.is_finite())

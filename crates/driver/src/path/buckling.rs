@@ -9,7 +9,7 @@ use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::vector::SparseVector;
 use moreau_algebra::Interface;
-use moreau_laws::Status;
+use moreau_laws::{Local, Status};
 use nalgebra::{DMatrix, DVector, SVector};
 
 /// The nearest elastic instability of a state.
@@ -94,7 +94,7 @@ impl<const D: usize> Driver<D> {
             let held = !system.floats || self.is_held(&self.state.loading, &status);
             let Held { rows, factor } = &mut Held::default();
             let mut tied = Tied::new(self, system, &kinematics, &rest, None, (rows, factor));
-            if !(held && tied.hold_statuses(&status)) {
+            if !(held && tied.hold_statuses(&status, |_| Local::zeros())) {
                 return None;
             }
             drop(tied);
@@ -109,7 +109,7 @@ impl<const D: usize> Driver<D> {
         system.factorise(true).ok()?;
         let condensed = system.condense(rest.clone());
         let points = (self.points.as_slice(), self.footing.rows.as_slice());
-        let seam = (condensed.stiffness, &condensed.load);
+        let seam = (system.schur(), &condensed.load);
         let forces = self.previous_forces(&kinematics);
         let forces = (forces.clone(), forces.as_slice());
         let condensation = Condensation::new(system, seam, points, &kinematics, forces).ok()?;

@@ -55,6 +55,16 @@ impl<const D: usize> TiedFactor<D> {
         !self.ties.is_empty() && self.status == status
     }
 
+    /// Whether its ties hold what statuses hold, and nothing else: not across the direction of slip either.
+    pub fn holds_just(&self, status: &[Status]) -> bool {
+        let along = |(tie, status): (&SMatrix<f64, D, D>, &Status)| match status {
+            Status::Slip => tie.fixed_columns::<1>(0).norm() == tie.norm(),
+            _ => true,
+        };
+        let mut pairs = self.ties.iter().zip(status);
+        self.serves(status) && self.propped.is_empty() && pairs.all(along)
+    }
+
     /// Whether it has answered anything since it was made.
     pub(super) fn is_used(&self) -> bool {
         self.pairs.len() > 0

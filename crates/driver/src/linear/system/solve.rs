@@ -36,12 +36,10 @@ pub(crate) struct Border {
     missing: f64,
 }
 
-/// The system condensed on its interface: S, that of K + σE less σ 1, and the condensed load.
+/// A load condensed on the interface of a system.
 #[derive(Debug)]
 pub(crate) struct Condensed {
-    /// S \[N/mm\], in the order of the interface unknowns.
-    pub(crate) stiffness: DMatrix<f64>,
-    /// f̃ \[N\].
+    /// f̃ \[N\], in the order of the interface unknowns.
     pub(crate) load: DVector<f64>,
     /// The load of the system \[N\].
     applied: Vec<f64>,
@@ -65,30 +63,33 @@ impl System {
         timed(&mut self.timings.solution, || {
             told(self.engine.condense(&mut inner), &mut inner)
         });
-        let clock = Clock::start();
         let first = inner.len() - self.interface;
-        let size = self.interface;
-        let unknown = |_| DMatrix::from_element(size, size, f64::NAN);
-        let mut stiffness = self.engine.schur().unwrap_or_else(unknown);
-        for i in 0..self.interface {
-            stiffness[(i, i)] -= self.shift;
-        }
-        let load = DVector::from_column_slice(&inner[first..]);
-        self.timings.contact += clock.elapsed();
         Condensed {
-            stiffness,
-            load,
+            load: DVector::from_column_slice(&inner[first..]),
             applied,
             inner,
         }
     }
 
-    /// Borders the condensed system with the load q of unknown factor λ and the equation
+    /// S \[N/mm\], the stiffness condensed on the interface: that of K + σE less σ 1.
+    pub(crate) fn schur(&mut self) -> DMatrix<f64> {
+        let clock = Clock::start();
+        let size = self.interface;
+        let unknown = |_| DMatrix::from_element(size, size, f64::NAN);
+        let mut stiffness = self.engine.schur().unwrap_or_else(unknown);
+        for i in 0..size {
+            stiffness[(i, i)] -= self.shift;
+        }
+        self.timings.contact += clock.elapsed();
+        stiffness
+    }
+
+    /// Borders the condensed system, its stiffness and its load, with the load q of unknown factor λ and the equation
     /// q·u + c λ = m; λ is eliminated, which leaves the system as symmetric as it was:
     /// S + q̃ q̃ᵀ / (c + κ) with κ = q_i·K_ii⁻¹ q_i.
     pub(crate) fn border(
         &mut self,
-        condensed: &mut Condensed,
+        (stiffness, condensed): (&mut DMatrix<f64>, &mut Condensed),
         load: &SparseVector,
         (compliance, missing): (f64, f64),
     ) -> Border {
@@ -116,9 +117,7 @@ impl System {
             inner,
         };
         let scale = 1.0 / border.compliance;
-        condensed
-            .stiffness
-            .ger(scale, &border.load, &border.load, 1.0);
+        stiffness.ger(scale, &border.load, &border.load, 1.0);
         condensed
             .load
             .axpy(scale * border.missing, &border.load, 1.0);

@@ -313,8 +313,8 @@ fn a_load_of_unknown_factor_is_solved_for_as_by_dense_algebra() {
         .for_each(|&dof| q.add(dof, 1.0 + (dof as f64).sin()));
     let (compliance, missing) = (2.0, 0.3);
     let mut condensed = system.condense(f.clone());
-    let border = system.border(&mut condensed, &q, (compliance, missing));
-    let mut stiffness = condensed.stiffness.clone();
+    let mut stiffness = system.schur();
+    let border = system.border((&mut stiffness, &mut condensed), &q, (compliance, missing));
     stiffness.fill_upper_triangle_with_lower_triangle();
     let x = stiffness.lu().solve(&condensed.load).expect("regular");
     let factor = system.factor(&border, &mut condensed, &x);
