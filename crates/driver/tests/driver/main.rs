@@ -22,6 +22,7 @@ mod refusals;
 mod released;
 mod seams;
 mod slender;
+mod stability;
 mod states;
 mod steps;
 mod surfaces;

@@ -1,0 +1,188 @@
+//! Loads from which on columns are unstable whose sides may touch: negative eigenvalues on what contacts leave free.
+
+use moreau_contact::{Ball, ContactSolver, Penalty, Plane, SemismoothNewton};
+use moreau_driver::{Axis, Driver, IncrementReport, Model, Seam, Settings, Step};
+use moreau_laws::{Coulomb, Elastic, Friction};
+use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
+use std::f64::consts::PI;
+
+const YOUNG: f64 = 1000.0;
+const LENGTH: f64 = 100.0;
+const HEIGHT: f64 = 2.0;
+
+/// E I / L² of the column, of unit thickness.
+fn bending() -> f64 {
+    YOUNG * HEIGHT.powi(3) / 12.0 / LENGTH.powi(2)
+}
+
+/// Euler's load of the column, clamped at one end and free at the other.
+fn euler() -> f64 {
+    0.25 * PI.powi(2) * bending()
+}
+
+type Columns = Model<2, PlaneStrain>;
+
+fn frictionless() -> Friction {
+    Coulomb::new(0.0).expect("valid").into()
+}
+
+/// A column along x without Poisson's effect, what stands beside it, and how its contacts are solved.
+fn column(
+    beside: impl Fn(Columns) -> Columns,
+    (seam, contact): (Seam, Box<dyn ContactSolver<2>>),
+) -> Driver<2> {
+    let (x, y) = (uniform(0.0, LENGTH, 20), uniform(0.0, HEIGHT, 1));
+    let mut mesh = block2("strip", CellKind::Quad8, &x, &y).expect("valid");
+    let at = |place: f64| move |x: &[f64; 2]| (x[0] - place).abs() < 1e-9;
+    mesh.node_group_where("middle", "strip.top", at(0.5 * LENGTH))
+        .expect("a node");
+    let model = Model::with_large_strains(mesh, PlaneStrain::default())
+        .material(
+            "strip",
+            Elastic::new(YOUNG, 0.0).expect("valid"),
+            Integration::Reduced,
+        )
+        .expect("valid");
+    let settings = Settings {
+        seam,
+        contact,
+        ..Settings::default()
+    };
+    Driver::new(beside(model), settings).expect("valid")
+}
+
+fn exact() -> Box<dyn ContactSolver<2>> {
+    Box::new(SemismoothNewton::default())
+}
+
+/// Compresses a column by parts of a load, up to 1.2 of it in steps of a fiftieth, after `first` has acted. Returns the
+/// part of the load at which an eigenvalue becomes negative.
+fn unstable_from(
+    driver: &mut Driver<2>,
+    first: impl Fn(Step<2>) -> Step<2>,
+    load: f64,
+) -> Option<f64> {
+    let step = |name: &str, part: f64| {
+        first(Step::new(name).fix("strip.left", &[Axis::X, Axis::Y]))
+            .traction("strip.right", [-part * load / HEIGHT, 0.0])
+    };
+    driver.run(&step("press", 0.0), 1, |_, _| {}).expect("held");
+    let mut found = None;
+    let mut look = |report: &IncrementReport, part: f64| match found {
+        None if report.negative_eigenvalues > 0 => {
+            assert_eq!(report.negative_eigenvalues, 1);
+            assert!(report.mode.is_some());
+            found = Some(part);
+        }
+        None => assert_eq!(report.mode, None),
+        Some(_) => assert!(report.negative_eigenvalues > 0, "{part}"),
+    };
+    for k in 0..=20 {
+        let part = 0.8 + 0.02 * f64::from(k);
+        driver
+            .run(&step("compress", part), 1, |_, report| {
+                look(report, part - 0.01)
+            })
+            .expect("in balance");
+    }
+    found
+}
+
+const BOTH: [Seam; 2] = [Seam::Condensed, Seam::Tied];
+
+/// Sides that may touch walls far away are as free as sides that touch nothing.
+#[test]
+fn walls_that_are_not_reached_hold_nothing() {
+    let alone = unstable_from(
+        &mut column(|model| model, (Seam::Condensed, exact())),
+        |step| step,
+        euler(),
+    );
+    let alone = alone.expect("unstable");
+    assert!((alone - 1.0).abs() < 0.015, "{alone}");
+    for (seam, mu) in [
+        (BOTH[0], 0.0),
+        (BOTH[0], 0.3),
+        (BOTH[1], 0.0),
+        (BOTH[1], 0.3),
+    ] {
+        let law: Friction = Coulomb::new(mu).expect("valid").into();
+        let walls = |model: Columns| {
+            let wall = |y: f64, n: f64| Plane::new([0.0, y], [0.0, n]).expect("valid");
+            model
+                .tool("below", wall(-5.0, 1.0))
+                .and_then(|m| m.tool("above", wall(HEIGHT + 5.0, -1.0)))
+                .and_then(|m| m.contact("strip.bottom", "below", law))
+                .and_then(|m| m.contact("strip.top", "above", law))
+                .expect("valid")
+        };
+        let mut driver = column(walls, (seam, exact()));
+        let found = unstable_from(&mut driver, |step| step, euler());
+        assert_eq!(found, Some(alone), "{seam:?}, {mu}");
+    }
+}
+
+/// Pressed against a wall all along one side, the column does not buckle.
+#[test]
+fn a_column_does_not_buckle_into_a_wall_that_it_is_pressed_to() {
+    for seam in BOTH {
+        let wall = |model: Columns| {
+            let wall = Plane::new([0.0, 0.0], [0.0, 1.0]).expect("valid");
+            model
+                .tool("wall", wall)
+                .and_then(|m| m.contact("strip.bottom", "wall", frictionless()))
+                .expect("valid")
+        };
+        let mut driver = column(wall, (seam, exact()));
+        let press = |step: Step<2>| step.traction("strip.top", [0.0, -1e-3]);
+        // The lowest load would be 2.47 E I/L².
+        let found = unstable_from(&mut driver, press, 2.0 * euler());
+        assert_eq!(found, None, "{seam:?}");
+        assert!(driver.contacts().iter().any(|c| c.t[0] > 0.0));
+    }
+}
+
+/// A ball holds the column in the middle of one side, from which all else of it is away: its load is that of a column
+/// clamped at one end and pinned in the middle, from w″ + k² w = k² δ above the pin and w = A (cos kx − 1) + B (sin kx −
+/// kx) below: with κ = kL/2, (κ − sin κ)(sin²κ − cos²κ) = sin κ (2 cos κ − 1)(cos κ − 1).
+#[test]
+fn a_column_that_a_contact_pins_has_the_load_of_its_next_mode() {
+    let equation = |k: f64| {
+        let (s, c) = k.sin_cos();
+        (k - s) * (s * s - c * c) - s * (2.0 * c - 1.0) * (c - 1.0)
+    };
+    let (mut low, mut high) = (1.0, 1.5);
+    assert!(equation(low) * equation(high) < 0.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        match equation(low) * equation(middle) > 0.0 {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    let load = 4.0 * low * low * bending();
+    assert!(load > 2.5 * euler());
+    let penalty: fn() -> Box<dyn ContactSolver<2>> =
+        || Box::new(Penalty::new(1e5, 1e4).expect("valid"));
+    let methods = [
+        (BOTH[0], exact as fn() -> _),
+        (BOTH[1], exact),
+        (BOTH[0], penalty),
+        (BOTH[1], penalty),
+    ];
+    for (seam, method) in methods {
+        let ball = |model: Columns| {
+            let ball = Ball::new([0.5 * LENGTH, -30.0], 30.0).expect("valid");
+            model
+                .tool("ball", ball)
+                .and_then(|m| m.contact("strip.bottom", "ball", frictionless()))
+                .expect("valid")
+        };
+        let mut driver = column(ball, (seam, method()));
+        let press = |step: Step<2>| step.force("middle", [0.0, -0.05]);
+        let found = unstable_from(&mut driver, press, load).expect("unstable");
+        assert!((found - 1.0).abs() < 0.025, "{seam:?}: {found}");
+        let closed = driver.contacts().iter().filter(|c| c.t[0] > 0.0).count();
+        assert_eq!(closed, 1);
+    }
+}
