@@ -1,10 +1,13 @@
 //! Assembly and solves of small systems against dense ones.
 
+use super::choice::engine;
 use super::*;
+use crate::assembly::cell_law::{Motion, Stiffness};
 use crate::error::Inaccurate;
+use crate::vector::SparseVector;
 use crate::vector::largest;
 use crate::{Axis, Driver, Model, Settings, Step};
-use moreau_algebra::{Inertia, Interface};
+use moreau_algebra::{Cholesky, Cost, Inertia, Interface, Pattern, TooLarge};
 use moreau_laws::{Elastic, VonMises};
 use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
 use nalgebra::{DMatrix, DVector};
