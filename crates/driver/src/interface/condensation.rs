@@ -2,7 +2,6 @@
 //! it is solved.
 
 use crate::interface::elimination::{Elimination, Transformation, row};
-use crate::interface::free::gives_way;
 use crate::linear::suspension::Suspended;
 use crate::linear::system::System;
 use crate::model::motion_row::RelativeMotionRow;
@@ -148,6 +147,15 @@ impl InFrames {
             stiffness,
             load,
         })
+    }
+}
+
+/// Whether a status leaves a component of a relative displacement free, under a shear that stays what it is.
+pub(crate) fn gives_way(status: Status, component: usize) -> bool {
+    match status {
+        Status::Open => true,
+        Status::Slip => component > 0,
+        Status::Stick | Status::Tied => false,
     }
 }
 

@@ -3,20 +3,10 @@
 use crate::interface::condensation::InFrames;
 use crate::interface::elimination::Transformation;
 use moreau_algebra::{DenseCholesky, DenseLdlt};
-use moreau_laws::Status;
 use nalgebra::{DMatrix, DVector};
 
 /// A negative pivot below this part of the largest diagonal is rounding, and a motion without stiffness.
 const NONE: f64 = 1e-12;
-
-/// Whether a status leaves a component of a relative displacement free, under a shear that stays what it is.
-pub(crate) fn gives_way(status: Status, component: usize) -> bool {
-    match status {
-        Status::Open => true,
-        Status::Slip => component > 0,
-        Status::Stick | Status::Tied => false,
-    }
-}
 
 /// The interface in the components of relative displacements that are free, and in the unknowns y that no contact
 /// force acts on.

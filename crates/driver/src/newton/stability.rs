@@ -2,8 +2,8 @@
 //! contacts leave free; not how the structure gives way.
 
 use crate::driver::Driver;
-use crate::interface::condensation::InFrames;
-use crate::interface::free::{Free, gives_way};
+use crate::interface::condensation::{InFrames, gives_way};
+use crate::interface::free::Free;
 use crate::interface::tied::{Held, Tied};
 use crate::linear::system::System;
 use crate::model::points::Kinematics;

@@ -3,7 +3,7 @@
 use moreau_contact::{Ball, ContactSolver, Penalty, Plane, SemismoothNewton};
 use moreau_driver::{Axis, Driver, IncrementReport, Model, Seam, Settings, Step};
 use moreau_laws::{Coulomb, Elastic, Friction};
-use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
+use moreau_mesh::{CellKind, Integration, Pairing, PlaneStrain, block2, uniform};
 use std::f64::consts::PI;
 
 const YOUNG: f64 = 1000.0;
@@ -26,13 +26,17 @@ fn frictionless() -> Friction {
     Coulomb::new(0.0).expect("valid").into()
 }
 
-/// A column along x without Poisson's effect, what stands beside it, and how its contacts are solved.
+/// A column along x without Poisson's effect over a floor that it does not reach, what stands beside it, and how its
+/// contacts are solved.
 fn column(
     beside: impl Fn(Columns) -> Columns,
     (seam, contact): (Seam, Box<dyn ContactSolver<2>>),
 ) -> Driver<2> {
     let (x, y) = (uniform(0.0, LENGTH, 20), uniform(0.0, HEIGHT, 1));
-    let mut mesh = block2("strip", CellKind::Quad8, &x, &y).expect("valid");
+    let strip = block2("strip", CellKind::Quad8, &x, &y).expect("valid");
+    let y = uniform(-7.0, -5.0, 1);
+    let floor = block2("floor", CellKind::Quad8, &x, &y).expect("valid");
+    let mut mesh = strip.joined(floor).expect("two bodies");
     let at = |place: f64| move |x: &[f64; 2]| (x[0] - place).abs() < 1e-9;
     mesh.node_group_where("middle", "strip.top", at(0.5 * LENGTH))
         .expect("a node");
@@ -42,6 +46,10 @@ fn column(
             Elastic::new(YOUNG, 0.0).expect("valid"),
             Integration::Reduced,
         )
+        .and_then(|m| {
+            let elastic = Elastic::new(YOUNG, 0.0).expect("valid");
+            m.material("floor", elastic, Integration::Reduced)
+        })
         .expect("valid");
     let settings = Settings {
         seam,
@@ -64,6 +72,7 @@ fn unstable_from(
 ) -> Option<f64> {
     let step = |name: &str, part: f64| {
         first(Step::new(name).fix("strip.left", &[Axis::X, Axis::Y]))
+            .fix("floor.bottom", &[Axis::X, Axis::Y])
             .traction("strip.right", [-part * load / HEIGHT, 0.0])
     };
     driver.run(&step("press", 0.0), 1, |_, _| {}).expect("held");
@@ -116,9 +125,18 @@ fn walls_that_are_not_reached_hold_nothing() {
                 .and_then(|m| m.contact("strip.top", "above", law))
                 .expect("valid")
         };
-        let mut driver = column(walls, (seam, exact()));
-        let found = unstable_from(&mut driver, |step| step, euler());
-        assert_eq!(found, Some(alone), "{seam:?}, {mu}");
+        let floor = |model: Columns| {
+            let pairing = Pairing::default();
+            let pair = model.pair("strip.bottom", "floor.top", law, pairing);
+            pair.expect("valid")
+        };
+        for mut driver in [
+            column(walls, (seam, exact())),
+            column(floor, (seam, exact())),
+        ] {
+            let found = unstable_from(&mut driver, |step| step, euler());
+            assert_eq!(found, Some(alone), "{seam:?}, {mu}");
+        }
     }
 }
 
