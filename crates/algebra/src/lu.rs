@@ -18,6 +18,8 @@ pub struct Lu {
     memory: MemBuffer,
     /// The least pivot over the largest.
     pub least_pivot: f64,
+    /// The largest pivot.
+    pub largest_pivot: f64,
 }
 
 impl Lu {
@@ -40,9 +42,10 @@ impl Lu {
             Default::default(),
         );
         let pivots = a.diagonal();
+        let largest_pivot = pivots.amax();
         let least_pivot = match n {
             0 => 1.0,
-            _ => pivots.amin() / pivots.amax(),
+            _ => pivots.amin() / largest_pivot,
         };
         // NaN is refused, too.
         (least_pivot > SINGULAR).then_some(Self {
@@ -51,6 +54,7 @@ impl Lu {
             inverse,
             memory,
             least_pivot,
+            largest_pivot,
         })
     }
 

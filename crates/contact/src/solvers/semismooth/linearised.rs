@@ -1,7 +1,7 @@
 //! The linear equations of a Newton step on the natural map; not the map.
 
 use crate::CondensedProblem;
-use moreau_algebra::Lu;
+use moreau_algebra::{DenseCholesky, Lu};
 use moreau_laws::Local;
 use nalgebra::{DMatrix, DVector, SMatrix};
 
@@ -41,19 +41,53 @@ pub(super) fn solve<const D: usize>(
     } else {
         DVector::zeros(n)
     };
+    // Contacts whose rows are those of S along their own directions first: their block is symmetric.
+    let (symmetric, others): (Vec<usize>, Vec<usize>) =
+        (0..own.len()).partition(|&i| own[i].is_symmetric());
+    let order: Vec<usize> = symmetric.iter().chain(&others).copied().collect();
+    let first = symmetric.iter().map(|&i| own[i].left).sum();
+    let matrix = matrix(s, &own, &order);
+    let mut value = DVector::zeros(matrix.nrows());
+    let mut row = 0;
+    for &i in &order {
+        let (o, known) = (&own[i], known.fixed_rows::<D>(D * i));
+        for r in 0..o.left {
+            let seen = (0..D).map(|k| o.elastic[(r, k)] * known[k] + o.shift[(r, k)] * o.fixed[k]);
+            value[row] = o.value[r] - seen.sum::<f64>();
+            row += 1;
+        }
+    }
+    let solved = eliminated(&matrix, first, &value).or_else(|| {
+        let mut lu = Lu::new(matrix).filter(|lu| lu.least_pivot > RIGID)?;
+        Some(lu.solve(value))
+    })?;
+    let mut step = fixed;
+    let mut next = 0;
+    for &i in &order {
+        let o = &own[i];
+        let mut own = step.fixed_rows_mut::<D>(D * i);
+        for direction in o.free.column_iter().take(o.left) {
+            own.axpy(solved[next], &direction, 1.0);
+            next += 1;
+        }
+    }
+    step.iter().all(|v| v.is_finite()).then_some(step)
+}
+
+/// The matrix of the rows that are left, contact by contact in an order, in the unknowns of the same.
+fn matrix<const D: usize>(s: &DMatrix<f64>, own: &[Own<D>], order: &[usize]) -> DMatrix<f64> {
     let size = own.iter().map(|o| o.left).sum();
     let mut matrix = DMatrix::zeros(size, size);
-    let mut value = DVector::zeros(size);
     let mut column = 0;
-    for (j, other) in own.iter().enumerate() {
-        for direction in other.free.column_iter().take(other.left) {
+    for &j in order {
+        for direction in own[j].free.column_iter().take(own[j].left) {
             let mut answer = s.column(D * j) * direction[0];
             for k in (1..D).filter(|&k| direction[k] != 0.0) {
                 answer.axpy(direction[k], &s.column(D * j + k), 1.0);
             }
             let mut row = 0;
-            for (i, o) in own.iter().enumerate() {
-                let answer = answer.fixed_rows::<D>(D * i);
+            for &i in order {
+                let (o, answer) = (&own[i], answer.fixed_rows::<D>(D * i));
                 for r in 0..o.left {
                     let mut entry: f64 = (0..D).map(|k| o.elastic[(r, k)] * answer[k]).sum();
                     if i == j {
@@ -66,27 +100,39 @@ pub(super) fn solve<const D: usize>(
             column += 1;
         }
     }
-    let mut row = 0;
-    for (i, o) in own.iter().enumerate() {
-        let known = known.fixed_rows::<D>(D * i);
-        for r in 0..o.left {
-            let seen = (0..D).map(|k| o.elastic[(r, k)] * known[k] + o.shift[(r, k)] * o.fixed[k]);
-            value[row] = o.value[r] - seen.sum::<f64>();
-            row += 1;
-        }
+    matrix
+}
+
+/// x of A x = b, of which the `first` unknowns have a symmetric block, by Cholesky's factor of that and the L U of what
+/// it leaves of the others; `None` if it has none, or if what is left is singular beside it.
+fn eliminated(a: &DMatrix<f64>, first: usize, b: &DVector<f64>) -> Option<DVector<f64>> {
+    if first == 0 {
+        return None;
     }
-    let mut lu = Lu::new(matrix).filter(|lu| lu.least_pivot > RIGID)?;
-    let solved = lu.solve(value);
-    let mut step = fixed;
-    let mut next = 0;
-    for (i, o) in own.iter().enumerate() {
-        let mut own = step.fixed_rows_mut::<D>(D * i);
-        for direction in o.free.column_iter().take(o.left) {
-            own.axpy(solved[next], &direction, 1.0);
-            next += 1;
-        }
+    let rest = a.nrows() - first;
+    let block = a.view((0, 0), (first, first)).into_owned();
+    let stiffest = block.diagonal().amax();
+    let factor = DenseCholesky::new(block).filter(|f| f.holds(stiffest))?;
+    let mut x = b.rows(0, first).into_owned();
+    factor.forward_one(&mut x);
+    if rest == 0 {
+        factor.backward_one(&mut x);
+        return Some(x);
     }
-    step.iter().all(|v| v.is_finite()).then_some(step)
+    let mut across = a.view((0, first), (first, rest)).into_owned();
+    let mut down = a.view((first, 0), (rest, first)).transpose();
+    factor.forward(&mut across);
+    factor.forward(&mut down);
+    let left = a.view((first, first), (rest, rest)) - down.tr_mul(&across);
+    let mut lu = Lu::new(left).filter(|lu| {
+        let least = lu.least_pivot * lu.largest_pivot;
+        least > RIGID * stiffest.max(lu.largest_pivot)
+    })?;
+    let y = lu.solve(b.rows(first, rest) - down.tr_mul(&x));
+    x -= across * &y;
+    factor.backward_one(&mut x);
+    let all = x.iter().chain(y.iter()).copied();
+    Some(DVector::from_iterator(first + rest, all))
 }
 
 /// Components of a contact at most, in the plane and in space.
@@ -120,8 +166,12 @@ impl<const D: usize> Own<D> {
             wide[2 * MOST] = row.value[i];
             wide
         });
-        let left = eliminate(&mut rows, 0, NONE, false).len();
+        let pivots = eliminate(&mut rows, 0, NONE, false);
+        let left = pivots.len();
         let (rest, alone) = rows.split_at_mut(left);
+        // In the order of the components, as the unknowns are.
+        let mut order: Vec<usize> = (0..left).collect();
+        order.sort_by_key(|&i| pivots[i]);
         let bound = eliminate(alone, MOST, NONE * row.shift.amax(), true);
         if bound.len() < alone.len() {
             return None;
@@ -141,7 +191,7 @@ impl<const D: usize> Own<D> {
         for (row, &pivot) in alone.iter().zip(&bound) {
             fixed[pivot - MOST] = row[2 * MOST] / row[pivot];
         }
-        let entry = |i: usize, column: usize| rest.get(i).map_or(0.0, |row| row[column]);
+        let entry = |i: usize, column: usize| order.get(i).map_or(0.0, |&i| rest[i][column]);
         Some(Self {
             elastic: SMatrix::from_fn(entry),
             shift: SMatrix::from_fn(|i, j| entry(i, MOST + j)),
@@ -150,6 +200,15 @@ impl<const D: usize> Own<D> {
             fixed,
             free,
         })
+    }
+
+    /// Whether its rows are those of the stiffness along its own unknowns, as where it is open or slips without
+    /// friction.
+    fn is_symmetric(&self) -> bool {
+        let own = |r: usize| {
+            (0..D).all(|k| self.elastic[(r, k)] == self.free[(k, r)] && self.shift[(r, k)] == 0.0)
+        };
+        (0..self.left).all(own)
     }
 }
 
@@ -233,6 +292,54 @@ mod tests {
             if let (Some(x), Some(y)) = (expected, step) {
                 prop_assert!((&whole * &y - &value).amax() < 1e-8 * (1.0 + y.amax() * whole.amax()));
                 prop_assert!((&x - &y).amax() < 1e-6 * (1.0 + x.amax()));
+            }
+        }
+    }
+
+    /// Open contacts, some that slip with friction and some that stick: one answer by Cholesky's factor and by L U, also
+    /// of a structure that is not stable.
+    #[test]
+    fn open_contacts_are_eliminated_by_cholesky() {
+        let n = 24;
+        let b = DMatrix::from_fn(n, n, |i, j| ((7 * i * i + 3 * j * j + i * j) as f64).sin());
+        let stable = &b * b.transpose() + DMatrix::identity(n, n);
+        let mut unstable = stable.clone();
+        unstable[(0, 0)] -= 40.0;
+        for (s, is_stable) in [(stable, true), (unstable, false)] {
+            let open = |i: usize| Row {
+                elastic: SMatrix::<f64, 2, 2>::identity(),
+                shift: SMatrix::zeros(),
+                value: Local::<2>::new((i as f64).sin(), 0.3),
+            };
+            let rubs = |i: usize| Row {
+                elastic: SMatrix::<f64, 2, 2>::new(0.0, 0.0, -0.3, 1.0),
+                shift: SMatrix::<f64, 2, 2>::new(2.0, 0.0, 0.6, 0.0),
+                value: Local::<2>::new(0.1, (i as f64).cos()),
+            };
+            let rows = || (0..n / 2).map(|i| if i % 4 == 1 { rubs(i) } else { open(i) });
+            let own: Vec<_> = rows().map(|row| Own::new(row).expect("regular")).collect();
+            assert_eq!(own.iter().filter(|o| o.is_symmetric()).count(), 9);
+            let zero = vec![Local::<2>::zeros(); n / 2];
+            let law = vec![Coulomb::new(0.3).expect("valid"); n / 2];
+            let load = DVector::zeros(n);
+            let problem = CondensedProblem::new(s.clone(), load, zero.clone(), law, zero);
+            let step = solve(&problem.expect("valid"), rows().collect()).expect("regular");
+            for (i, row) in rows().enumerate() {
+                let seen = row.elastic * (s.fixed_rows::<2>(2 * i) * &step)
+                    + row.shift * step.fixed_rows::<2>(2 * i);
+                assert!((seen - row.value).amax() < 1e-10);
+            }
+            let order: Vec<usize> = (0..n / 2).filter(|i| i % 4 != 1).collect();
+            let order: Vec<usize> = order
+                .into_iter()
+                .chain((0..n / 2).filter(|i| i % 4 == 1))
+                .collect();
+            let matrix = matrix(&s, &own, &order);
+            let value = DVector::from_fn(matrix.nrows(), |i, _| (i as f64).cos());
+            let found = eliminated(&matrix, 18, &value);
+            assert_eq!(found.is_some(), is_stable);
+            if let Some(x) = found {
+                assert!((matrix * x - value).amax() < 1e-10);
             }
         }
     }
