@@ -356,18 +356,21 @@ impl<const D: usize> Driver<D> {
         d_u: &[f64],
         contacts: &[ContactRecord<D>],
     ) -> Vector3<f64> {
-        let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
-        let node = self.tool_node(tool);
-        let about = self.tools[tool].reference + self.displacement(node) + moved(node);
         let of = |(p, c): (&ContactPoint<D>, &ContactRecord<D>)| {
-            let own = p
-                .own
-                .iter()
-                .map(|&(a, w)| (self.position(a) + moved(a)) * w);
-            in_space(&(own.sum::<SVector<f64, D>>() - about)).cross(&in_space(&c.force))
+            self.arm(tool, p, d_u).cross(&in_space(&c.force))
         };
         let points = self.points.iter().zip(contacts);
         points.filter(|(p, _)| p.tool == Some(tool)).map(of).sum()
+    }
+
+    /// From the reference point of a tool to a contact point after displacement increments \[mm\].
+    pub(crate) fn arm(&self, tool: usize, point: &ContactPoint<D>, d_u: &[f64]) -> Vector3<f64> {
+        let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
+        let node = self.tool_node(tool);
+        let about = self.tools[tool].reference + self.displacement(node) + moved(node);
+        let own = point.own.iter();
+        let own = own.map(|&(a, w)| (self.position(a) + moved(a)) * w);
+        in_space(&(own.sum::<SVector<f64, D>>() - about))
     }
 
     /// How far a tool has turned: a vector along the axis, as long as the angle \[rad\].

@@ -5,7 +5,7 @@ use crate::driver::{Driver, State};
 use crate::error::IncrementError;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
-use crate::model::points::{ContactPoint, Kinematics, turned};
+use crate::model::points::{ContactPoint, Kinematics, in_space, turned};
 use crate::newton::candidate::{Candidate, Counts};
 use crate::report::{ContactRecord, Energies, IncrementReport};
 use crate::vector::SparseVector;
@@ -49,7 +49,7 @@ impl<const D: usize> Driver<D> {
         let certificate = Certificate::new(&laws, &obeying, &forces);
         let contact = self.contact_forces(&kinematics, &forces);
         let work = self.external_work((start, end), &d_u, &internal, &contact)
-            + self.closing_work(&kinematics, &contacts, &d_u)
+            + self.closing_work((start, end), &kinematics, &contacts, &d_u)
             + self.turning_work((start, end), &d_u, &contacts);
         let (energies, plastic_fraction) = self.energies_after(work, &kinematics, &contacts);
         all_finite(&energies, &certificate, &d_u)?;
@@ -292,13 +292,20 @@ impl<const D: usize> Driver<D> {
 
     /// What the trapezoidal rule makes the normal parts of contact forces do, less what springs of a penalty
     /// take of it: nothing is done, since a pressure is there only where nothing moves along it.
-    /// Where a gap closes at the end of an increment, the rule has half of the last pressure push across it.
+    /// Where a gap closes at the end of an increment, the rule has half of the last pressure push across it. Motions are
+    /// those beside the tool, which a turn θ moves by θ × r.
     fn closing_work(
         &self,
+        (start, end): (&Loading<D>, &Loading<D>),
         kinematics: &[Kinematics<D>],
         contacts: &[ContactRecord<D>],
         d_u: &[f64],
     ) -> f64 {
+        let rest = vec![0.0; d_u.len()];
+        let tools = 0..self.tools.len();
+        let turns: Vec<_> = tools
+            .map(|tool| self.turn_at(tool, end, d_u) - start.turn_of(tool))
+            .collect();
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
         let large = self.has_large_strains();
         let points = self.points.iter().zip(&self.footing.rows).zip(kinematics);
@@ -307,12 +314,29 @@ impl<const D: usize> Driver<D> {
             let (n, parted) = (k.axes.column(0).into_owned(), motion_row.relative(moved));
             let mean = 0.5 * (k.local_force(&before.force)[0] + now.t[0]);
             let sprung = mean * (now.spring[0] - before.spring[0]);
-            sprung
-                + match self.normal_before(p, motion_row).filter(|_| large) {
-                    // Along a curved tool each pressure has a normal of its own.
-                    Some(first) => 0.5 * (first * before.t[0] + n * now.t[0]).dot(&parted),
-                    None => mean * n.dot(&parted),
-                }
+            let turned = p.tool.filter(|&tool| turns[tool].norm() > 0.0);
+            // Along a curved tool, and one that turns, each pressure has a normal of its own.
+            let first = match large || turned.is_some() {
+                true => self.normal_before(p, motion_row),
+                false => None,
+            };
+            let across = match first {
+                Some(first) => 0.5 * (first * before.t[0] + n * now.t[0]).dot(&parted),
+                None => mean * n.dot(&parted),
+            };
+            let with_tool = turned.map_or(0.0, |tool| {
+                let by = |d_u: &[f64], n| {
+                    turns[tool]
+                        .cross(&self.arm(tool, p, d_u))
+                        .dot(&in_space(&n))
+                };
+                let pressure = match first {
+                    Some(_) => before.t[0],
+                    None => k.local_force(&before.force)[0],
+                };
+                0.5 * (pressure * by(&rest, first.unwrap_or(n)) + now.t[0] * by(d_u, n))
+            });
+            sprung + across - with_tool
         });
         work.sum()
     }
