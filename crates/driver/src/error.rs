@@ -36,6 +36,18 @@ pub enum ModelError {
         /// Group of the second material.
         group: String,
     },
+    /// A cell with two temperatures.
+    #[error(
+        "cell {cell} of group {group:?} has a temperature already in step {step:?}: groups must not overlap"
+    )]
+    TwoTemperatures {
+        /// The step.
+        step: String,
+        /// The cell.
+        cell: usize,
+        /// Group of the second temperature.
+        group: String,
+    },
     /// A cell that an element or a block does not fit.
     #[error("cell {cell} {problem}")]
     WrongElement {

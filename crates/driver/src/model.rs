@@ -5,6 +5,7 @@ pub(crate) mod footing;
 pub(crate) mod load;
 pub(crate) mod motion_row;
 pub(crate) mod points;
+pub(crate) mod temperature;
 pub(crate) mod ties;
 
 use crate::assembly::block::{Block, SolidBlock};
@@ -200,6 +201,8 @@ pub struct Model<const D: usize, H> {
     /// Number of the material of every cell, in the order in which they were given.
     pub(crate) material: Vec<Option<usize>>,
     materials: usize,
+    /// Strain of every cell by a kelvin \[1/K\]; empty where none expands.
+    pub(crate) expansion: Vec<f64>,
     /// Whether strains and rotations of materials are large.
     large: bool,
     /// Processes that hold the cells together, and which holds which.
@@ -214,6 +217,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         Self {
             material: vec![None; mesh.cell_count()],
             materials: 0,
+            expansion: Vec::new(),
             large: false,
             team: None,
             members: Vec::new(),
@@ -331,6 +335,24 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 self.blocks.push(Box::new(block));
                 self.members.push(None);
             }
+        }
+        Ok(self)
+    }
+
+    /// Has the cells of a group expand by a strain α in every direction for each kelvin that
+    /// [`Step::temperature`](crate::Step::temperature) heats them \[1/K\]: nothing of it makes a stress. Under large strains it
+    /// is logarithmic: they grow by the factor e^{α ΔT}. One that is negative shrinks.
+    ///
+    /// # Errors
+    /// An unknown group, a number that is not finite.
+    pub fn expansion(mut self, group: &str, per_kelvin: f64) -> Result<Self, ModelError> {
+        if !per_kelvin.is_finite() {
+            let what = format!("expansion of {group:?}");
+            return Err(out_of_range(&what, per_kelvin, "a finite number"));
+        }
+        self.expansion.resize(self.mesh.cell_count(), 0.0);
+        for &cell in self.mesh.cell_group(group)? {
+            self.expansion[cell] = per_kelvin;
         }
         Ok(self)
     }
