@@ -590,19 +590,15 @@ impl System {
         let mut turned = Turned::of(&self.prescribed.directions);
         let (pattern, values) = self.matrix.values_mut();
         for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
-            block.evaluate(
-                Motion::new(from, &by),
-                Stiffness::Total(0.0),
-                &mut |cell| {
-                    let cell = turned.cell::<D>(cell);
-                    scatter.add::<D>(&cell, position, pattern, values);
-                    if keeps {
-                        prescribed_columns::<D>(&cell, position, &mut |unknown, prescribed, k| {
-                            all.push((unknown, prescribed, k));
-                        });
-                    }
-                },
-            );
+            block.evaluate(Motion::new(from, &by), Stiffness::Total(0.0), &mut |cell| {
+                let cell = turned.cell::<D>(cell);
+                scatter.add::<D>(&cell, position, pattern, values);
+                if keeps {
+                    prescribed_columns::<D>(&cell, position, &mut |unknown, prescribed, k| {
+                        all.push((unknown, prescribed, k));
+                    });
+                }
+            });
         }
         if keeps {
             self.matrix.keep();

@@ -96,7 +96,8 @@ impl<const D: usize> Driver<D> {
             self.solve_bulk(system, end, &uzawa.force, &mut increment)?;
             let response = self.response(system, end, &uzawa, &increment);
             let iterate = &increment.iterate;
-            let scale = self.force_scale((&iterate.assembly, iterate.heated), end, &iterate.contact);
+            let scale =
+                self.force_scale((&iterate.assembly, iterate.heated), end, &iterate.contact);
             let residual = iterate.residual(end, system.prescribed());
             left = response.residual;
             increment.counts.contact += 1;
@@ -128,7 +129,8 @@ impl<const D: usize> Driver<D> {
             solver: "Uzawa around the nonlinear solve",
             iterations,
             residual: left,
-            tolerance: tolerance * self.force_scale((&iterate.assembly, iterate.heated), end, &iterate.contact),
+            tolerance: tolerance
+                * self.force_scale((&iterate.assembly, iterate.heated), end, &iterate.contact),
         };
         let iteration = 0;
         Err(IncrementError::Contact { iteration, source })
@@ -206,7 +208,8 @@ impl<const D: usize> Driver<D> {
         loop {
             let iterate = &mut increment.iterate;
             let residual = iterate.residual(end, system.prescribed());
-            let scale = self.force_scale((&iterate.assembly, iterate.heated), end, &iterate.contact);
+            let scale =
+                self.force_scale((&iterate.assembly, iterate.heated), end, &iterate.contact);
             let worst = largest(residual.iter().copied());
             let complete = increment.missing.is_zero();
             let accepted = self.accepted_residual(system, scale, &iterate.d_u);

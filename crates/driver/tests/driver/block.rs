@@ -63,6 +63,12 @@ fn displacement<const D: usize>(mesh: &Mesh<D>, size: f64, phase: f64) -> Vec<f6
         .collect()
 }
 
+/// Free strains of about `size`, differently from point to point.
+fn free_strains<const D: usize>(block: &dyn Block<D>, size: f64) -> Vec<f64> {
+    let points = block.cells().len() * block.points_per_cell();
+    (0..points).map(|k| size * (k as f64).cos()).collect()
+}
+
 /// The cells of a mesh under its full rule and under that of its kind.
 fn rules<H: Analysis<D>, const D: usize>(
     mesh: &Mesh<D>,
@@ -118,7 +124,11 @@ fn obeys_small_strains<const D: usize>(mesh: &Mesh<D>, block: &mut dyn Block<D>)
     // From a plastic state on, with a step that loads some points and unloads others.
     let first = displacement(mesh, 4e-3, 0.0);
     let rest = vec![0.0; first.len()];
-    let by = |by| Motion { from: &rest, by };
+    let free = free_strains(block, 1e-3);
+    let by = |by| Motion {
+        free: &free,
+        ..Motion::new(&rest, by)
+    };
     evaluate(block, by(&first), Stiffness::None);
     block.commit();
     let d_u = displacement(mesh, 1.5e-3, 2.0);
@@ -136,8 +146,8 @@ fn obeys_small_strains<const D: usize>(mesh: &Mesh<D>, block: &mut dyn Block<D>)
             let mut v = d_u.clone();
             v[k] += side * h;
             let moved = Motion {
-                from: &rest,
-                by: &v,
+                free: &free,
+                ..Motion::new(&rest, &v)
             };
             block.potential(moved).expect("a potential")
         };
@@ -162,15 +172,16 @@ fn obeys_small_strains<const D: usize>(mesh: &Mesh<D>, block: &mut dyn Block<D>)
 fn obeys_large_strains<const D: usize>(mesh: &Mesh<D>, block: &mut dyn Block<D>) {
     let (before, by) = (displacement(mesh, 0.1, 0.0), displacement(mesh, 0.04, 2.0));
     let rest = vec![0.0; by.len()];
+    let free = free_strains(block, 0.02);
     let first = Motion {
-        from: &rest,
-        by: &before,
+        free: &free,
+        ..Motion::new(&rest, &before)
     };
     evaluate(block, first, Stiffness::None);
     block.commit();
     let motion = Motion {
-        from: &before,
-        by: &by,
+        free: &free,
+        ..Motion::new(&before, &by)
     };
     let at = evaluate(block, motion, Stiffness::Total(1.0));
     let size = at.stiffness.amax();
@@ -209,7 +220,7 @@ fn flow_adds_to_the_stiffness_of_cells_that_flow() {
     let rest = vec![0.0; d_u.len()];
     let entries = |block: &mut dyn Block<2>, kind, by: &[f64]| {
         let mut counts = Vec::new();
-        let motion = Motion { from: &rest, by };
+        let motion = Motion::new(&rest, by);
         let flows = block.evaluate(motion, kind, &mut |cell| counts.push(cell.stiffness.len()));
         (flows, counts)
     };
