@@ -47,8 +47,9 @@ mod units;
 pub use build::{Body, GroupFacts, Problem, Setup, Stage};
 pub use entries::{
     Action, Adjust, Analysis, AxesEntry, BlockEntry, ConditionEntry, ContactEntry, Deck,
-    DirectionsEntry, Expectation, FrictionEntry, Grid, GroupEntry, Hardening, HillEntry,
-    MaterialEntry, Method, Part, Shape, SoilEntry, SolverEntry, StepEntry, ToolEntry, Vtu,
+    DirectionsEntry, Expectation, FieldEntry, FrictionEntry, Grid, GroupEntry, Hardening,
+    HillEntry, MaterialEntry, Method, Part, Shape, SoilEntry, SolverEntry, StepEntry, ToolEntry,
+    Vtu,
 };
 pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;

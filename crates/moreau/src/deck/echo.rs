@@ -162,6 +162,9 @@ fn material(deck: &Deck, material: &MaterialEntry, out: &mut String) -> fmt::Res
         writeln!(out, "friction-angle = {:?}", soil.friction_angle.value)?;
         writeln!(out, "dilatancy-angle = {:?}", soil.dilatancy_angle.value)?;
     }
+    if let Some(expansion) = &material.expansion {
+        writeln!(out, "expansion = {:?}", expansion.value)?;
+    }
     let quadrature = deck.quadrature(material);
     if quadrature != BY_ELEMENT {
         writeln!(out, "quadrature = \"{quadrature}\"")?;
@@ -288,6 +291,7 @@ fn lists(conditions: &[ConditionEntry], dimension: usize) -> [(&'static str, Vec
             Action::Traction(v) => (2, format!("{{ on = {on}, traction = {v:?} }}")),
             Action::Force(v) => (2, format!("{{ on = {on}, force = {v:?} }}")),
             Action::BodyForce(v) => (2, format!("{{ on = {on}, body-force = {v:?} }}")),
+            Action::Temperature(t) => (2, format!("{{ on = {on}, temperature = {t} }}")),
             Action::Tool(motion, turn) => {
                 let motion = motion.iter().map(|v| format!(", move = {v:?}"));
                 let turn = turn.iter().map(|turn| match dimension {

@@ -103,7 +103,7 @@ fn needed(action: &Action) -> Option<Needed> {
         | Action::MoveAlong(..)
         | Action::Force(_) => Some(Needed::Nodes),
         Action::Pressure(_) | Action::Traction(_) => Some(Needed::Facets),
-        Action::BodyForce(_) => Some(Needed::Cells),
+        Action::BodyForce(_) | Action::Temperature(_) => Some(Needed::Cells),
     }
 }
 

@@ -408,6 +408,12 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
         };
         model = added.map_err(|e| note(&entry.on.span, e)).ok()?;
     }
+    for entry in &deck.materials {
+        if let Some(expansion) = &entry.expansion {
+            let expands = model.expansion(&entry.on.value, expansion.value);
+            model = expands.map_err(|e| note(&expansion.span, e)).ok()?;
+        }
+    }
     for tool in &deck.tools {
         let name = &tool.name.value;
         let added = model.tool(name, surface(&tool.shape.value)?.ok()?);

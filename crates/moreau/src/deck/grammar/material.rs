@@ -26,6 +26,7 @@ pub(super) fn read(table: Table<'_>, dimension: usize) -> Option<MaterialEntry> 
     let isotropic = isotropic(&table);
     let kinematic = kinematic(&table);
     let soil = soil(&table);
+    let expansion = table.number_if("expansion");
     let quadrature = table.choice_if("quadrature", &["reduced", "full", "b-bar"]);
     let quadrature = quadrature.map(|q| {
         let rule = match q.value {
@@ -55,6 +56,7 @@ pub(super) fn read(table: Table<'_>, dimension: usize) -> Option<MaterialEntry> 
         kinematic,
         soil,
         axes,
+        expansion,
         quadrature,
         kinds: Vec::new(),
     })
