@@ -146,7 +146,8 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// Forces and energy of the stresses at the start.
+    /// Forces and energy of the stresses at the start, which as much force on the nodes and work have made: the first step
+    /// takes that force away as it applies its own.
     fn start(&mut self) {
         let rest = vec![0.0; self.state.displacement.len()];
         let motion = Motion::new(&rest, &rest);
@@ -159,6 +160,9 @@ impl<const D: usize> Driver<D> {
             });
             self.state.energies.stored += block.energy().stored;
         }
+        self.state.energies.external_work = self.state.energies.stored;
+        let held = self.state.internal.iter().enumerate();
+        held.for_each(|(dof, &f)| self.state.loading.force.add(dof, f));
     }
 
     /// Whether strains and rotations are large: displacements change the stiffness.

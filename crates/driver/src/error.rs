@@ -36,6 +36,22 @@ pub enum ModelError {
         /// Group of the second material.
         group: String,
     },
+    /// A stress at the start that a law does not bear.
+    #[error(
+        "cell {cell} starts at {position:?} outside of its yield surface: von Mises' stress is {} and the mean stress {}, of \
+         which the law bears {} and {}",
+        stress[0], stress[1], borne[0], borne[1]
+    )]
+    Overstressed {
+        /// The cell.
+        cell: usize,
+        /// The quadrature point \[mm\].
+        position: Vec<f64>,
+        /// Von Mises' stress and the mean stress, tension positive \[MPa\].
+        stress: [f64; 2],
+        /// What the law makes of them.
+        borne: [f64; 2],
+    },
     /// A cell with two temperatures.
     #[error(
         "cell {cell} of group {group:?} has a temperature already in step {step:?}: groups must not overlap"

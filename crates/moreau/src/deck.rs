@@ -48,8 +48,8 @@ pub use build::{Body, GroupFacts, Problem, Setup, Stage};
 pub use entries::{
     Action, Adjust, Analysis, AxesEntry, BlockEntry, ConditionEntry, ContactEntry, Deck,
     DirectionsEntry, Expectation, FieldEntry, FrictionEntry, Grid, GroupEntry, Hardening,
-    HillEntry, MaterialEntry, Method, Part, Shape, SoilEntry, SolverEntry, StepEntry, ToolEntry,
-    Vtu,
+    HillEntry, InitialEntry, MaterialEntry, Method, Part, Shape, SoilEntry, SolverEntry, StepEntry,
+    ToolEntry, Vtu,
 };
 pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;

@@ -5,6 +5,7 @@ mod amplitudes;
 mod axes;
 mod conditions;
 mod groups;
+mod initial;
 mod laws;
 mod meshes;
 mod names;
@@ -162,6 +163,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     names::check_laws(deck, &given.laws, findings);
     let parts = parts::parts(deck, &given.laws, findings);
     let groups = groups?;
+    initial::check(deck, &groups, findings);
     if findings.errors() > 0 {
         return None;
     }

@@ -3,7 +3,7 @@
 use super::build::quadratures;
 use super::entries::{
     Action, Adjust, BlockEntry, ConditionEntry, ContactEntry, Deck, Grid, GroupEntry, Hardening,
-    MaterialEntry, Method, Part, Shape, StepEntry, ToolEntry, Vtu,
+    InitialEntry, MaterialEntry, Method, Part, Shape, StepEntry, ToolEntry, Vtu,
 };
 use super::finding::At;
 use crate::driver::Increments;
@@ -49,6 +49,9 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
     }
     for entry in &deck.materials {
         material(deck, entry, out)?;
+    }
+    for entry in &deck.initial {
+        initial(entry, out)?;
     }
     for entry in &deck.tools {
         tool(entry, out)?;
@@ -168,6 +171,23 @@ fn material(deck: &Deck, material: &MaterialEntry, out: &mut String) -> fmt::Res
     let quadrature = deck.quadrature(material);
     if quadrature != BY_ELEMENT {
         writeln!(out, "quadrature = \"{quadrature}\"")?;
+    }
+    Ok(())
+}
+
+fn initial(entry: &InitialEntry, out: &mut String) -> fmt::Result {
+    writeln!(out, "\n[[initial]]\non = {}", text(&entry.on.value))?;
+    let components = ["xx", "yy", "zz", "xy", "yz", "xz"]
+        .iter()
+        .zip(&entry.stress);
+    let given =
+        components.filter_map(|(key, value)| Some(format!("{key} = {}", value.as_ref()?.value)));
+    let given: Vec<String> = given.collect();
+    if !given.is_empty() {
+        writeln!(out, "stress = {{ {} }}", given.join(", "))?;
+    }
+    if let Some(p) = &entry.p {
+        writeln!(out, "p = {}", p.value)?;
     }
     Ok(())
 }

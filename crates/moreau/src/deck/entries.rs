@@ -172,6 +172,19 @@ pub struct MaterialEntry {
     pub kinds: Vec<CellKind>,
 }
 
+/// `[[initial]]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InitialEntry {
+    /// Group of cells.
+    pub on: At<String>,
+    /// Components xx, yy, zz, xy and, of a solid, yz and xz of the stress; none of no stress.
+    pub stress: Vec<Option<At<FieldEntry>>>,
+    /// Equivalent plastic strain, if given.
+    pub p: Option<At<FieldEntry>>,
+    /// Place of the entry.
+    pub span: Range<usize>,
+}
+
 /// What a material with axes has of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxesEntry {
@@ -584,6 +597,8 @@ pub struct Deck {
     pub mesh_understood: bool,
     /// Materials.
     pub materials: Vec<MaterialEntry>,
+    /// What bodies start with.
+    pub initial: Vec<InitialEntry>,
     /// Tools.
     pub tools: Vec<ToolEntry>,
     /// Names of all tools, also of those that were not understood.

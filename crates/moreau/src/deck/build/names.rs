@@ -68,6 +68,9 @@ fn used<const D: usize>(
         let on = &material.on;
         group(on, Needed::Cells, tools, groups, &mut used, findings);
     }
+    for entry in &deck.initial {
+        group(&entry.on, Needed::Cells, tools, groups, &mut used, findings);
+    }
     for contact in &deck.contacts {
         for on in &contact.parts {
             group(on, Needed::Facets, tools, groups, &mut used, findings);
