@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// The tables of a deck in the order of the page: the name of the definition, and how a deck writes it.
-const TABLES: [(&str, &str); 31] = [
+const TABLES: [(&str, &str); 32] = [
     ("", "The deck"),
     ("mesh", "[mesh]"),
     ("block", "[[mesh.block]]"),
@@ -17,6 +17,7 @@ const TABLES: [(&str, &str); 31] = [
     ("kinematic", "kinematic = [{ … }]"),
     ("orthotropic", "orthotropic = { … }"),
     ("hill", "hill = { … }"),
+    ("initial", "[[initial]]"),
     ("tool", "[[tool]]"),
     ("plane", "plane = { … }"),
     ("cylinder", "cylinder = { … }"),

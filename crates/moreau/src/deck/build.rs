@@ -163,7 +163,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     names::check_laws(deck, &given.laws, findings);
     let parts = parts::parts(deck, &given.laws, findings);
     let groups = groups?;
-    initial::check(deck, &groups, findings);
+    initial::check((deck, &given.laws), &groups, findings);
     if findings.errors() > 0 {
         return None;
     }

@@ -144,8 +144,8 @@ pub(super) fn doubts<const D: usize>(deck: &Deck, gaps: &[LeastGap<D>], findings
             );
         }
     }
-    // What begins within something else is loaded by that, as a ring on its shaft.
-    let fits = gaps.iter().any(|g| g.inside > 0);
+    // What begins within something else is loaded by that, as a ring on its shaft; or it begins under a stress.
+    let fits = gaps.iter().any(|g| g.inside > 0) || !deck.initial.is_empty();
     if !fits && !all().any(|c| size(&c.action).is_some_and(|s| s > 0.0)) {
         let span = deck.steps.first().map_or(0..0, |s| s.name.span.clone());
         findings.warning(

@@ -2,6 +2,7 @@
 
 use super::groups::{Groups, HIDDEN};
 use super::laws::{Law, RECALLED};
+use crate::deck::Laws;
 use crate::deck::entries::{Deck, InitialEntry};
 use crate::deck::finding::{At, Findings};
 use crate::driver::{Analysis, Model, ModelError};
@@ -27,8 +28,12 @@ impl InitialEntry {
     }
 }
 
-/// Cells that two entries name, and plastic strains of what has none.
-pub(super) fn check<const D: usize>(deck: &Deck, groups: &Groups<D>, findings: &mut Findings) {
+/// Cells that two entries name, plastic strains of what has none, and laws of one's own.
+pub(super) fn check<const D: usize>(
+    (deck, laws): (&Deck, &Laws),
+    groups: &Groups<D>,
+    findings: &mut Findings,
+) {
     let cells = |on: &At<String>| groups.mesh.cell_group(&on.value).unwrap_or_default();
     let mut of_cell: BTreeMap<usize, &str> = BTreeMap::new();
     for entry in &deck.initial {
@@ -41,10 +46,22 @@ pub(super) fn check<const D: usize>(deck: &Deck, groups: &Groups<D>, findings: &
             );
             findings.error(&entry.on.span, message, "starts twice");
         }
+        let touches = |on: &At<String>| {
+            let own = cells(on);
+            cells(&entry.on).iter().any(|cell| own.contains(cell))
+        };
+        let mut given = deck.materials.iter().map(|m| &m.on);
+        if let Some(on) = given.find(|on| laws.contains_key(&on.value) && touches(on)) {
+            let message = format!(
+                "\"{}\" starts with what [[initial]] says, and the law of \"{}\" is one of one's own",
+                entry.on.value, on.value
+            );
+            let label = "its own initial state says where it starts";
+            findings.error(&entry.span, message, label);
+        }
         let Some(p) = &entry.p else { continue };
         for material in deck.materials.iter().filter(|m| m.yields().is_none()) {
-            let own = cells(&material.on);
-            if cells(&entry.on).iter().any(|cell| own.contains(cell)) {
+            if touches(&material.on) {
                 let message = format!(
                     "p on \"{}\", and the material of \"{}\" does not yield",
                     entry.on.value, material.on.value
