@@ -40,7 +40,7 @@ pub enum ModelError {
     #[error(
         "cell {cell} starts at {position:?} outside of its yield surface: von Mises' stress is {} and the mean stress {}, of \
          which the law bears {} and {}",
-        stress[0], stress[1], borne[0], borne[1]
+        rounded(stress[0]), rounded(stress[1]), rounded(borne[0]), rounded(borne[1])
     )]
     Overstressed {
         /// The cell.
@@ -599,6 +599,11 @@ fn worst_nodes(worst: &[Imbalance]) -> String {
 }
 
 /// What to look for, and a space; nothing where the cause says it.
+/// To six digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
 fn collapse_hint(
     cause: &IncrementError,
     plastic_fraction: f64,

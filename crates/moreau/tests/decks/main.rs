@@ -2,6 +2,8 @@
 
 mod along;
 mod amplitudes;
+mod heat;
+mod initial;
 mod keys;
 mod laws;
 mod meshes;
