@@ -2,7 +2,7 @@
 //! forces, whatever element, hypothesis and law.
 
 use moreau_driver::{Analysis, Block, Cells, Motion, SolidBlock, Stiffness};
-use moreau_laws::{BulkLaw, Elastic, VonMises};
+use moreau_laws::{BulkLaw, DruckerPrager, Elastic, ElasticDruckerPrager, VonMises};
 use moreau_mesh::{Axisymmetric, CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3};
 use nalgebra::DMatrix;
 
@@ -204,6 +204,44 @@ fn obeys_large_strains<const D: usize>(mesh: &Mesh<D>, block: &mut dyn Block<D>)
         }
     }
     assert_eq!(evaluate(block, motion, Stiffness::None).force, at.force);
+}
+
+/// What the tangents of a flow that is not associated lack is lacking under free strains too.
+#[test]
+fn flow_that_is_not_associated_lacks_what_its_slopes_tell() {
+    let cone = DruckerPrager::mohr_coulomb(5.0, 30.0, 5.0).expect("valid");
+    let law = ElasticDruckerPrager::new(1e4, 0.3, cone).expect("valid");
+    let mesh = plane(CellKind::Quad8);
+    for (members, cells) in rules(&mesh, PlaneStrain::default()) {
+        let block = &mut SolidBlock::new(members, cells, law.clone());
+        let by = displacement(&mesh, 4e-3, 0.5);
+        let (rest, free) = (vec![0.0; by.len()], free_strains(block, 2e-3));
+        let motion = Motion {
+            free: &free,
+            ..Motion::new(&rest, &by)
+        };
+        let at = evaluate(block, motion, Stiffness::Total(1.0));
+        let (size, mut lacks) = (at.stiffness.amax(), 0.0f64);
+        for k in 0..by.len() {
+            let mut along = rest.clone();
+            along[k] = 1.0;
+            let mut column: Vec<f64> = at.stiffness.column(k).iter().copied().collect();
+            block.lacking(motion, &along, &mut |nodes, force| {
+                for (&a, own) in nodes.iter().zip(force.chunks_exact(2)) {
+                    (0..2).for_each(|i| column[2 * a + i] += own[i]);
+                    lacks = own.iter().fold(lacks, |m, f| m.max(f.abs()));
+                }
+            });
+            for (l, slope) in slopes(block, motion, k, 1e-8).into_iter().enumerate() {
+                let found = column[l];
+                assert!(
+                    (slope - found).abs() < 1e-5 * size,
+                    "{l} {k}: {slope} {found}"
+                );
+            }
+        }
+        assert!(lacks > 1e-3 * size);
+    }
 }
 
 /// Cells that stay elastic hand on no stiffness but the elastic one.

@@ -1,11 +1,12 @@
 //! Bodies that are heated and cooled against closed forms; not what heats them.
 
-use moreau_driver::{Analysis, Axis, Driver, Model, Settings, Step};
-use moreau_laws::{Coulomb, Elastic, VonMises};
+use moreau_driver::{Analysis, Axis, Driver, Model, ModelError, Numbers, Saved, Settings, Step};
+use moreau_laws::{Coulomb, Elastic, PanelLaw, PointByPoint, VonMises};
 use moreau_mesh::{
     Axisymmetric, CellKind, Integration, Mesh, PlaneStrain, PlaneStress, Solid, block2, block3,
     uniform,
 };
+use std::sync::Arc;
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 
@@ -343,5 +344,139 @@ fn a_bar_between_walls_keeps_a_stress_when_it_cools() -> Fallible<()> {
             "at once",
         );
     }
+    Ok(())
+}
+
+/// A step that is taken up from its numbers in the middle of its heat goes on to the bit.
+#[test]
+fn heat_that_is_resumed_goes_on_to_the_bit() -> Fallible<()> {
+    let make = || -> Fallible<Driver<2>> {
+        let law = VonMises::new(YOUNG, POISSON, 200.0)?.with_isotropic(2000.0)?;
+        let model = Model::new(plate(CellKind::Quad8)?, PlaneStrain::default())
+            .material("b", law, Integration::Reduced)?
+            .expansion("b", ALPHA)?;
+        Ok(Driver::new(model, Settings::default())?)
+    };
+    let held = |name: &str| Step::new(name).fix("b.bottom", &[Axis::X, Axis::Y]);
+    let heat = held("heat")
+        .pressure("b.top", 10.0)
+        .temperature("b", |x| 80.0 * x[0])
+        .over(1, &[[0.0, 0.0], [0.3, 1.0], [1.0, 0.5]]);
+    let bits = |driver: &Driver<2>| {
+        let mut numbers = Vec::new();
+        driver.write(&mut numbers);
+        numbers.into_iter().map(f64::to_bits).collect::<Vec<u64>>()
+    };
+    let steps = [heat, held("cool")];
+    let mut whole = make()?;
+    for step in &steps {
+        whole.run(step, 4, |_, _| {})?;
+    }
+    let mut driver = make()?;
+    for step in &steps {
+        let mut ramp = driver.begin(step, 4)?;
+        while !ramp.is_done() {
+            driver.proceed(&mut ramp, &mut |_| std::ops::ControlFlow::Continue(()))?;
+            let mut numbers = Vec::new();
+            driver.write(&mut numbers);
+            ramp.write(&mut numbers);
+            let mut fresh = make()?;
+            let mut left = Numbers::Read(&numbers);
+            fresh.read(&mut left)?;
+            let mut again = fresh.begin(step, 4)?;
+            again.read(&mut left)?;
+            assert_eq!(again, ramp);
+            (driver, ramp) = (fresh, again);
+        }
+    }
+    assert_eq!(bits(&driver), bits(&whole));
+    Ok(())
+}
+
+/// A law that answers for panels of points is heated as one that answers point by point.
+#[test]
+fn laws_of_panels_are_heated_alike() -> Fallible<()> {
+    let law = VonMises::new(YOUNG, POISSON, 200.0)?.with_isotropic(2000.0)?;
+    let stresses = |model: Model<2, PlaneStrain>| -> Fallible<Vec<f64>> {
+        let mut driver = Driver::new(model.expansion("b", ALPHA)?, Settings::default())?;
+        let held = Step::new("heat").fix("b.bottom", &[Axis::X, Axis::Y]);
+        driver.run(&held.temperature("b", |x| 100.0 * x[1]), 2, |_, _| {})?;
+        let points = driver.points();
+        Ok(points
+            .iter()
+            .flat_map(|p| p.stress.iter().copied().collect::<Vec<_>>())
+            .collect())
+    };
+    for rule in [Integration::Reduced, Integration::BBar] {
+        let model = || {
+            Ok::<_, Box<dyn std::error::Error>>(Model::new(
+                plate(CellKind::Quad4)?,
+                PlaneStrain::default(),
+            ))
+        };
+        let own = stresses(model()?.material("b", law.clone(), rule)?)?;
+        let panel: Arc<dyn PanelLaw> = Arc::new(PointByPoint(law.clone()));
+        let other = stresses(model()?.panel_material("b", &panel, rule)?)?;
+        assert!(own.iter().any(|s| s.abs() > 50.0));
+        for (a, b) in own.iter().zip(&other) {
+            near(*b, *a, 1e-6, "stress");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn what_is_no_temperature_is_refused() -> Fallible<()> {
+    let model = |alpha: f64| {
+        let model = Model::new(plate(CellKind::Quad4)?, PlaneStrain::default());
+        let model = model.material("b", Elastic::new(YOUNG, POISSON)?, Integration::BBar)?;
+        Ok::<_, Box<dyn std::error::Error>>(model.expansion("b", alpha))
+    };
+    assert!(matches!(
+        model(f64::NAN)?.err(),
+        Some(ModelError::OutOfRange { .. })
+    ));
+    let mut driver = Driver::new(model(ALPHA)??, Settings::default())?;
+    let held = Step::new("heat").fix("b.bottom", &[Axis::X, Axis::Y]);
+    let twice = heated(heated(held.clone()));
+    let refused = driver.loading(&twice).err();
+    assert!(
+        matches!(refused, Some(ModelError::TwoTemperatures { cell: 0, .. })),
+        "{refused:?}"
+    );
+    let none = held.clone().temperature("b", |x| (x[0] - 3.0).sqrt());
+    match driver.loading(&none).err() {
+        Some(ModelError::OutOfRange { what, value, .. }) => {
+            assert!(what == "temperature of cell 0" && value.is_nan(), "{what}");
+        }
+        other => panic!("{other:?}"),
+    }
+    assert!(
+        driver
+            .loading(&held.clone().temperature("b.top", |_| 1.0))
+            .is_err()
+    );
+    // Of a mesh with other points.
+    let other = bodies(
+        plate(CellKind::Quad8)?,
+        PlaneStrain::default(),
+        false,
+        Integration::Full,
+    )?;
+    let loading = other.loading(&heated(held.clone()))?;
+    let refused = driver.advance(&loading).err();
+    assert!(refused.is_some());
+    // Who steps through amplitudes that end in nothing is where he was.
+    let over = heated(held).over(1, &[[0.0, 0.0], [0.5, 1.0], [1.0, 0.0]]);
+    driver.run(&over, 2, |_, _| {})?;
+    near(
+        driver
+            .displacements()
+            .iter()
+            .fold(0.0, |m: f64, u| m.max(u.abs())),
+        0.0,
+        1e-15,
+        "back",
+    );
     Ok(())
 }
