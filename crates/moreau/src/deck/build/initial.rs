@@ -96,7 +96,10 @@ pub(super) fn pieces<const D: usize>(
     let mut pieces = Vec::new();
     for (k, (start, cells)) in cells.into_iter().enumerate() {
         let piece = format!("{name}{HIDDEN}start{k}");
-        mesh.add_cell_group(&piece, cells)?;
+        // A mesh that was written with it has it.
+        if mesh.cell_group(&piece).ok() != Some(cells.as_slice()) {
+            mesh.add_cell_group(&piece, cells)?;
+        }
         pieces.push((piece, entry(&start)));
     }
     Ok(pieces)
