@@ -3,9 +3,11 @@
 use std::fmt;
 use std::sync::Arc;
 
+type Function<const D: usize> = dyn Fn(&[f64; D]) -> f64 + Send + Sync;
+
 /// A number by position in the undeformed body \[mm\].
 #[derive(Clone)]
-pub struct Field<const D: usize>(Arc<dyn Fn(&[f64; D]) -> f64 + Send + Sync>);
+pub struct Field<const D: usize>(Arc<Function<D>>);
 
 impl<const D: usize> Field<D> {
     /// From a function of the position.

@@ -230,7 +230,7 @@ impl<const D: usize> Driver<D> {
 mod tests {
     use super::*;
 
-    use crate::{Axis, Model, Settings, Step};
+    use crate::{Axis, Model, Motion, Settings, Step};
     use moreau_algebra::Interface;
     use moreau_laws::VonMises;
     use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};

@@ -213,7 +213,7 @@ fn flow_that_is_not_associated_lacks_what_its_slopes_tell() {
     let law = ElasticDruckerPrager::new(1e4, 0.3, cone).expect("valid");
     let mesh = plane(CellKind::Quad8);
     for (members, cells) in rules(&mesh, PlaneStrain::default()) {
-        let block = &mut SolidBlock::new(members, cells, law.clone());
+        let block = &mut SolidBlock::new(members, cells, law);
         let by = displacement(&mesh, 4e-3, 0.5);
         let (rest, free) = (vec![0.0; by.len()], free_strains(block, 2e-3));
         let motion = Motion {
