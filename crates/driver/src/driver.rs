@@ -62,6 +62,8 @@ pub struct Driver<const D: usize> {
     pub(crate) measure: Box<dyn Measure<D>>,
     pub(crate) contacts: Vec<Contact>,
     materials: Vec<usize>,
+    /// Strain of every cell by a kelvin \[1/K\]; empty where none expands.
+    pub(crate) expansion: Vec<f64>,
     /// Processes that hold the cells together, and which of them has which cell.
     team: Option<(SharedTeam, Vec<u32>)>,
 }
@@ -111,6 +113,7 @@ impl<const D: usize> Driver<D> {
             measure: Box::new(model.hypothesis),
             // All cells have one: it was checked.
             materials: model.material.into_iter().flatten().collect(),
+            expansion: model.expansion,
             mesh: model.mesh,
             blocks,
             tools: model.tools,
@@ -143,13 +146,11 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// Forces and energy of the stresses at the start.
+    /// Forces and energy of the stresses at the start, which as much force on the nodes and work have made: the first step
+    /// takes that force away as it applies its own.
     fn start(&mut self) {
         let rest = vec![0.0; self.state.displacement.len()];
-        let motion = Motion {
-            from: &rest,
-            by: &rest,
-        };
+        let motion = Motion::new(&rest, &rest);
         for block in &mut self.blocks {
             block.evaluate(motion, Stiffness::None, &mut |cell| {
                 for (&a, own) in cell.nodes.iter().zip(cell.force.chunks_exact(D)) {
@@ -159,17 +160,14 @@ impl<const D: usize> Driver<D> {
             });
             self.state.energies.stored += block.energy().stored;
         }
+        self.state.energies.external_work = self.state.energies.stored;
+        let held = self.state.internal.iter().enumerate();
+        held.for_each(|(dof, &f)| self.state.loading.force.add(dof, f));
     }
 
     /// Whether strains and rotations are large: displacements change the stiffness.
     pub fn has_large_strains(&self) -> bool {
         !self.blocks.iter().all(|b| b.keeps_elastic_stiffness())
-    }
-
-    /// The motion of the mesh by displacement increments, from where it is.
-    pub(crate) fn motion<'a>(&'a self, d_u: &'a [f64]) -> Motion<'a> {
-        let from = &self.state.displacement;
-        Motion { from, by: d_u }
     }
 
     /// The node that stands for a tool.
@@ -423,7 +421,7 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
         watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<IncrementReport, IncrementError> {
-        end.check(&self.mesh, self.state.displacement.len())?;
+        self.check_loading(end)?;
         self.pair(end)?;
         self.check_pushes(end)?;
         let mut system = self.prepare(end, None)?;

@@ -36,6 +36,34 @@ pub enum ModelError {
         /// Group of the second material.
         group: String,
     },
+    /// A stress at the start that a law does not bear.
+    #[error(
+        "cell {cell} starts at {position:?} outside of its yield surface: von Mises' stress is {} and the mean stress {}, of \
+         which the law bears {} and {}",
+        rounded(stress[0]), rounded(stress[1]), rounded(borne[0]), rounded(borne[1])
+    )]
+    Overstressed {
+        /// The cell.
+        cell: usize,
+        /// The quadrature point \[mm\].
+        position: Vec<f64>,
+        /// Von Mises' stress and the mean stress, tension positive \[MPa\].
+        stress: [f64; 2],
+        /// What the law makes of them.
+        borne: [f64; 2],
+    },
+    /// A cell with two temperatures.
+    #[error(
+        "cell {cell} of group {group:?} has a temperature already in step {step:?}: groups must not overlap"
+    )]
+    TwoTemperatures {
+        /// The step.
+        step: String,
+        /// The cell.
+        cell: usize,
+        /// Group of the second temperature.
+        group: String,
+    },
     /// A cell that an element or a block does not fit.
     #[error("cell {cell} {problem}")]
     WrongElement {
@@ -572,6 +600,11 @@ fn worst_nodes(worst: &[Imbalance]) -> String {
 }
 
 /// What to look for, and a space; nothing where the cause says it.
+/// To six digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
 fn collapse_hint(
     cause: &IncrementError,
     plastic_fraction: f64,

@@ -58,6 +58,7 @@ pub use checks::supports::{RigidMotion, Support};
 pub use driver::Driver;
 pub use error::{Imbalance, IncrementError, LawFault, ModelError, Place, ToolOutOfContact};
 pub use model::load::{Axis, Loading, Step};
+pub use model::temperature::{Field, Temperature};
 pub use model::{Analysis, Model};
 pub use path::buckling::Buckling;
 pub use path::increments::Increments;

@@ -5,6 +5,7 @@ pub(crate) mod footing;
 pub(crate) mod load;
 pub(crate) mod motion_row;
 pub(crate) mod points;
+pub(crate) mod temperature;
 pub(crate) mod ties;
 
 use crate::assembly::block::{Block, SolidBlock};
@@ -19,6 +20,7 @@ use crate::vector::SparseVector;
 use moreau_algebra::SharedTeam;
 use moreau_contact::Obstacle;
 use moreau_laws::{BulkLaw, Friction, InPlaneStress, PanelLaw};
+use moreau_mandel::{Sym2, trace, von_mises};
 use moreau_mesh::{
     Axisymmetric, CellKind, Element, Facet, Hex8, Hex20, Hex27, Hypothesis, Integration, Mesh,
     MortarRow, Pairing, PlaneStrain, PlaneStress, PositiveShare, Pressed, Quad4, Quad8, Quad9,
@@ -179,6 +181,45 @@ fn out_of_range(what: &str, value: f64, expected: &'static str) -> ModelError {
     }
 }
 
+/// Part of the elastic strain that plastic flow at rest may be: what a stress on the yield surface rounds to.
+const ON_SURFACE: f64 = 1e-9;
+
+/// Whether a law bears the state that a point starts from.
+fn check_start<L: BulkLaw, const D: usize>(
+    law: &L,
+    cell: usize,
+    position: &[f64; D],
+    state: &impl Fn(&[f64; D]) -> L::State,
+) -> Result<(), ModelError> {
+    let start = state(position);
+    let (stress, p) = (law.stress(&start), law.equivalent_plastic_strain(&start));
+    let wrong = |what: &str, value: f64, expected: &'static str| {
+        out_of_range(
+            &format!("{what} at the start of cell {cell}"),
+            value,
+            expected,
+        )
+    };
+    if let Some(&value) = stress.iter().find(|s| !s.is_finite()) {
+        return Err(wrong("stress", value, "a finite number"));
+    }
+    if !(p >= 0.0 && p.is_finite()) {
+        return Err(wrong("equivalent plastic strain", p, "0 or more"));
+    }
+    let response = law.respond(&start, &Sym2::zeros());
+    let flow = law.equivalent_plastic_strain(&response.state) - p;
+    if flow <= ON_SURFACE * law.elastic_strain(&start).norm() {
+        return Ok(());
+    }
+    let of = |s: &Sym2| [von_mises(s), trace(s) / 3.0];
+    Err(ModelError::Overstressed {
+        cell,
+        position: position.to_vec(),
+        stress: of(&stress),
+        borne: of(&response.stress),
+    })
+}
+
 /// A surface and what is opposite to it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Contact {
@@ -200,6 +241,8 @@ pub struct Model<const D: usize, H> {
     /// Number of the material of every cell, in the order in which they were given.
     pub(crate) material: Vec<Option<usize>>,
     materials: usize,
+    /// Strain of every cell by a kelvin \[1/K\]; empty where none expands.
+    pub(crate) expansion: Vec<f64>,
     /// Whether strains and rotations of materials are large.
     large: bool,
     /// Processes that hold the cells together, and which holds which.
@@ -214,6 +257,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         Self {
             material: vec![None; mesh.cell_count()],
             materials: 0,
+            expansion: Vec::new(),
             large: false,
             team: None,
             members: Vec::new(),
@@ -256,21 +300,50 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         integration: Integration,
     ) -> Result<Self, ModelError> {
         let initial = law.initial();
-        self.material_from(group, law, integration, |_| initial)
+        self.with_material((group, integration), law, |_| initial)
     }
 
     /// Gives the cells of a group a law, an integration rule, and the state that every quadrature point
     /// starts from, by its position in the undeformed body \[mm\]: under a stress, or with axes that
-    /// vary. Stresses that the first loads do not balance strain the body as these are applied.
+    /// vary. Forces on the nodes hold the stresses at first, and are taken away as the first step applies its loads: where
+    /// these balance the stresses nothing moves.
     ///
     /// # Errors
     /// An unknown group; [`ModelError::TwoMaterials`]; [`ModelError::PlaneStress`] under large strains, or with a mean
-    /// dilatation.
+    /// dilatation; [`ModelError::Overstressed`] for a stress outside of the yield surface;
+    /// [`ModelError::OutOfRange`] for a stress that is no number, or a negative plastic strain.
     pub fn material_from<L: BulkLaw>(
-        mut self,
+        self,
         group: &str,
         law: L,
         integration: Integration,
+        state: impl Fn(&[f64; D]) -> L::State,
+    ) -> Result<Self, ModelError> {
+        // On every process of all cells, so that all say the same.
+        let mut by_kind: BTreeMap<CellKind, Vec<usize>> = BTreeMap::new();
+        for &cell in self.mesh.cell_group(group)? {
+            by_kind.entry(self.mesh.kind(cell)).or_default().push(cell);
+        }
+        for (kind, members) in by_kind {
+            let cells = self
+                .hypothesis
+                .cells(&self.mesh, kind, &members, integration);
+            for point in cells
+                .iter()
+                .flat_map(|c| 0..c.count() * c.points_per_cell())
+            {
+                let Some(cells) = &cells else { continue };
+                let cell = members[point / cells.points_per_cell()];
+                check_start(&law, cell, &cells.position(point), &state)?;
+            }
+        }
+        self.with_material((group, integration), law, state)
+    }
+
+    fn with_material<L: BulkLaw>(
+        mut self,
+        (group, integration): (&str, Integration),
+        law: L,
         state: impl Fn(&[f64; D]) -> L::State,
     ) -> Result<Self, ModelError> {
         self.check_plane_stress(group, integration)?;
@@ -331,6 +404,24 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 self.blocks.push(Box::new(block));
                 self.members.push(None);
             }
+        }
+        Ok(self)
+    }
+
+    /// Has the cells of a group expand by a strain α in every direction for each kelvin that
+    /// [`Step::temperature`](crate::Step::temperature) heats them \[1/K\]: nothing of it makes a stress. Under large strains it
+    /// is logarithmic: they grow by the factor e^{α ΔT}. One that is negative shrinks.
+    ///
+    /// # Errors
+    /// An unknown group, a number that is not finite.
+    pub fn expansion(mut self, group: &str, per_kelvin: f64) -> Result<Self, ModelError> {
+        if !per_kelvin.is_finite() {
+            let what = format!("expansion of {group:?}");
+            return Err(out_of_range(&what, per_kelvin, "a finite number"));
+        }
+        self.expansion.resize(self.mesh.cell_count(), 0.0);
+        for &cell in self.mesh.cell_group(group)? {
+            self.expansion[cell] = per_kelvin;
         }
         Ok(self)
     }

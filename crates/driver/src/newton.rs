@@ -6,6 +6,7 @@ pub(crate) mod commit;
 pub(crate) mod control;
 pub(crate) mod criteria;
 pub(crate) mod following;
+pub(crate) mod heat;
 pub(crate) mod increment;
 pub(crate) mod iterate;
 pub(crate) mod line_search;

@@ -12,7 +12,7 @@ use nalgebra::SVector;
 pub struct Energies {
     /// Work of applied forces, prescribed displacements and tools, by the trapezoidal rule; across a gap that
     /// closes or opens within an increment none is done: a pressure is there only once nothing moves
-    /// along it any more.
+    /// along it any more. Of heat what it does against the stresses, and of stresses at the start what they store.
     pub external_work: f64,
     /// Stored in the bulk.
     pub stored: f64,

@@ -199,6 +199,7 @@ impl<const D: usize> Saved for Loading<D> {
         self.directions = Directions::from_numbers(D, dofs, &along);
         numbers.sparse(&mut self.force)?;
         numbers.sparse(&mut self.pressure)?;
+        numbers.list(&mut self.temperature.0)?;
         numbers.sparse(&mut self.turn)?;
         numbers.sparse(&mut self.axle)
     }
@@ -329,7 +330,7 @@ impl<const D: usize> Driver<D> {
             ..Loading::default()
         };
         contact.check(&self.mesh, dofs)?;
-        self.state.loading.check(&self.mesh, dofs)?;
+        self.check_loading(&self.state.loading)?;
         for block in &mut self.blocks {
             let mut state = Vec::new();
             numbers.list(&mut state)?;

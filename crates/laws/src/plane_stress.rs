@@ -36,8 +36,9 @@ impl<S: Numbers> Numbers for PlaneStressState<S> {
     }
 }
 
-/// A law whose strain increment Δε₃₃ is the one under which σ₃₃ = 0 at the end of the step; the one that it is given
-/// does not count.
+/// A law whose strain increment Δε₃₃ is the one under which σ₃₃ = 0 at the end of the step. The one that it is given is
+/// by how much it would exceed that of the thickness, nothing or, less what heat expands, below it: it does not count
+/// but for [`PlaneStressState::thickness_strain`].
 ///
 /// A step of a law with a potential is ΔV(Δε) = min over Δε₃₃ of that of the law: convex again, with the same
 /// gradient, because σ₃₃ = 0 before and after. Its tangent is the condensed one,
@@ -146,6 +147,7 @@ impl<L: BulkLaw> BulkLaw for InPlaneStress<L> {
 
     #[inline]
     fn respond(&self, old: &Self::State, d_eps: &Sym2) -> Response<Self::State> {
+        let given = d_eps[THICKNESS];
         let (d_eps, response) = self.completed(&old.material, d_eps);
         let tangent = match response.flows && self.0.is_symmetric() {
             true => symmetric(&self.complete(&old.material, &d_eps, &response.tangent)),
@@ -157,7 +159,7 @@ impl<L: BulkLaw> BulkLaw for InPlaneStress<L> {
             flows: response.flows,
             state: PlaneStressState {
                 material: response.state,
-                thickness_strain: old.thickness_strain + d_eps[THICKNESS],
+                thickness_strain: old.thickness_strain + (d_eps[THICKNESS] - given),
             },
         }
     }

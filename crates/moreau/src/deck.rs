@@ -49,8 +49,9 @@ mod units;
 pub use build::{Body, GroupFacts, Problem, Setup, Stage};
 pub use entries::{
     Action, Adjust, Analysis, AxesEntry, BlockEntry, ConditionEntry, ContactEntry, Deck,
-    DirectionsEntry, Expectation, FileEntry, FrictionEntry, Grid, GroupEntry, Hardening, HillEntry,
-    MaterialEntry, Method, Part, Shape, SoilEntry, SolverEntry, StepEntry, ToolEntry, Vtu,
+    DirectionsEntry, Expectation, FieldEntry, FileEntry, FrictionEntry, Grid, GroupEntry,
+    Hardening, HillEntry, InitialEntry, MaterialEntry, Method, Part, Shape, SoilEntry, SolverEntry,
+    StepEntry, ToolEntry, Vtu,
 };
 pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;

@@ -24,10 +24,7 @@ fn zero_modes<H: Analysis<D>, const D: usize>(
     let mut stiffness = DMatrix::<f64>::zeros(dofs, dofs);
     let size = D * mesh.cell_nodes(0).len();
     let rest = vec![0.0; dofs];
-    let rest = Motion {
-        from: &rest,
-        by: &rest,
-    };
+    let rest = Motion::new(&rest, &rest);
     block.evaluate(rest, Stiffness::Total(0.0), &mut |result| {
         let nodes = mesh.cell_nodes(result.cell);
         let dof = |k: usize| D * nodes[k / D] + k % D;

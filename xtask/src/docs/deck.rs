@@ -18,6 +18,7 @@ const TABLES: [(&str, &str); 32] = [
     ("kinematic", "kinematic = [{ … }]"),
     ("orthotropic", "orthotropic = { … }"),
     ("hill", "hill = { … }"),
+    ("initial", "[[initial]]"),
     ("tool", "[[tool]]"),
     ("plane", "plane = { … }"),
     ("cylinder", "cylinder = { … }"),

@@ -73,6 +73,9 @@ pub trait Block<const D: usize>: Send + Sync {
     /// Nodes of the k-th cell of the block.
     fn nodes(&self, k: usize) -> &[usize];
 
+    /// Quadrature points of a cell.
+    fn points_per_cell(&self) -> usize;
+
     /// Whether this process holds the k-th cell: the stiffness of the others is handed to nobody here, and their
     /// forces come apart from it.
     fn holds(&self, _k: usize) -> bool {
@@ -146,6 +149,11 @@ pub trait Block<const D: usize>: Send + Sync {
     /// Replaces the committed states by what [`Block::state`] gave; returns how many numbers that
     /// takes, and changes nothing if there are more or fewer.
     fn restore(&mut self, numbers: &[f64]) -> usize;
+}
+
+/// Quadrature points of a block.
+pub(crate) fn points_of<const D: usize>(block: &dyn Block<D>) -> usize {
+    block.cells().len() * block.points_per_cell()
 }
 
 /// Numbers of the stiffness of the cells that are evaluated before their results are handed on:
@@ -342,6 +350,10 @@ impl<C: CellLaw<D>, const D: usize> Block<D> for SolidBlock<C, D> {
             }
         }
         any
+    }
+
+    fn points_per_cell(&self) -> usize {
+        self.cells.points_per_cell()
     }
 
     fn is_symmetric(&self) -> bool {

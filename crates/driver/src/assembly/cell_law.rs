@@ -35,6 +35,64 @@ pub struct Motion<'a> {
     pub from: &'a [f64],
     /// Increments of the whole step.
     pub by: &'a [f64],
+    /// Increments of the strain in every direction that makes no stress, as of heat, at the quadrature points of
+    /// the block in the order of [`Block::points`](crate::Block::points); empty where there are none. Under large
+    /// strains they are logarithmic.
+    pub free: &'a [f64],
+}
+
+impl<'a> Motion<'a> {
+    /// A motion without free strains.
+    pub fn new(from: &'a [f64], by: &'a [f64]) -> Self {
+        Self {
+            from,
+            by,
+            free: &[],
+        }
+    }
+
+    /// Of a motion with the free strains of several blocks that of the first, which has so many points; what is left is
+    /// that of the others.
+    pub(crate) fn split_off(&mut self, points: usize) -> Self {
+        let (own, others) = self.free.split_at(points.min(self.free.len()));
+        self.free = others;
+        Self { free: own, ..*self }
+    }
+
+    /// Takes the free strains off the strains of the k-th cell.
+    pub(crate) fn relieve<const D: usize>(
+        &self,
+        (cells, k): (&dyn Cells<D>, usize),
+        strains: &mut [Sym2],
+    ) {
+        if self.free.is_empty() {
+            return;
+        }
+        for (g, strain) in strains.iter_mut().enumerate() {
+            let free = self.free_at((cells, k), g);
+            (0..3).for_each(|i| strain[i] -= free);
+        }
+    }
+
+    /// The free strain at a point of the k-th cell: its mean over the cell where the dilatation is one.
+    pub(crate) fn free_at<const D: usize>(
+        &self,
+        (cells, k): (&dyn Cells<D>, usize),
+        g: usize,
+    ) -> f64 {
+        let count = cells.points_per_cell();
+        let own = self.free.get(k * count..(k + 1) * count).unwrap_or(&[]);
+        if !cells.averages_dilatation() {
+            return own.get(g).copied().unwrap_or(0.0);
+        }
+        let (mut sum, mut volume) = (0.0, 0.0);
+        for (g, free) in own.iter().enumerate() {
+            let weight = cells.weight(k * count + g);
+            sum += weight * free;
+            volume += weight;
+        }
+        if volume > 0.0 { sum / volume } else { 0.0 }
+    }
 }
 
 /// Where a cell leaves what it does.

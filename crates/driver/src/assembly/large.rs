@@ -117,7 +117,13 @@ impl<L: BulkLaw> Large<L> {
         cell.points.clear();
         let mut pressure = 0.0;
         for g in 0..count {
-            let response = respond_large(&self.0, &old[g], &step[g], dilatation)?;
+            let free = match motion.free.is_empty() {
+                true => None,
+                false => Some(motion.free_at((cells, k), g)),
+            };
+            let own = free.map_or(step[g], |free| without(free, &step[g]));
+            let dilatation = dilatation.map(|d| d - 3.0 * free.unwrap_or(0.0));
+            let response = respond_large(&self.0, &old[g], &own, dilatation)?;
             let now = (Matrix3::identity() + step[g]) * before[g];
             let weight = cells.weight(k * count + g);
             pressure += weight * response.stress.trace() / 3.0;
@@ -361,6 +367,12 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Large<L> {
     fn frame(state: &Self::State) -> Option<Matrix3<f64>> {
         Some(state.frame)
     }
+}
+
+/// e⁻ᵃ (1 + h) − 1: of the gradient h of a step what an expansion by the logarithmic strain a in every direction
+/// leaves to stresses.
+fn without(a: f64, h: &Matrix3<f64>) -> Matrix3<f64> {
+    Matrix3::identity() * (-a).exp_m1() + h * (-a).exp()
 }
 
 /// a : ⅓ 1.

@@ -175,13 +175,16 @@ impl<const D: usize> PanelBlock<D> {
         cells.start * per_cell..cells.end * per_cell
     }
 
-    fn strains(&self, cells: &Range<usize>, d_u: &[f64], d_eps: &mut Vec<Sym2>) {
+    /// Strains of the cells of a panel by a motion.
+    fn strains(&self, cells: &Range<usize>, motion: Motion<'_>, d_eps: &mut Vec<Sym2>) {
         let per_cell = self.cells.points_per_cell();
         d_eps.resize(cells.len() * per_cell, Sym2::zeros());
         let of_cells = d_eps.par_chunks_mut(per_cell).enumerate();
-        of_cells
-            .with_min_len(GRAIN)
-            .for_each(|(k, d_eps)| self.cells.strain(cells.start + k, d_u, d_eps));
+        of_cells.with_min_len(GRAIN).for_each(|(k, d_eps)| {
+            let k = cells.start + k;
+            self.cells.strain(k, motion.by, d_eps);
+            motion.relieve((self.cells.as_ref(), k), d_eps);
+        });
     }
 
     /// Asks the law for the points of a panel, and looks at what it says; the tangents in `room` are made symmetric.
@@ -389,7 +392,7 @@ impl<const D: usize> Block<D> for PanelBlock<D> {
             room.force.resize(cells.len() * size, 0.0);
             // One entry a cell at least, so that cells stay aligned.
             room.stiffness.resize(cells.len() * entries.max(1), 0.0);
-            self.strains(&cells, motion.by, &mut room.d_eps);
+            self.strains(&cells, motion, &mut room.d_eps);
             if self.respond(&points, stiffness, &mut room).is_some() {
                 self.integrate((&cells, &points), stiffness, entries, &mut room);
             } else {
@@ -423,6 +426,10 @@ impl<const D: usize> Block<D> for PanelBlock<D> {
         kept.take()
     }
 
+    fn points_per_cell(&self) -> usize {
+        self.cells.points_per_cell()
+    }
+
     fn is_symmetric(&self) -> bool {
         self.law.is_symmetric()
     }
@@ -440,8 +447,8 @@ impl<const D: usize> Block<D> for PanelBlock<D> {
         for cells in self.panels() {
             let points = self.points_of(&cells);
             let numbers = points.start * self.numbers..points.end * self.numbers;
-            self.strains(&cells, motion.by, &mut d_eps);
-            self.strains(&cells, v, &mut rate);
+            self.strains(&cells, motion, &mut d_eps);
+            self.strains(&cells, Motion::new(motion.from, v), &mut rate);
             let mut stress = vec![Sym2::zeros(); points.len()];
             let mut tangent = vec![Sym4::zeros(); points.len()];
             let answered = respond(

@@ -43,6 +43,7 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Small<L> {
         let mut stress = [Sym2::zeros(); MAX_POINTS];
         let mut tangent = [Sym4::zeros(); MAX_POINTS];
         cells.strain(k, motion.by, &mut d_eps[..count]);
+        motion.relieve((cells, k), &mut d_eps[..count]);
         let mut flows = false;
         for g in 0..count {
             let response = law.respond(&old[g], &d_eps[g]);
@@ -83,6 +84,7 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Small<L> {
         let mut d_eps = [Sym2::zeros(); MAX_POINTS];
         let mut rate = [Sym2::zeros(); MAX_POINTS];
         cells.strain(k, motion.by, &mut d_eps[..count]);
+        motion.relieve((cells, k), &mut d_eps[..count]);
         cells.strain(k, v, &mut rate[..count]);
         for (g, rate) in rate[..count].iter_mut().enumerate() {
             *rate = self.0.lacking(&old[g], &d_eps[g]) * *rate;
@@ -98,6 +100,7 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Small<L> {
     ) -> Option<f64> {
         let mut d_eps = [Sym2::zeros(); MAX_POINTS];
         cells.strain(k, motion.by, &mut d_eps[..old.len()]);
+        motion.relieve((cells, k), &mut d_eps[..old.len()]);
         let mut sum = 0.0;
         for (g, (old, d_eps)) in old.iter().zip(&d_eps).enumerate() {
             // ΔV leaves out the linear part σ₀·Δε, [48]: it is what equilibrium held before.

@@ -3,6 +3,7 @@
 use crate::error::ModelError;
 use crate::model::amplitude::Amplitude;
 use crate::model::points::Turn;
+use crate::model::temperature::{Field, Temperature};
 use crate::vector::SparseVector;
 use crate::vector::directions::Directions;
 use crate::vector::subspace::Subspace;
@@ -84,6 +85,11 @@ pub(crate) enum Condition<const D: usize> {
         on: String,
         density: [f64; D],
     },
+    Temperature {
+        on: String,
+        change: Field<D>,
+        share: f64,
+    },
     Tool {
         name: String,
         displacement: [f64; D],
@@ -117,6 +123,7 @@ impl<const D: usize> Condition<D> {
             }
             | Self::Turn { angle: value, .. }
             | Self::Moment { moment: value, .. }
+            | Self::Temperature { share: value, .. }
             | Self::Push { force: value, .. } => *value *= share,
             Self::Force { force: vector, .. }
             | Self::Traction {
@@ -219,6 +226,21 @@ impl<const D: usize> Step<D> {
         self.with(Condition::BodyForce {
             on: on.into(),
             density,
+        })
+    }
+
+    /// Changes the temperature of a group of cells by so much since the body was free of stress \[K\], by position in
+    /// the undeformed body; it counts where [`Model::expansion`](crate::Model::expansion) says how much a kelvin expands.
+    /// Cells of which a step says nothing end it at the temperature at which they were free of stress.
+    pub fn temperature(
+        self,
+        on: &str,
+        change: impl Fn(&[f64; D]) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.with(Condition::Temperature {
+            on: on.into(),
+            change: Field::new(change),
+            share: 1.0,
         })
     }
 
@@ -355,6 +377,8 @@ pub struct Loading<const D: usize> {
     pub force: SparseVector,
     /// Pressures that follow their surface, under large strains \[MPa\]: on side s of cell c the entry 6c + s.
     pub pressure: SparseVector,
+    /// How much warmer the cells are than when they were free of stress \[K\].
+    pub temperature: Temperature,
     /// How far tools have turned \[rad\]: of tool k the components 3k, 3k + 1 and 3k + 2 of a vector along
     /// the axis, as long as the angle. Nothing of a tool that a moment turns.
     pub turn: SparseVector,
@@ -385,6 +409,7 @@ impl<const D: usize> Loading<D> {
             directions: end.directions.clone(),
             force: self.force.with(&end.force, mix),
             pressure: self.pressure.with(&end.pressure, mix),
+            temperature: self.temperature.with(&end.temperature, mix),
             turn: self.turn.with(&end.turn, mix),
             axle: end.axle.clone(),
         }
@@ -502,7 +527,8 @@ impl<const D: usize> Loading<D> {
     }
 
     /// Part of `previous` that this increment repeats: (this, previous) / (previous, previous),
-    /// taken over the prescribed motions, or over the forces if nothing is moved.
+    /// taken over the prescribed motions, over the forces if nothing is moved, or over the temperatures if nothing is
+    /// loaded.
     pub(crate) fn ratio(&self, previous: &Self) -> f64 {
         let motions = |l: &Self| -> Vec<f64> { l.displacement.values().copied().collect() };
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -520,6 +546,10 @@ impl<const D: usize> Loading<D> {
                 return new.inner(old) / loaded;
             }
         }
+        let heated = previous.temperature.inner(&previous.temperature);
+        if heated > 0.0 {
+            return self.temperature.inner(&previous.temperature) / heated;
+        }
         0.0
     }
 
@@ -534,6 +564,7 @@ impl<const D: usize> Loading<D> {
             directions: self.directions.clone(),
             force: self.force.with(&more.force, sum),
             pressure: self.pressure.with(&more.pressure, sum),
+            temperature: self.temperature.with(&more.temperature, sum),
             turn: self.turn.with(&more.turn, sum),
             axle: self.axle.clone(),
         }
@@ -550,6 +581,7 @@ impl<const D: usize> Loading<D> {
             directions: self.directions.clone(),
             force: self.force.with(&start.force, |b, a| b - a),
             pressure: self.pressure.with(&start.pressure, |b, a| b - a),
+            temperature: self.temperature.with(&start.temperature, |b, a| b - a),
             turn: self.turn.with(&start.turn, |b, a| b - a),
             axle: self.axle.clone(),
         }

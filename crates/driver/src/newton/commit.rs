@@ -51,14 +51,18 @@ impl<const D: usize> Driver<D> {
         let work = self.external_work((start, end), &d_u, &internal, &contact)
             + self.closing_work((start, end), &kinematics, &contacts, &d_u)
             + self.turning_work((start, end), &d_u, &contacts);
-        let (energies, plastic_fraction) = self.energies_after(work, &kinematics, &contacts);
+        let (mut energies, plastic_fraction) = self.energies_after(work, &kinematics, &contacts);
         all_finite(&energies, &certificate, &d_u)?;
+        let free = self.free_strains(end);
+        let at_start = self.work_on_free(&free, &self.state.displacement);
         for block in &mut self.blocks {
             block.commit();
         }
         let touches = |i: &usize| kinematics[*i].at_corner && contacts[*i].status != Status::Open;
         let corners = (0..contacts.len()).filter(touches).collect();
         let displacement = self.displacement_after(&d_u, end);
+        // Against stresses heat does work, by the trapezoidal rule, that comes back from what it moves.
+        energies.external_work -= 0.5 * (at_start + self.work_on_free(&free, &displacement));
         let moved = largest(displacement[..self.mesh_dofs()].iter().copied());
         let loading = self.loading_after(&d_u, end);
         let last = self.repeatable(d_u, end);

@@ -57,6 +57,7 @@ impl<const D: usize> Control<'_, D> {
         let grown = |f, q| f + (self.factor - self.start) * q;
         Loading {
             pressure: start.pressure.with(&self.grows.pressure, grown),
+            temperature: start.temperature.clone(),
             turn: start.turn.clone(),
             axle: start.axle.clone(),
             displacement: start.displacement.clone(),

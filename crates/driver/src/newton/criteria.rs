@@ -31,7 +31,7 @@ impl<const D: usize> Driver<D> {
     /// carries is a sum of them.
     pub(crate) fn force_scale(
         &self,
-        assembly: &Assembly,
+        (assembly, heated): (&Assembly, f64),
         end: &Loading<D>,
         contact: &SparseVector,
     ) -> f64 {
@@ -39,7 +39,7 @@ impl<const D: usize> Driver<D> {
         let given = end.force.iter().chain(contact.iter());
         let given = given.filter(|&(dof, _)| dof < nodes).map(|(_, f)| f);
         let internal = assembly.internal[..nodes].iter().copied();
-        largest(given.chain(internal).chain([assembly.pressed])).max(f64::MIN_POSITIVE)
+        largest(given.chain(internal).chain([assembly.pressed, heated])).max(f64::MIN_POSITIVE)
     }
 
     /// Out-of-balance force at which an increment is accepted \[N\]: the tolerance, or the rounding of

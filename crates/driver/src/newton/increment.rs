@@ -248,6 +248,7 @@ impl<const D: usize> Driver<D> {
         let missing = self.missing(start, end, &d_u);
         system.begin();
         let tangent = Stiffness::Plastic(1.0);
+        let heated = self.thermal_force(end);
         Increment {
             start,
             end: Cow::Borrowed(end),
@@ -256,6 +257,7 @@ impl<const D: usize> Driver<D> {
                 assembly: self.assemble(system, end, (&d_u, &missing), tangent),
                 d_u,
                 contact: self.state.contact.clone(),
+                heated,
                 part: 0.0,
             },
             missing,
@@ -330,7 +332,7 @@ impl<const D: usize> Driver<D> {
         }
         let residual = iterate.residual(end, system.prescribed());
         let largest = largest(residual.iter().copied());
-        let scale = self.force_scale(&iterate.assembly, end, &iterate.contact);
+        let scale = self.force_scale((&iterate.assembly, iterate.heated), end, &iterate.contact);
         if increment.counts.newton > 0 {
             increment.counts.residuals.push(largest);
         }

@@ -15,6 +15,8 @@ pub(crate) struct Iterate {
     pub(crate) assembly: Assembly,
     /// Contact forces \[N\].
     pub(crate) contact: SparseVector,
+    /// The largest force on a node if it were not to move while the temperature changes \[N\].
+    pub(crate) heated: f64,
     /// Part of the last Newton step that was taken: of a full one, which obeys the contact law, 1.
     pub(crate) part: f64,
 }

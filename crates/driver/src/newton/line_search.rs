@@ -116,7 +116,7 @@ impl<const D: usize> Driver<D> {
             false => Stiffness::None,
         };
         let assembly = self.assemble(system, end, (&d_u, &none), stiffness);
-        let scale = self.force_scale(&assembly, end, &step.contact);
+        let scale = self.force_scale((&assembly, line.from.heated), end, &step.contact);
         let before = line.residual(
             system,
             &line.from.assembly.internal,
@@ -142,6 +142,7 @@ impl<const D: usize> Driver<D> {
                 d_u,
                 assembly,
                 contact: step.contact.clone(),
+                heated: line.from.heated,
                 part: 1.0,
             };
             return 1.0;
@@ -157,6 +158,7 @@ impl<const D: usize> Driver<D> {
         *iterate = Iterate {
             assembly: self.assemble(system, end, (&d_u, &none), Stiffness::Plastic(1.0)),
             contact: line.contact(s),
+            heated: line.from.heated,
             d_u,
             part: s,
         };
@@ -228,7 +230,7 @@ impl<const D: usize> Driver<D> {
 mod tests {
     use super::*;
 
-    use crate::{Axis, Model, Settings, Step};
+    use crate::{Axis, Model, Motion, Settings, Step};
     use moreau_algebra::Interface;
     use moreau_laws::VonMises;
     use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
@@ -260,7 +262,7 @@ mod tests {
         let potentials = driver
             .blocks
             .iter()
-            .map(|b| b.potential(driver.motion(d_u)));
+            .map(|b| b.potential(Motion::new(&driver.state.displacement, d_u)));
         let stored: f64 = potentials.sum::<Option<f64>>().expect("a potential");
         stored - end.force.dot(d_u)
     }
@@ -316,6 +318,7 @@ mod tests {
             d_u: rest,
             assembly,
             contact: SparseVector::default(),
+            heated: 0.0,
             part: 0.0,
         };
         let step = NewtonStep {

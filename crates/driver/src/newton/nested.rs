@@ -97,7 +97,8 @@ impl<const D: usize> Driver<D> {
             self.solve_bulk(system, end, &uzawa.force, &mut increment)?;
             let response = self.response(system, end, &uzawa, &increment);
             let iterate = &increment.iterate;
-            let scale = self.force_scale(&iterate.assembly, end, &iterate.contact);
+            let scale =
+                self.force_scale((&iterate.assembly, iterate.heated), end, &iterate.contact);
             let residual = iterate.residual(end, system.prescribed());
             left = response.residual;
             increment.counts.contact += 1;
@@ -132,7 +133,8 @@ impl<const D: usize> Driver<D> {
             solver: "Uzawa around the nonlinear solve",
             iterations,
             residual: left,
-            tolerance: tolerance * self.force_scale(&iterate.assembly, end, &iterate.contact),
+            tolerance: tolerance
+                * self.force_scale((&iterate.assembly, iterate.heated), end, &iterate.contact),
         };
         let iteration = 0;
         Err(IncrementError::Contact { iteration, source })
@@ -210,7 +212,8 @@ impl<const D: usize> Driver<D> {
         loop {
             let iterate = &mut increment.iterate;
             let residual = iterate.residual(end, system.prescribed());
-            let scale = self.force_scale(&iterate.assembly, end, &iterate.contact);
+            let scale =
+                self.force_scale((&iterate.assembly, iterate.heated), end, &iterate.contact);
             let worst = largest(residual.iter().copied());
             let complete = increment.missing.is_zero();
             let accepted = self.accepted_residual(system, scale, &iterate.d_u);

@@ -9,7 +9,7 @@ use moreau_mesh::Pressed;
 use nalgebra::SVector;
 
 impl<const D: usize> Driver<D> {
-    /// [`System::assemble`] under displacement increments and the pressures of a loading.
+    /// [`System::assemble`] under displacement increments, and the pressures and temperatures of a loading.
     pub(crate) fn assemble(
         &mut self,
         system: &mut System,
@@ -17,9 +17,14 @@ impl<const D: usize> Driver<D> {
         (d_u, missing): (&[f64], &SparseVector),
         stiffness: Stiffness,
     ) -> Assembly {
-        let from = &self.state.displacement;
-        let motion = Motion { from, by: d_u };
+        let free = self.free_strains(loading);
+        let motion = Motion {
+            from: &self.state.displacement,
+            by: d_u,
+            free: &free,
+        };
         let mut assembly = system.assemble(&mut self.blocks, motion, missing, stiffness);
+        assembly.free = free;
         let part = match stiffness {
             Stiffness::None => 0.0,
             Stiffness::Total(part) | Stiffness::Plastic(part) => part,

@@ -1,6 +1,8 @@
 //! The step of a tangent that is not symmetric, by steps of the symmetric one that is factorised; not
 //! the steps themselves.
 
+use crate::assembly::block::points_of;
+use crate::assembly::cell_law::Motion;
 use crate::driver::Driver;
 use crate::linear::system::System;
 use crate::newton::iterate::Iterate;
@@ -101,7 +103,7 @@ impl<const D: usize> Driver<D> {
         step: &[f64],
         held: &Prescribed,
     ) -> bool {
-        let settled = |u: &mut Unsymmetric| u.settles(self.lacking(&now.d_u, step, held));
+        let settled = |u: &mut Unsymmetric| u.settles(self.lacking(now, step, held));
         unsymmetric.as_mut().is_none_or(settled)
     }
 
@@ -117,11 +119,17 @@ impl<const D: usize> Driver<D> {
         self.blocks.iter().all(|b| b.is_symmetric())
     }
 
-    /// A v at the displacement increments `d_u`, at every degree of freedom \[N\]; zero at those held.
-    fn lacking(&self, d_u: &[f64], v: &[f64], held: &Prescribed) -> Vec<f64> {
+    /// A v at an iterate, at every degree of freedom \[N\]; zero at those held.
+    fn lacking(&self, now: &Iterate, v: &[f64], held: &Prescribed) -> Vec<f64> {
         let mut forces = vec![0.0; v.len()];
+        let mut motion = Motion {
+            from: &self.state.displacement,
+            by: &now.d_u,
+            free: &now.assembly.free,
+        };
         for block in &self.blocks {
-            block.lacking(self.motion(d_u), v, &mut |nodes, force| {
+            let own = motion.split_off(points_of(block.as_ref()));
+            block.lacking(own, v, &mut |nodes, force| {
                 for (&a, force) in nodes.iter().zip(force.chunks_exact(D)) {
                     let at = forces[D * a..D * a + D].iter_mut();
                     at.zip(force).for_each(|(sum, f)| *sum += f);

@@ -54,7 +54,8 @@ impl<const D: usize> Driver<D> {
                         loading.push(node, share, density);
                     }
                 }
-                Condition::Tool { .. }
+                Condition::Temperature { .. }
+                | Condition::Tool { .. }
                 | Condition::Turn { .. }
                 | Condition::Push { .. }
                 | Condition::Moment { .. } => {}
@@ -72,7 +73,8 @@ impl<const D: usize> Driver<D> {
         }
         self.drive_turns(step, &mut moved, &mut loading)?;
         loading.displacement = moved;
-        loading.check(mesh, self.state.displacement.len())?;
+        loading.temperature = self.temperature(step)?;
+        self.check_loading(&loading)?;
         Ok(loading)
     }
 

@@ -203,6 +203,13 @@ impl<const D: usize> Ramp<D> {
             .any(|to| self.start.displacement != to.displacement || self.start.turn != to.turn)
     }
 
+    /// Whether the temperature of something changes.
+    fn heats(&self) -> bool {
+        let to = self.knots.iter().map(|(_, loading)| loading);
+        to.chain([&self.end])
+            .any(|to| self.start.temperature != to.temperature)
+    }
+
     /// Takes note of an increment from λ = `before`, and of the work that the loads of the whole step
     /// did in it.
     fn converged(&mut self, report: &IncrementReport, before: f64, work: f64) {
@@ -214,12 +221,12 @@ impl<const D: usize> Ramp<D> {
     }
 
     /// The load factor that the last two increments tend to, no less than what was reached; `None` where
-    /// nothing yields, or something is moved.
+    /// nothing yields, or something is moved or heated.
     fn estimated_limit(&self) -> Option<f64> {
         let [Some(last), Some(first)] = self.yielded else {
             return None;
         };
-        let straight = self.knots.is_empty() && !self.moves();
+        let straight = self.knots.is_empty() && !self.moves() && !self.heats();
         let limit = Yielded::limit(first, last).filter(|_| straight);
         limit.map(|limit| limit.max(self.done))
     }
@@ -295,11 +302,10 @@ impl<const D: usize> Driver<D> {
         watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<IncrementReport, IncrementError> {
         // One that was read may be of another model.
-        let dofs = self.state.displacement.len();
-        ramp.start.check(&self.mesh, dofs)?;
-        ramp.end.check(&self.mesh, dofs)?;
+        self.check_loading(&ramp.start)?;
+        self.check_loading(&ramp.end)?;
         for (_, loading) in &ramp.knots {
-            loading.check(&self.mesh, dofs)?;
+            self.check_loading(loading)?;
         }
         let (before, at_hand) = (ramp.clone(), self.at_hand());
         let outcome = self.attempts(ramp, watch);
@@ -396,7 +402,7 @@ impl<const D: usize> Driver<D> {
 
     /// The path of a step that moves nothing and whose loads grow by one factor, from after its first increment on.
     fn path(&self, ramp: &Ramp<D>) -> Option<Path> {
-        let moves = ramp.moves() || !ramp.knots.is_empty();
+        let moves = ramp.moves() || ramp.heats() || !ramp.knots.is_empty();
         let (last, before) = self.state.last.as_ref()?;
         let rest = vec![0.0; last.len()];
         let load = self.load(ramp);

@@ -2,7 +2,7 @@
 //! forces, whatever element, hypothesis and law.
 
 use moreau_driver::{Analysis, Block, Cells, Motion, SolidBlock, Stiffness};
-use moreau_laws::{BulkLaw, Elastic, VonMises};
+use moreau_laws::{BulkLaw, DruckerPrager, Elastic, ElasticDruckerPrager, VonMises};
 use moreau_mesh::{Axisymmetric, CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3};
 use nalgebra::DMatrix;
 
@@ -63,6 +63,12 @@ fn displacement<const D: usize>(mesh: &Mesh<D>, size: f64, phase: f64) -> Vec<f6
         .collect()
 }
 
+/// Free strains of about `size`, differently from point to point.
+fn free_strains<const D: usize>(block: &dyn Block<D>, size: f64) -> Vec<f64> {
+    let points = block.cells().len() * block.points_per_cell();
+    (0..points).map(|k| size * (k as f64).cos()).collect()
+}
+
 /// The cells of a mesh under its full rule and under that of its kind.
 fn rules<H: Analysis<D>, const D: usize>(
     mesh: &Mesh<D>,
@@ -118,7 +124,11 @@ fn obeys_small_strains<const D: usize>(mesh: &Mesh<D>, block: &mut dyn Block<D>)
     // From a plastic state on, with a step that loads some points and unloads others.
     let first = displacement(mesh, 4e-3, 0.0);
     let rest = vec![0.0; first.len()];
-    let by = |by| Motion { from: &rest, by };
+    let free = free_strains(block, 1e-3);
+    let by = |by| Motion {
+        free: &free,
+        ..Motion::new(&rest, by)
+    };
     evaluate(block, by(&first), Stiffness::None);
     block.commit();
     let d_u = displacement(mesh, 1.5e-3, 2.0);
@@ -136,8 +146,8 @@ fn obeys_small_strains<const D: usize>(mesh: &Mesh<D>, block: &mut dyn Block<D>)
             let mut v = d_u.clone();
             v[k] += side * h;
             let moved = Motion {
-                from: &rest,
-                by: &v,
+                free: &free,
+                ..Motion::new(&rest, &v)
             };
             block.potential(moved).expect("a potential")
         };
@@ -162,15 +172,16 @@ fn obeys_small_strains<const D: usize>(mesh: &Mesh<D>, block: &mut dyn Block<D>)
 fn obeys_large_strains<const D: usize>(mesh: &Mesh<D>, block: &mut dyn Block<D>) {
     let (before, by) = (displacement(mesh, 0.1, 0.0), displacement(mesh, 0.04, 2.0));
     let rest = vec![0.0; by.len()];
+    let free = free_strains(block, 0.02);
     let first = Motion {
-        from: &rest,
-        by: &before,
+        free: &free,
+        ..Motion::new(&rest, &before)
     };
     evaluate(block, first, Stiffness::None);
     block.commit();
     let motion = Motion {
-        from: &before,
-        by: &by,
+        free: &free,
+        ..Motion::new(&before, &by)
     };
     let at = evaluate(block, motion, Stiffness::Total(1.0));
     let size = at.stiffness.amax();
@@ -195,6 +206,44 @@ fn obeys_large_strains<const D: usize>(mesh: &Mesh<D>, block: &mut dyn Block<D>)
     assert_eq!(evaluate(block, motion, Stiffness::None).force, at.force);
 }
 
+/// What the tangents of a flow that is not associated lack is lacking under free strains too.
+#[test]
+fn flow_that_is_not_associated_lacks_what_its_slopes_tell() {
+    let cone = DruckerPrager::mohr_coulomb(5.0, 30.0, 5.0).expect("valid");
+    let law = ElasticDruckerPrager::new(1e4, 0.3, cone).expect("valid");
+    let mesh = plane(CellKind::Quad8);
+    for (members, cells) in rules(&mesh, PlaneStrain::default()) {
+        let block = &mut SolidBlock::new(members, cells, law);
+        let by = displacement(&mesh, 4e-3, 0.5);
+        let (rest, free) = (vec![0.0; by.len()], free_strains(block, 2e-3));
+        let motion = Motion {
+            free: &free,
+            ..Motion::new(&rest, &by)
+        };
+        let at = evaluate(block, motion, Stiffness::Total(1.0));
+        let (size, mut lacks) = (at.stiffness.amax(), 0.0f64);
+        for k in 0..by.len() {
+            let mut along = rest.clone();
+            along[k] = 1.0;
+            let mut column: Vec<f64> = at.stiffness.column(k).iter().copied().collect();
+            block.lacking(motion, &along, &mut |nodes, force| {
+                for (&a, own) in nodes.iter().zip(force.chunks_exact(2)) {
+                    (0..2).for_each(|i| column[2 * a + i] += own[i]);
+                    lacks = own.iter().fold(lacks, |m, f| m.max(f.abs()));
+                }
+            });
+            for (l, slope) in slopes(block, motion, k, 1e-8).into_iter().enumerate() {
+                let found = column[l];
+                assert!(
+                    (slope - found).abs() < 1e-5 * size,
+                    "{l} {k}: {slope} {found}"
+                );
+            }
+        }
+        assert!(lacks > 1e-3 * size);
+    }
+}
+
 /// Cells that stay elastic hand on no stiffness but the elastic one.
 #[test]
 fn flow_adds_to_the_stiffness_of_cells_that_flow() {
@@ -209,7 +258,7 @@ fn flow_adds_to_the_stiffness_of_cells_that_flow() {
     let rest = vec![0.0; d_u.len()];
     let entries = |block: &mut dyn Block<2>, kind, by: &[f64]| {
         let mut counts = Vec::new();
-        let motion = Motion { from: &rest, by };
+        let motion = Motion::new(&rest, by);
         let flows = block.evaluate(motion, kind, &mut |cell| counts.push(cell.stiffness.len()));
         (flows, counts)
     };

@@ -27,5 +27,6 @@ mod states;
 mod steps;
 mod surfaces;
 mod team;
+mod thermal;
 mod ties;
 mod tools;

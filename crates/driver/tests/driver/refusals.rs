@@ -102,9 +102,9 @@ fn a_saved_ramp_of_another_model_is_refused() {
     let ramp = driver.begin(&step, 2).expect("valid");
     let mut numbers = Vec::new();
     ramp.write(&mut numbers);
-    // Prescribed displacements by how many numbers, then no directions (two lists), no forces, no pressures, no turns and
-    // no axes of moments, then the same of the end.
-    let loading = 7 + numbers[0] as usize;
+    // Prescribed displacements by how many numbers, then no directions (two lists), no forces, no pressures, no
+    // temperatures, no turns and no axes of moments, then the same of the end.
+    let loading = 8 + numbers[0] as usize;
     assert_eq!(numbers[0], numbers[loading]);
     for first in [1, loading + 1] {
         let mut other = numbers.clone();

@@ -192,6 +192,7 @@ fn driver(team: Option<SharedTeam>, (seam, large, memory): (Seam, bool, Option<u
         .and_then(|m| m.material("firm", law(300.0).expect("valid"), Integration::Reduced))
         .and_then(|m| m.tool("punch", Plane::new([0.0, 4.0], [0.0, -1.0]).expect("valid")))
         .and_then(|m| m.contact("block.top", "punch", Coulomb::new(0.2).expect("valid")));
+    let model = model.and_then(|m| m.expansion("firm", 1e-5));
     let settings = Settings {
         seam,
         memory,
@@ -206,6 +207,7 @@ fn steps() -> [Step<2>; 2] {
         held("press").tool("punch", [0.0, -0.02]),
         held("drag")
             .pressure("block.left", 5.0)
+            .temperature("firm", |x| 50.0 * x[0])
             .displace_along("grip", [0.6, 0.8], 0.002)
             .tool("punch", [0.02, -0.02]),
     ]

@@ -2,7 +2,8 @@
 
 use super::{INPUT_ERROR, folder, read, report, say, tell};
 use crate::deck::{
-    Action, Deck, Given, MaterialEntry, Method, Problem, Setup, Shape, SoilEntry, open_with,
+    Action, Deck, FieldEntry, Given, MaterialEntry, Method, Problem, Setup, Shape, SoilEntry,
+    open_with,
 };
 use crate::driver::{RigidMotion, Stopper};
 use crate::numbers::{place, shown};
@@ -341,6 +342,8 @@ fn conditions(deck: &Deck) {
                 Action::Traction(t) => format!("traction {t:?} {stress}"),
                 Action::Force(f) => format!("force {f:?} {force}"),
                 Action::BodyForce(f) => format!("body force {f:?} {force}/{length}³"),
+                Action::Temperature(FieldEntry::Constant(t)) => format!("warmer by {t} K"),
+                Action::Temperature(FieldEntry::Formula(t)) => format!("warmer by {} K", t.trim()),
                 Action::Tool(motion, turn) => {
                     let motion = motion.iter().map(|u| format!("moves by {u:?} {length}"));
                     let turn = turn.iter().map(|turn| match deck.analysis.dimension() {

@@ -5,6 +5,7 @@ mod amplitudes;
 mod axes;
 mod conditions;
 mod groups;
+mod initial;
 mod laws;
 mod meshes;
 mod names;
@@ -163,6 +164,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     names::check_laws(deck, &given.laws, findings);
     let parts = parts::parts(deck, &given.laws, findings);
     let groups = groups?;
+    initial::check((deck, &given.laws), &groups, findings);
     if findings.errors() > 0 {
         return None;
     }
@@ -196,6 +198,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     penetrations::warn(deck, &driver, &gaps, findings);
     let supports = supports(&driver, (deck, &gaps), &stages, &groups, findings);
     conditions::doubts(deck, &gaps, findings);
+    conditions::heat(deck, &groups, findings);
     amplitudes::check(deck, findings);
     conditions::inner_surfaces(deck, &groups, findings);
     slips::warn(deck, &groups, surface, findings);
@@ -321,9 +324,26 @@ fn in_plane_stress(deck: &Deck, given: &Given, findings: &mut Findings) {
     }
 }
 
+/// A limit load is that of loads alone.
+fn heated_collapse(deck: &Deck, findings: &mut Findings) {
+    if !deck.steps.iter().any(|s| s.until_collapse) {
+        return;
+    }
+    let mut all = deck.steps.iter().flat_map(|s| &s.conditions);
+    if let Some(c) = all.find(|c| matches!(c.action, Action::Temperature(_))) {
+        findings.error_with(
+            &c.span,
+            "until = \"collapse\" with a temperature: what it strains changes no limit load",
+            "not with this",
+            "leave out the temperature",
+        );
+    }
+}
+
 /// What large strains do not go with.
 fn unfinished(deck: &Deck, given: &Given, findings: &mut Findings) {
     in_plane_stress(deck, given, findings);
+    heated_collapse(deck, findings);
     let Some(finite) = &deck.finite else { return };
     let mut refuse = |problem: &str, remedy: &str| {
         findings.error_with(

@@ -3,7 +3,8 @@
 use super::build::quadratures;
 use super::entries::{
     Action, Adjust, BlockEntry, ConditionEntry, ContactEntry, Deck, FileEntry, Grid, GroupEntry,
-    Hardening, MaterialEntry, Method, Part, Shape, StepEntry, ToolEntry, TurnEntry, Vtu,
+    Hardening, InitialEntry, MaterialEntry, Method, Part, Shape, StepEntry, ToolEntry, TurnEntry,
+    Vtu,
 };
 use super::finding::At;
 use crate::driver::Increments;
@@ -50,6 +51,9 @@ fn write(deck: &Deck, out: &mut String) -> fmt::Result {
     }
     for entry in &deck.materials {
         material(deck, entry, out)?;
+    }
+    for entry in &deck.initial {
+        initial(entry, out)?;
     }
     for entry in &deck.tools {
         tool(entry, out)?;
@@ -195,9 +199,29 @@ fn material(deck: &Deck, material: &MaterialEntry, out: &mut String) -> fmt::Res
         writeln!(out, "friction-angle = {:?}", soil.friction_angle.value)?;
         writeln!(out, "dilatancy-angle = {:?}", soil.dilatancy_angle.value)?;
     }
+    if let Some(expansion) = &material.expansion {
+        writeln!(out, "expansion = {:?}", expansion.value)?;
+    }
     let quadrature = deck.quadrature(material);
     if quadrature != BY_ELEMENT {
         writeln!(out, "quadrature = \"{quadrature}\"")?;
+    }
+    Ok(())
+}
+
+fn initial(entry: &InitialEntry, out: &mut String) -> fmt::Result {
+    writeln!(out, "\n[[initial]]\non = {}", text(&entry.on.value))?;
+    let components = ["xx", "yy", "zz", "xy", "yz", "xz"]
+        .iter()
+        .zip(&entry.stress);
+    let given =
+        components.filter_map(|(key, value)| Some(format!("{key} = {}", value.as_ref()?.value)));
+    let given: Vec<String> = given.collect();
+    if !given.is_empty() {
+        writeln!(out, "stress = {{ {} }}", given.join(", "))?;
+    }
+    if let Some(p) = &entry.p {
+        writeln!(out, "p = {}", p.value)?;
     }
     Ok(())
 }
@@ -321,6 +345,7 @@ fn lists(conditions: &[ConditionEntry], dimension: usize) -> [(&'static str, Vec
             Action::Traction(v) => (2, format!("{{ on = {on}, traction = {v:?} }}")),
             Action::Force(v) => (2, format!("{{ on = {on}, force = {v:?} }}")),
             Action::BodyForce(v) => (2, format!("{{ on = {on}, body-force = {v:?} }}")),
+            Action::Temperature(t) => (2, format!("{{ on = {on}, temperature = {t} }}")),
             Action::Tool(motion, turn) => {
                 let motion = motion.iter().map(|v| format!(", move = {v:?}"));
                 let turn = turn.iter();

@@ -1,6 +1,7 @@
 //! The typed content of a deck, each value with its place in the file; not yet a model.
 
 use super::finding::At;
+use super::formula;
 use super::units::Units;
 use crate::driver::Increments;
 use crate::mesh::{CellKind, Integration, Skin};
@@ -191,10 +192,25 @@ pub struct MaterialEntry {
     pub soil: Option<SoilEntry>,
     /// What it has of axes, if it has them; Young's modulus is then the largest of all.
     pub axes: Option<AxesEntry>,
+    /// Strain in every direction by a kelvin, if given.
+    pub expansion: Option<At<f64>>,
     /// Quadrature, if given.
     pub quadrature: Option<At<Integration>>,
     /// Kinds of the cells that have it; known when the mesh is.
     pub kinds: Vec<CellKind>,
+}
+
+/// `[[initial]]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InitialEntry {
+    /// Group of cells.
+    pub on: At<String>,
+    /// Components xx, yy, zz, xy and, of a solid, yz and xz of the stress; none of no stress.
+    pub stress: Vec<Option<At<FieldEntry>>>,
+    /// Equivalent plastic strain, if given.
+    pub p: Option<At<FieldEntry>>,
+    /// Place of the entry.
+    pub span: Range<usize>,
 }
 
 /// What a material with axes has of them.
@@ -470,12 +486,47 @@ pub enum Action {
     Force(Vec<f64>),
     /// Force per volume.
     BodyForce(Vec<f64>),
+    /// Change of the temperature.
+    Temperature(FieldEntry),
     /// Translation of a tool, and its turn; at least one of both.
     Tool(Option<Vec<f64>>, Option<TurnEntry>),
     /// Force on a tool, and its translation where no force drives it.
     Push(Vec<f64>, Option<Vec<f64>>),
     /// Moment on a tool.
     Moment(MomentEntry),
+}
+
+/// A number, or a formula of the position in the undeformed body.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FieldEntry {
+    /// The same everywhere.
+    Constant(f64),
+    /// Arithmetic with x, y and z.
+    Formula(String),
+}
+
+impl FieldEntry {
+    /// The number at a position.
+    pub fn at(&self, position: &[f64]) -> f64 {
+        let coordinate = |name: &str| {
+            let axis = ["x", "y", "z"].iter().position(|axis| *axis == name)?;
+            position.get(axis).copied()
+        };
+        match self {
+            Self::Constant(value) => *value,
+            // It was read before.
+            Self::Formula(text) => formula::value(text, &coordinate).unwrap_or(f64::NAN),
+        }
+    }
+}
+
+impl fmt::Display for FieldEntry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Constant(value) => write!(f, "{value:?}"),
+            Self::Formula(text) => write!(f, "\"={text}\""),
+        }
+    }
 }
 
 /// `[[step]]`.
@@ -582,6 +633,8 @@ pub struct Deck {
     pub mesh_understood: bool,
     /// Materials.
     pub materials: Vec<MaterialEntry>,
+    /// What bodies start with.
+    pub initial: Vec<InitialEntry>,
     /// Tools.
     pub tools: Vec<ToolEntry>,
     /// Names of all tools, also of those that were not understood.

@@ -1,4 +1,5 @@
-//! Formulas in place of numbers, `"= 2 * radius"`: arithmetic with the parameters of a deck; no functions.
+//! Formulas in place of numbers, `"= 2 * radius"`: arithmetic with the parameters of a deck, and with the position where
+//! a number may depend on it; no functions.
 
 /// What is wrong with a formula.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -17,6 +18,26 @@ pub(super) fn value(text: &str, named: &dyn Fn(&str) -> Option<f64>) -> Result<f
         None => Ok(value),
         Some(_) => Err(formula.expected("an operator or the end")),
     }
+}
+
+/// The text of a formula with the values of names in their place.
+pub(super) fn with_values(text: &str, named: &dyn Fn(&str) -> Option<f64>) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let belongs = |c: char| is_of_name(c) || c == '.';
+        let end = match belongs(first) {
+            true => rest.find(|c| !belongs(c)).unwrap_or(rest.len()),
+            false => first.len_utf8(),
+        };
+        let (word, after) = rest.split_at(end);
+        match named(word).filter(|_| first.is_alphabetic()) {
+            Some(value) => out.push_str(&format!("({value:?})")),
+            None => out.push_str(word),
+        }
+        rest = after;
+    }
+    out
 }
 
 /// What is left to read.
@@ -148,6 +169,13 @@ mod tests {
         ] {
             assert_eq!(of(text), Ok(expected), "{text}");
         }
+    }
+
+    #[test]
+    fn values_take_the_place_of_names() {
+        let named = |name: &str| (name == "e").then_some(-2.5e-5);
+        let text = with_values("2e-3*e + x.5 / (e)", &named);
+        assert_eq!(text, "2e-3*(-2.5e-5) + x.5 / ((-2.5e-5))");
     }
 
     #[test]

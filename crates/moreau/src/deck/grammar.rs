@@ -1,6 +1,7 @@
 //! The keys of a deck and what they mean: from text to entries; names are not looked up here.
 
 mod axes;
+mod initial;
 mod material;
 mod mesh;
 mod solver;
@@ -161,6 +162,8 @@ fn deck(root: &Table<'_>) -> Deck {
         .into_iter()
         .flat_map(|t| material::read(t, dimension))
         .collect();
+    let initial = root.tables("initial", "[[initial]]").into_iter();
+    let initial = initial.filter_map(|t| initial::read(t, analysis)).collect();
     if root.get("material").is_none() {
         missing(root, "[[material]]", "on, young and poisson");
     }
@@ -189,6 +192,7 @@ fn deck(root: &Table<'_>) -> Deck {
         groups: mesh.groups,
         mesh_understood,
         materials,
+        initial,
         tools,
         tool_names,
         contacts,

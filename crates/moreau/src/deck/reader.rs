@@ -1,8 +1,9 @@
 //! Reading tables and values of a deck, noting what is not as expected; it knows no key.
 
+use super::entries::FieldEntry;
 use super::finding::{At, Class, Findings, did_you_mean, one_of};
 use super::formula::{self, Mistake};
-use std::cell::{Ref, RefCell, RefMut};
+use std::cell::{Cell, Ref, RefCell, RefMut};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -69,10 +70,53 @@ impl Log {
 
     /// The value of a formula; what is wrong with it is noted.
     fn formula(&self, text: &str, what: &str, span: &Range<usize>) -> Option<f64> {
-        let value = match formula::value(text, &|name| self.parameter(name)) {
-            Ok(value) if value.is_finite() => return Some(value),
-            other => other,
+        match formula::value(text, &|name| self.parameter(name)) {
+            Ok(value) if value.is_finite() => Some(value),
+            other => self.mistaken((text, what), other, span),
+        }
+    }
+
+    /// A formula of the position with the values of parameters in their place; what is wrong with it is noted.
+    fn field(
+        &self,
+        text: &str,
+        what: &str,
+        axes: &'static [&'static str],
+        span: &Range<usize>,
+    ) -> Option<FieldEntry> {
+        let twice = axes.iter().find(|axis| self.parameter(axis).is_some());
+        if let Some(axis) = twice {
+            let message = format!(
+                "{what} is a formula of the position, and a parameter is called \"{axis}\""
+            );
+            let label = "call the parameter something else";
+            self.borrow_mut().error(span, message, label);
+            return None;
+        }
+        let place = |name: &str| axes.iter().position(|axis| *axis == name);
+        let depends = Cell::new(false);
+        let named = |name: &str| {
+            let here = place(name).map(|_| 1.0);
+            depends.set(depends.get() || here.is_some());
+            here.or_else(|| self.parameter(name))
         };
+        match formula::value(text, &named) {
+            Ok(_) if depends.get() => {
+                let text = formula::with_values(text, &|name| self.parameter(name));
+                Some(FieldEntry::Formula(text))
+            }
+            Ok(value) if value.is_finite() => Some(FieldEntry::Constant(value)),
+            other => self.mistaken((text, what), other, span),
+        }
+    }
+
+    /// Notes what is wrong with a formula.
+    fn mistaken<T>(
+        &self,
+        (text, what): (&str, &str),
+        value: Result<f64, Mistake>,
+        span: &Range<usize>,
+    ) -> Option<T> {
         let parameters = self.parameters.borrow();
         let (message, label) = match value {
             Ok(value) => (
@@ -325,6 +369,22 @@ pub(super) fn number(value: Value<'_>, what: &str, log: &Log) -> Option<At<f64>>
     match parsed.filter(|n| n.is_finite()) {
         Some(n) => Some(At::new(n, value.span())),
         None => wrong(value, what, "a finite number", log),
+    }
+}
+
+/// A number, or a formula of the position by its coordinates.
+pub(super) fn field(
+    value: Value<'_>,
+    what: &str,
+    dimension: usize,
+    log: &Log,
+) -> Option<FieldEntry> {
+    const AXES: &[&str] = &["x", "y", "z"];
+    match value.get_ref() {
+        DeValue::String(text) if text.starts_with('=') => {
+            log.field(&text[1..], what, &AXES[..dimension.min(3)], &value.span())
+        }
+        _ => Some(FieldEntry::Constant(number(value, what, log)?.value)),
     }
 }
 

@@ -2,7 +2,9 @@
 
 mod along;
 mod amplitudes;
+mod heat;
 mod includes;
+mod initial;
 mod keys;
 mod laws;
 mod meshes;

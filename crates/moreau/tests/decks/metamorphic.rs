@@ -114,6 +114,25 @@ fn numbers(table: &mut Table, change: &impl Fn(&str, f64) -> f64) {
     inside(table, "", change);
 }
 
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Changes all formulas of the position.
+fn formulas(table: &mut Table, change: &impl Fn(&str) -> String) {
+    fn walk(value: &mut Value, change: &impl Fn(&str) -> String) {
+        match value {
+            Value::String(text) => {
+                if let Some(formula) = text.strip_prefix('=') {
+                    *text = format!("= {}", change(formula));
+                }
+            }
+            Value::Array(items) => items.iter_mut().for_each(|item| walk(item, change)),
+            Value::Table(table) => table.iter_mut().for_each(|(_, v)| walk(v, change)),
+            _ => {}
+        }
+    }
+    table.iter_mut().for_each(|(_, value)| walk(value, change));
+}
+
 /// A history: names, units and rows.
 struct History {
     names: Vec<String>,

@@ -76,6 +76,10 @@ fn unknown_key_in_model(table: &str) -> Option<Vec<String>> {
             "300.0",
             "300.0\nkinematic = [{ modulus = 1, zzz = 1 }]",
         )],
+        "initial" => vec![with(
+            "[[contact]]",
+            "[[initial]]\non = \"block\"\np = 0\nzzz = 1\n[[contact]]",
+        )],
         "tool" => vec![with("[[contact]]", "zzz = 1\n[[contact]]")],
         "plane" => vec![with("normal = [0, 1]", "normal = [0, 1], zzz = 1")],
         "cylinder" => vec![

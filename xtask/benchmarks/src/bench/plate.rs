@@ -79,7 +79,9 @@ impl Obstacle<3> for Stamp {
 impl Stamp {
     /// One that reaches so far beyond the last line of nodes under it \[mm\].
     fn reaching(beyond: f64) -> Self {
-        Self { half: HALF + beyond }
+        Self {
+            half: HALF + beyond,
+        }
     }
 
     /// How far beside it a point is.

@@ -68,13 +68,27 @@ impl<const D: usize> SpreadBlock<D> {
 
     /// Sends an order with vectors to all others.
     fn ask(&self, order: &Parcel, vectors: &[&[f64]]) {
+        self.ask_with(order, vectors, &[]);
+    }
+
+    /// The same with numbers of the points of the block.
+    fn ask_with(&self, order: &Parcel, vectors: &[&[f64]], of_points: &[f64]) {
         for to in 1..self.team.size() {
             let mut parcel = order.clone();
             for v in vectors {
                 parcel = parcel.reals(&self.part(to, v));
             }
+            parcel = parcel.reals(&self.of_points(to, of_points));
             self.team.send(to, parcel.bytes());
         }
+    }
+
+    /// Of numbers of the points of the block those of the cells that a process holds.
+    fn of_points(&self, process: usize, numbers: &[f64]) -> Vec<f64> {
+        let cells = numbers.chunks_exact(self.points_per_cell());
+        let own = cells.zip(&self.process);
+        let own = own.filter(|&(_, &p)| p as usize == process);
+        own.flat_map(|(numbers, _)| numbers).copied().collect()
     }
 
     /// Answers of all others that are real numbers, in their order.
@@ -122,7 +136,12 @@ impl<const D: usize> Block<D> for SpreadBlock<D> {
         sink: &mut dyn FnMut(CellResult<'_>),
     ) -> bool {
         let order = self.order(ask::EVALUATE).reals(&packed(stiffness));
-        self.ask(&order, &[motion.from, motion.by]);
+        self.ask_with(&order, &[motion.from, motion.by], motion.free);
+        let free = self.of_points(0, motion.free);
+        let motion = Motion {
+            free: &free,
+            ..motion
+        };
         let mut forces = Vec::new();
         let held = &self.held;
         let mut flows = self.own.evaluate(motion, stiffness, &mut |cell| {
@@ -152,6 +171,10 @@ impl<const D: usize> Block<D> for SpreadBlock<D> {
         flows
     }
 
+    fn points_per_cell(&self) -> usize {
+        self.own.points_per_cell()
+    }
+
     fn is_symmetric(&self) -> bool {
         self.own.is_symmetric()
     }
@@ -164,7 +187,13 @@ impl<const D: usize> Block<D> for SpreadBlock<D> {
         if self.is_symmetric() {
             return;
         }
-        self.ask(&self.order(ask::LACKING), &[motion.from, motion.by, v]);
+        let order = self.order(ask::LACKING);
+        self.ask_with(&order, &[motion.from, motion.by, v], motion.free);
+        let free = self.of_points(0, motion.free);
+        let motion = Motion {
+            free: &free,
+            ..motion
+        };
         let mut forces = Vec::new();
         self.own
             .lacking(motion, v, &mut |_, force| forces.extend(force));
@@ -174,7 +203,13 @@ impl<const D: usize> Block<D> for SpreadBlock<D> {
     }
 
     fn potential(&self, motion: Motion<'_>) -> Option<f64> {
-        self.ask(&self.order(ask::POTENTIAL), &[motion.from, motion.by]);
+        let order = self.order(ask::POTENTIAL);
+        self.ask_with(&order, &[motion.from, motion.by], motion.free);
+        let free = self.of_points(0, motion.free);
+        let motion = Motion {
+            free: &free,
+            ..motion
+        };
         let own = self.own.potential(motion);
         let others = self.answers();
         let others = others.iter().map(|numbers| numbers.first().copied());

@@ -196,6 +196,7 @@ impl<const D: usize> Served<'_, D> {
                 let motion = Motion {
                     from: &from,
                     by: &by,
+                    free: &order.reals(),
                 };
                 let mut forces = Vec::new();
                 self.blocks[k].lacking(motion, &v, &mut |_, force| forces.extend(force));
@@ -206,6 +207,7 @@ impl<const D: usize> Served<'_, D> {
                 let motion = Motion {
                     from: &from,
                     by: &by,
+                    free: &order.reals(),
                 };
                 let potential = self.blocks[k].potential(motion);
                 self.answer_reals(&Vec::from_iter(potential));
@@ -255,6 +257,7 @@ impl<const D: usize> Served<'_, D> {
         let motion = Motion {
             from: &from,
             by: &by,
+            free: &order.reals(),
         };
         let mut forces = Vec::new();
         let entries = &mut self.entries;

@@ -1,7 +1,7 @@
 //! Stiffness and internal forces of a system, added up cell by cell; not what is done with them.
 
 use super::System;
-use crate::assembly::block::Block;
+use crate::assembly::block::{Block, points_of};
 use crate::assembly::cell_law::{Motion, Stiffness};
 use crate::assembly::scatter::{FIXED, prescribed_columns};
 use crate::assembly::turned::Turned;
@@ -16,6 +16,8 @@ pub(crate) struct Assembly {
     pub(crate) internal: Vec<f64>,
     /// The largest of those \[N\].
     pub(crate) pressed: f64,
+    /// Free strains of all points under which they are: [`Motion::free`].
+    pub(crate) free: Vec<f64>,
     /// K times the prescribed displacements that are still missing \[N\]; empty if none are.
     pub(crate) prescribed_load: Vec<f64>,
     /// Whether plastic strain grows anywhere.
@@ -41,7 +43,7 @@ impl System {
     pub(crate) fn assemble<const D: usize>(
         &mut self,
         blocks: &mut [Box<dyn Block<D>>],
-        motion: Motion<'_>,
+        mut motion: Motion<'_>,
         missing: &SparseVector,
         stiffness: Stiffness,
     ) -> Assembly {
@@ -73,7 +75,8 @@ impl System {
         let position = &self.position;
         let (pattern, values) = self.matrix.values_mut();
         for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
-            flows |= block.evaluate(motion, stiffness, &mut |cell| {
+            let own = motion.split_off(points_of(block.as_ref()));
+            flows |= block.evaluate(own, stiffness, &mut |cell| {
                 for (&a, force) in cell.nodes.iter().zip(cell.force.chunks_exact(D)) {
                     let at = internal[D * a..D * a + D].iter_mut();
                     at.zip(force).for_each(|(sum, f)| *sum += f);
@@ -105,6 +108,7 @@ impl System {
         Assembly {
             internal,
             pressed: 0.0,
+            free: Vec::new(),
             prescribed_load,
             flows,
             stiffness: with_stiffness,
@@ -129,19 +133,15 @@ impl System {
         let mut turned = Turned::of(&self.prescribed.directions);
         let (pattern, values) = self.matrix.values_mut();
         for (block, scatter) in blocks.iter_mut().zip(&self.scatter) {
-            block.evaluate(
-                Motion { from, by: &by },
-                Stiffness::Total(0.0),
-                &mut |cell| {
-                    let cell = turned.cell::<D>(cell);
-                    scatter.add::<D>(&cell, position, pattern, values);
-                    if keeps {
-                        prescribed_columns::<D>(&cell, position, &mut |unknown, prescribed, k| {
-                            all.push((unknown, prescribed, k));
-                        });
-                    }
-                },
-            );
+            block.evaluate(Motion::new(from, &by), Stiffness::Total(0.0), &mut |cell| {
+                let cell = turned.cell::<D>(cell);
+                scatter.add::<D>(&cell, position, pattern, values);
+                if keeps {
+                    prescribed_columns::<D>(&cell, position, &mut |unknown, prescribed, k| {
+                        all.push((unknown, prescribed, k));
+                    });
+                }
+            });
         }
         if keeps {
             self.matrix.keep();

@@ -200,10 +200,7 @@ fn the_stiffness_is_the_sum_of_those_of_the_cells() {
     let mut sum: DMatrix<f64> = DMatrix::zeros(dofs, dofs);
     for block in &mut driver.blocks {
         let rest = vec![0.0; dofs];
-        let rest = Motion {
-            from: &rest,
-            by: &rest,
-        };
+        let rest = Motion::new(&rest, &rest);
         block.evaluate(rest, Stiffness::Total(0.0), &mut |cell| {
             let own: Vec<usize> = cell
                 .nodes

@@ -1,6 +1,6 @@
 //! What a table over time does not go with: a step that has no end, and a jump at its beginning.
 
-use crate::deck::entries::{Action, ConditionEntry, Deck, StepEntry};
+use crate::deck::entries::{Action, ConditionEntry, Deck, FieldEntry, StepEntry};
 use crate::deck::finding::{Class, Findings};
 
 /// What a part of a condition acts as, and along which axis, or which unit vector.
@@ -124,6 +124,9 @@ fn parts(action: &Action) -> Vec<(Part, f64)> {
         Action::Traction(t) => vector("traction", t),
         Action::Force(f) => vector("force", f),
         Action::BodyForce(f) => vector("body force", f),
+        Action::Temperature(FieldEntry::Constant(t)) => vec![(("temperature", Way::Axis(0)), *t)],
+        // Not one number: what becomes of it is not compared.
+        Action::Temperature(FieldEntry::Formula(_)) => Vec::new(),
         Action::Tool(u, turn) => {
             let turn = turn.iter().map(|turn| ((TURN, Way::Axis(0)), turn.angle));
             motion(u).into_iter().chain(turn).collect()

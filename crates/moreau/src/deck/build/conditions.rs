@@ -2,7 +2,7 @@
 
 use super::Stage;
 use super::groups::Groups;
-use crate::deck::entries::{Action, Deck, TurnEntry};
+use crate::deck::entries::{Action, Deck, FieldEntry, TurnEntry};
 use crate::deck::finding::Findings;
 use crate::driver::{Axis, LeastGap, Step};
 use crate::mesh::Facet;
@@ -34,6 +34,10 @@ pub(super) fn stages<const D: usize>(deck: &Deck, groups: &Groups<D>) -> Vec<Sta
                 Action::Pressure(pressure) => step.pressure(on, *pressure),
                 Action::Traction(traction) => step.traction(on, fixed(traction)),
                 Action::BodyForce(density) => step.body_force(on, fixed(density)),
+                Action::Temperature(change) => {
+                    let change = change.clone();
+                    step.temperature(on, move |x| change.at(x))
+                }
                 Action::Tool(motion, turn) => {
                     let moved = motion.iter().fold(step, |s, u| s.tool(on, fixed(u)));
                     let turned = |s: Step<D>, turn: &TurnEntry| {
@@ -109,6 +113,8 @@ pub(super) fn doubts<const D: usize>(deck: &Deck, gaps: &[LeastGap<D>], findings
             Action::Move(components) => Some(components.iter().fold(0.0, |m, c| c.1.abs().max(m))),
             Action::Pressure(p) => Some(p.abs()),
             Action::Traction(v) | Action::Force(v) | Action::BodyForce(v) => Some(largest(v)),
+            Action::Temperature(FieldEntry::Constant(change)) => Some(change.abs()),
+            Action::Temperature(FieldEntry::Formula(_)) => Some(1.0),
             Action::Tool(motion, turn) => {
                 let moved = motion.as_ref().map_or(0.0, |u| largest(u));
                 Some(moved.max(turn.map_or(0.0, |t| t.angle.abs())))
@@ -138,8 +144,8 @@ pub(super) fn doubts<const D: usize>(deck: &Deck, gaps: &[LeastGap<D>], findings
             );
         }
     }
-    // What begins within something else is loaded by that, as a ring on its shaft.
-    let fits = gaps.iter().any(|g| g.inside > 0);
+    // What begins within something else is loaded by that, as a ring on its shaft; or it begins under a stress.
+    let fits = gaps.iter().any(|g| g.inside > 0) || !deck.initial.is_empty();
     if !fits && !all().any(|c| size(&c.action).is_some_and(|s| s > 0.0)) {
         let span = deck.steps.first().map_or(0..0, |s| s.name.span.clone());
         findings.warning(
@@ -147,6 +153,57 @@ pub(super) fn doubts<const D: usize>(deck: &Deck, gaps: &[LeastGap<D>], findings
             "nothing loads the model: no move, load or tool motion is other than zero",
             "no load",
         );
+    }
+}
+
+/// Temperatures that expand nothing, and expansions that no temperature reaches.
+pub(super) fn heat<const D: usize>(deck: &Deck, groups: &Groups<D>, findings: &mut Findings) {
+    let cells = |name: &str| groups.mesh.cell_group(name).unwrap_or_default();
+    let heated = deck.steps.iter().flat_map(|s| &s.conditions);
+    let heated: Vec<_> = heated
+        .filter(|c| matches!(c.action, Action::Temperature(_)))
+        .map(|c| &c.on)
+        .collect();
+    let expands = deck.materials.iter().filter(|m| m.expansion.is_some());
+    let expanding: HashSet<usize> = expands
+        .clone()
+        .flat_map(|m| cells(&m.on.value))
+        .copied()
+        .collect();
+    for on in &heated {
+        if !cells(&on.value).iter().any(|cell| expanding.contains(cell)) {
+            let message = format!(
+                "the temperature of \"{}\" strains nothing: no material there has an expansion",
+                on.value
+            );
+            findings.warning(
+                &on.span,
+                message,
+                "expansion = 1.2e-5 is that of steel per kelvin",
+            );
+        }
+    }
+    let warm: HashSet<usize> = heated
+        .iter()
+        .flat_map(|on| cells(&on.value))
+        .copied()
+        .collect();
+    for material in expands {
+        let at = material
+            .expansion
+            .as_ref()
+            .map_or(&material.on.span, |e| &e.span);
+        if !cells(&material.on.value)
+            .iter()
+            .any(|cell| warm.contains(cell))
+        {
+            let message = format!(
+                "the expansion of \"{}\" does nothing: no step gives it a temperature",
+                material.on.value
+            );
+            let label = "load = [{ on = …, temperature = … }]";
+            findings.warning(at, message, label);
+        }
     }
 }
 

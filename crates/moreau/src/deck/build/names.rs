@@ -68,6 +68,9 @@ fn used<const D: usize>(
         let on = &material.on;
         group(on, Needed::Cells, tools, groups, &mut used, findings);
     }
+    for entry in &deck.initial {
+        group(&entry.on, Needed::Cells, tools, groups, &mut used, findings);
+    }
     for contact in &deck.contacts {
         for on in &contact.parts {
             group(on, Needed::Facets, tools, groups, &mut used, findings);
@@ -103,7 +106,7 @@ fn needed(action: &Action) -> Option<Needed> {
         | Action::MoveAlong(..)
         | Action::Force(_) => Some(Needed::Nodes),
         Action::Pressure(_) | Action::Traction(_) => Some(Needed::Facets),
-        Action::BodyForce(_) => Some(Needed::Cells),
+        Action::BodyForce(_) | Action::Temperature(_) => Some(Needed::Cells),
     }
 }
 

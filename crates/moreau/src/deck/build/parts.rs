@@ -2,6 +2,7 @@
 //! libraries.
 
 use super::groups::HIDDEN;
+use super::initial;
 use super::laws::{Law, RECALLED, hardening};
 use crate::algebra::SharedTeam;
 use crate::contact::{Ball, ContactError, Cylinder, Obstacle, Plane, Polyline, Triangulated};
@@ -386,7 +387,10 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
             .map_err(|e| note(&entry.on.span, e.into()))
             .ok()?
         {
-            pieces.push((entry, law.clone(), name, rule));
+            let of_starts = initial::pieces(deck, &mut mesh, &name);
+            for (name, start) in of_starts.map_err(|e| note(&entry.on.span, e.into())).ok()? {
+                pieces.push((entry, law.clone(), (name, rule), start));
+            }
         }
     }
     let mut model = match deck.finite.is_some() {
@@ -396,17 +400,16 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
     if let Some(team) = team {
         model = model.on_team(team.clone());
     }
-    for (entry, law, name, rule) in pieces {
-        let added = match law {
-            Law::Elastic(law) => model.material(&name, law, rule),
-            Law::VonMises(law) => model.material(&name, law, rule),
-            Law::Chaboche(law) => model.material(&name, law, rule),
-            Law::DruckerPrager(law) => model.material(&name, law, rule),
-            Law::Orthotropic(law) => model.material(&name, law, rule),
-            Law::Hill(law) => model.material(&name, *law, rule),
-            Law::Given(law) => model.panel_material(&name, &law, rule),
-        };
-        model = added.map_err(|e| note(&entry.on.span, e)).ok()?;
+    for (entry, law, (name, rule), start) in pieces {
+        let added = initial::add(model, (&name, rule), law, start.as_ref());
+        let span = start.as_ref().map_or(&entry.on.span, |start| &start.span);
+        model = added.map_err(|e| note(span, e)).ok()?;
+    }
+    for entry in &deck.materials {
+        if let Some(expansion) = &entry.expansion {
+            let expands = model.expansion(&entry.on.value, expansion.value);
+            model = expands.map_err(|e| note(&expansion.span, e)).ok()?;
+        }
     }
     for tool in &deck.tools {
         let name = &tool.name.value;

@@ -27,6 +27,7 @@ pub(super) fn read(table: Table<'_>, dimension: usize) -> Vec<MaterialEntry> {
     let isotropic = isotropic(&table);
     let kinematic = kinematic(&table);
     let soil = soil(&table);
+    let expansion = table.number_if("expansion");
     let quadrature = table.choice_if("quadrature", &["reduced", "full", "b-bar"]);
     let quadrature = quadrature.map(|q| {
         let rule = match q.value {
@@ -56,6 +57,7 @@ pub(super) fn read(table: Table<'_>, dimension: usize) -> Vec<MaterialEntry> {
         kinematic: kinematic.clone(),
         soil: soil.clone(),
         axes: axes.clone(),
+        expansion: expansion.clone(),
         quadrature: quadrature.clone(),
         kinds: Vec::new(),
     };

@@ -179,7 +179,7 @@ fn shift(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
 }
 
 fn load(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
-    const KINDS: [&str; 4] = ["pressure", "traction", "force", "body-force"];
+    const KINDS: [&str; 5] = ["pressure", "traction", "force", "body-force", "temperature"];
     let log = table.log();
     let on = table.text("on");
     let given = table.given(&KINDS);
@@ -187,8 +187,9 @@ fn load(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
         log.borrow_mut().error(
             &table.span,
             format!(
-                "a load has {} of pressure, traction, force, body-force, expected one",
-                given.len()
+                "a load has {} of {}, expected one",
+                given.len(),
+                KINDS.join(", ")
             ),
             "one kind of load each",
         );
@@ -199,6 +200,7 @@ fn load(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
         "pressure" => Action::Pressure(reader::number(value, key, log)?.value),
         "traction" => Action::Traction(vector()?),
         "force" => Action::Force(vector()?),
+        "temperature" => Action::Temperature(reader::field(value, key, dimension, log)?),
         _ => Action::BodyForce(vector()?),
     };
     condition(on, action, table)

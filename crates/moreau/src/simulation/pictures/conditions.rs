@@ -1,7 +1,7 @@
 //! What a step of a deck does to its bodies, as marks on a picture before anything is computed: supports, motions,
 //! loads, contacts with their gaps; not the tools' outlines.
 
-use crate::deck::{Action, ConditionEntry, Deck, Setup, StepEntry};
+use crate::deck::{Action, ConditionEntry, Deck, FieldEntry, Setup, StepEntry};
 use crate::mesh::Mesh;
 use crate::numbers::shown;
 use crate::plot::Mark;
@@ -216,6 +216,19 @@ impl<'a, const D: usize> Scene<'a, D> {
                     _ => format!("{}/{}³", units.force(), units.length()),
                 };
                 self.arrows(&[(middle.into(), [0.0; D])], f, &unit, LOAD, marks);
+            }
+            Action::Temperature(change) => {
+                let said = match change {
+                    FieldEntry::Constant(t) => format!("warmer by {} K", shown(*t, DIGITS)),
+                    FieldEntry::Formula(text) => format!("warmer by {} K", text.trim()),
+                };
+                let nodes = self.mesh.node_group(on).unwrap_or_default();
+                let sum: SVector<f64, D> = nodes
+                    .iter()
+                    .map(|&a| SVector::from(self.mesh.nodes()[a]))
+                    .sum();
+                let middle = sum / nodes.len().max(1) as f64;
+                self.label(&[(middle.into(), [0.0; D])], said, LOAD, marks);
             }
             Action::Tool(way, turn) => {
                 let mut said = Vec::new();

@@ -157,6 +157,7 @@ fn a_mirror_and_a_shift_change_nothing() {
         };
         tools_moved(&mut mirror, horizontal);
         profiles_reversed(&mut mirror);
+        formulas(&mut mirror, &|text| text.replace('x', "(-x)"));
         let found = history(&mirror, &at, &format!("{name}-mirror"), false);
         // Moments and turns are about axes: those about the axis of the mirror stay.
         let turns = |column: &str| column.starts_with("moment.") || column.starts_with("turn.");
@@ -182,6 +183,13 @@ fn a_mirror_and_a_shift_change_nothing() {
             v + axis.filter(|_| place).map_or(0.0, |axis| by[axis])
         };
         tools_moved(&mut shifted, along);
+        formulas(&mut shifted, &|text| {
+            AXES.iter()
+                .zip(by)
+                .fold(text.to_owned(), |text, (axis, by)| {
+                    text.replace(axis, &format!("({axis} - {by:?})"))
+                })
+        });
         let found = history(&shifted, &at, &format!("{name}-shift"), false);
         same(&base, &found, &format!("{name}, shifted"), |_, _| 1.0);
     }
@@ -215,8 +223,6 @@ fn axes_exchanged(value: &mut Value, to: [usize; 3]) {
         _ => {}
     }
 }
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 fn axis(name: &str) -> Option<usize> {
     AXES.iter().position(|a| *a == name)

@@ -24,6 +24,9 @@ fn powers(keys: &str) -> (i32, i32) {
     match keys {
         _ if is(&["tresca", "tau-max", "cohesion", "modulus"]) => (0, 1),
         _ if is(&["recall", "friction-angle", "dilatancy-angle"]) => (0, 0),
+        // A kelvin is one everywhere.
+        _ if is(&["temperature", "expansion", "p"]) => (0, 0),
+        _ if is(&["stress"]) => (0, 1),
         _ if keys.ends_with("voce.1") => (0, 0),
         _ if is(&["normal", "axis", "friction", "poisson", "turn"]) => (0, 0),
         _ if keys.ends_with("swift.1") || keys.ends_with("swift.2") => (0, 0),
@@ -70,6 +73,13 @@ fn in_units(
         v * length.powi(l) * stress.powi(s)
     };
     numbers(&mut deck, &change);
+    // Of stresses, at positions.
+    formulas(&mut deck, &|text| {
+        let text = AXES.iter().fold(text.to_owned(), |text, axis| {
+            text.replace(axis, &format!("({axis} / {length:?})"))
+        });
+        format!("{stress:?} * ({text})")
+    });
     let name = format!("{name}-{units}");
     let found = history(&deck, &folder("docs/examples"), &name, false);
     let factor = move |_: &str, unit: &str| match unit {

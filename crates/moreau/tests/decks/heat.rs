@@ -1,0 +1,108 @@
+//! Temperatures and expansions of decks: formulas of the position, and what is wrong with them.
+
+use super::{DECK, open, says, shown};
+use moreau::deck::{Action, FieldEntry, Problem};
+
+const MOVE: &str = "move = [{ on = \"punch\", u = { y = -0.2 } }]";
+const YIELD: &str = "yield-stress = 300.0";
+
+/// The example with a load.
+fn load(text: &str) -> String {
+    let with = DECK.replace(YIELD, "yield-stress = 300.0\nexpansion = 1.2e-5");
+    with.replace(MOVE, &format!("{MOVE}\nload = [{{ {text} }}]"))
+}
+
+#[test]
+fn a_formula_of_the_position_is_evaluated_there() {
+    let text = load("on = \"block\", temperature = \"= t * (1 - x / 50) + y * 2\"");
+    let text = format!("{text}\n[parameters]\nt = \"= 2 * 50\"\n");
+    let (deck, problem, findings) = open(&text);
+    assert_eq!((findings.errors(), findings.warnings()), (0, 0));
+    let action =
+        |deck: &moreau::deck::Deck| match &deck.steps[0].conditions.last().expect("one").action {
+            Action::Temperature(field) => field.clone(),
+            other => panic!("{other:?}"),
+        };
+    let field = action(&deck);
+    assert_eq!(field.at(&[10.0, 3.0]), 86.0);
+    // Written out again it needs no parameters.
+    let resolved = deck.resolved();
+    let (again, _, findings) = open(&resolved);
+    assert_eq!(findings.errors(), 0, "{resolved}");
+    assert_eq!(action(&again).at(&[10.0, 3.0]), 86.0);
+    assert_eq!(again.resolved(), resolved);
+    assert_eq!(
+        again.materials[0].expansion.as_ref().map(|e| e.value),
+        Some(1.2e-5)
+    );
+
+    let Some(Problem::Plane(setup)) = problem else {
+        panic!("a plane problem")
+    };
+    let loading = setup.driver.loading(&setup.stages[0].step).expect("valid");
+    let points = setup.driver.points();
+    assert_eq!(loading.temperature.values().len(), points.len());
+    for (point, found) in points.iter().zip(loading.temperature.values()) {
+        let [x, y] = point.position;
+        assert!((found - 100.0 * (1.0 - x / 50.0) - 2.0 * y).abs() < 1e-12);
+    }
+    // A formula of parameters alone is a number.
+    let number = load("on = \"block\", temperature = \"= 2 * 50\"");
+    assert_eq!(action(&open(&number).0), FieldEntry::Constant(100.0));
+}
+
+#[test]
+fn what_is_wrong_with_temperatures_is_told() {
+    let with = |load: &str| format!("{MOVE}\nload = [{load}]");
+    for (load, words) in [
+        (
+            "{ on = \"block\", temperature = \"= z\" }",
+            ["no parameter is called \"z\"", "not in [parameters]"],
+        ),
+        (
+            "{ on = \"block\", temperature = \"= 2 x\" }",
+            ["a formula with \"x\"", "an operator or the end"],
+        ),
+        (
+            "{ on = \"block.top\", temperature = 10 }",
+            ["block.top", "cells"],
+        ),
+        (
+            "{ on = \"block\", temperature = \"= 1 / (x - x)\" }",
+            ["temperature of cell 0", "expected a finite number"],
+        ),
+        (
+            "{ on = \"block\", temperature = 1 }, { on = \"block\", temperature = 2 }",
+            ["has a temperature already", "groups must not overlap"],
+        ),
+    ] {
+        let out = super::flat(&shown(MOVE, &with(load)));
+        for word in words {
+            assert!(out.contains(word), "{load}: {word:?} in {out}");
+        }
+    }
+    let twice = load("on = \"block\", temperature = \"= x\"") + "\n[parameters]\nx = 1\n";
+    let (_, _, findings) = open(&twice);
+    let out = super::flat(&findings.render("deck.toml", &twice, false));
+    assert!(out.contains("a parameter is called \"x\""), "{out}");
+    let collapse = load("on = \"block\", temperature = 10")
+        .replace("increments = 20", "increments = 20\nuntil = \"collapse\"");
+    let (_, _, findings) = open(&collapse);
+    let out = super::flat(&findings.render("deck.toml", &collapse, false));
+    assert!(out.contains("changes no limit load"), "{out}");
+}
+
+#[test]
+fn heat_that_does_nothing_is_doubtful() {
+    let expansion = "yield-stress = 300.0\nexpansion = 1.2e-5";
+    let nothing = ["no step gives it a temperature"];
+    says(YIELD, expansion, "expansion", &nothing);
+    let heated = format!("{MOVE}\nload = [{{ on = \"block\", temperature = 10 }}]");
+    let nothing = ["no material there has an expansion"];
+    says(MOVE, &heated, "temperature", &nothing);
+    // Heat alone is a load.
+    let alone = load("on = \"block\", temperature = 10").replace(MOVE, "");
+    let (_, _, findings) = open(&alone);
+    let mut doubts = findings.iter().map(|f| f.message.as_str());
+    assert!(!doubts.any(|m| m.contains("nothing loads")));
+}
