@@ -43,6 +43,16 @@ pub trait Analysis<const D: usize>: Hypothesis<D> {
         cells: &[usize],
         integration: Integration,
     ) -> Option<Box<dyn Cells<D>>>;
+
+    /// Cells of the mesh, `members`, under a law at small or at `large` strains, with the state that every quadrature
+    /// point starts from by its position in the undeformed body \[mm\].
+    fn block<L: BulkLaw>(
+        members: Vec<usize>,
+        cells: Box<dyn Cells<D>>,
+        law: L,
+        large: bool,
+        state: &impl Fn(&[f64; D]) -> L::State,
+    ) -> Box<dyn Block<D>>;
 }
 
 fn cells<E, H, const D: usize, const N: usize>(
@@ -95,8 +105,34 @@ fn space<H: Hypothesis<3>>(
     }
 }
 
+/// A law as it is.
+fn solid<L: BulkLaw, const D: usize>(
+    members: Vec<usize>,
+    cells: Box<dyn Cells<D>>,
+    law: L,
+    large: bool,
+    state: &impl Fn(&[f64; D]) -> L::State,
+) -> Box<dyn Block<D>> {
+    match large {
+        true => Box::new(SolidBlock::large(members, cells, law).with_states(state)),
+        false => Box::new(SolidBlock::new(members, cells, law).with_states(state)),
+    }
+}
+
+/// A law in plane stress, which is not compiled where there is none; at small strains, as is checked before.
+fn plate<L: BulkLaw>(
+    members: Vec<usize>,
+    cells: Box<dyn Cells<2>>,
+    law: L,
+    _large: bool,
+    state: &impl Fn(&[f64; 2]) -> L::State,
+) -> Box<dyn Block<2>> {
+    let plate = SolidBlock::new(members, cells, InPlaneStress(law));
+    Box::new(plate.with_states(|x| state(x).into()))
+}
+
 macro_rules! analysis {
-    ($hypothesis:ty, $dimension:literal, $elements:ident) => {
+    ($hypothesis:ty, $dimension:literal, $elements:ident, $block:ident) => {
         impl Analysis<$dimension> for $hypothesis {
             fn cells(
                 &self,
@@ -107,14 +143,24 @@ macro_rules! analysis {
             ) -> Option<Box<dyn Cells<$dimension>>> {
                 $elements(self, mesh, kind, cells, integration)
             }
+
+            fn block<L: BulkLaw>(
+                members: Vec<usize>,
+                cells: Box<dyn Cells<$dimension>>,
+                law: L,
+                large: bool,
+                state: &impl Fn(&[f64; $dimension]) -> L::State,
+            ) -> Box<dyn Block<$dimension>> {
+                $block(members, cells, law, large, state)
+            }
         }
     };
 }
 
-analysis!(PlaneStrain, 2, plane);
-analysis!(PlaneStress, 2, plane);
-analysis!(Axisymmetric, 2, plane);
-analysis!(Solid, 3, space);
+analysis!(PlaneStrain, 2, plane, solid);
+analysis!(PlaneStress, 2, plane, plate);
+analysis!(Axisymmetric, 2, plane, solid);
+analysis!(Solid, 3, space, solid);
 
 /// What the driver still asks of the hypothesis once the blocks are built.
 pub(crate) trait Measure<const D: usize>: Send + Sync {
@@ -357,17 +403,8 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             let own = self.hypothesis.cells(&self.mesh, kind, &cells, integration);
             // A mesh of dimension D has no cells of another dimension.
             if let Some(own) = own {
-                let law = law.clone();
-                self.blocks.push(match (self.large, H::IS_PLANE_STRESS) {
-                    (true, _) => Box::new(SolidBlock::large(cells, own, law).with_states(&state)),
-                    (false, false) => {
-                        Box::new(SolidBlock::new(cells, own, law).with_states(&state))
-                    }
-                    (false, true) => {
-                        let plate = SolidBlock::new(cells, own, InPlaneStress(law));
-                        Box::new(plate.with_states(|x| state(x).into()))
-                    }
-                });
+                let block = H::block(cells, own, law.clone(), self.large, &state);
+                self.blocks.push(block);
             }
         }
         Ok(self)

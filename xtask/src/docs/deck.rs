@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// The tables of a deck in the order of the page: the name of the definition, and how a deck writes it.
-const TABLES: [(&str, &str); 32] = [
+const TABLES: [(&str, &str); 33] = [
     ("", "The deck"),
     ("mesh", "[mesh]"),
     ("part", "[[mesh.part]]"),
