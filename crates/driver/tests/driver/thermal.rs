@@ -480,3 +480,21 @@ fn what_is_no_temperature_is_refused() -> Fallible<()> {
     );
     Ok(())
 }
+
+/// Where the dilatation of a cell is a mean, its heat is one too: a clamped cell has one pressure.
+#[test]
+fn a_cell_of_one_dilatation_has_one_heat() -> Fallible<()> {
+    let mesh = block2("b", CellKind::Quad4, &[0.0, 1.0, 2.0], &[0.0, 1.0])?;
+    for large in [false, true] {
+        let rule = Integration::BBar;
+        let mut driver = bodies(mesh.clone(), PlaneStrain::default(), large, rule)?;
+        let held = Step::new("heat").fix("b", &[Axis::X, Axis::Y]);
+        driver.run(&held.temperature("b", |x| HEAT * x[0]), 1, |_, _| {})?;
+        for point in driver.points() {
+            let heat = HEAT * (point.position[0].floor() + 0.5);
+            let pressure = -YOUNG * ALPHA * heat / (1.0 - 2.0 * POISSON);
+            near(point.stress[0], pressure, 1e-8, "pressure");
+        }
+    }
+    Ok(())
+}
