@@ -46,7 +46,7 @@ pub trait Analysis<const D: usize>: Hypothesis<D> {
 
     /// Cells of the mesh, `members`, under a law at small or at `large` strains, with the state that every quadrature
     /// point starts from by its position in the undeformed body \[mm\].
-    fn block<L: BulkLaw>(
+    fn solid_block<L: BulkLaw>(
         members: Vec<usize>,
         cells: Box<dyn Cells<D>>,
         law: L,
@@ -144,7 +144,7 @@ macro_rules! analysis {
                 $elements(self, mesh, kind, cells, integration)
             }
 
-            fn block<L: BulkLaw>(
+            fn solid_block<L: BulkLaw>(
                 members: Vec<usize>,
                 cells: Box<dyn Cells<$dimension>>,
                 law: L,
@@ -403,7 +403,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             let own = self.hypothesis.cells(&self.mesh, kind, &cells, integration);
             // A mesh of dimension D has no cells of another dimension.
             if let Some(own) = own {
-                let block = H::block(cells, own, law.clone(), self.large, &state);
+                let block = H::solid_block(cells, own, law.clone(), self.large, &state);
                 self.blocks.push(block);
             }
         }
