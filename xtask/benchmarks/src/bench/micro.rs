@@ -85,10 +85,7 @@ pub(super) fn run() -> Result<bool, Box<dyn Error>> {
                 ("forces", Stiffness::None),
             ] {
                 let what = format!("cell quad8 of four points, {strains}, {state}: {what}");
-                let motion = Motion {
-                    from: &at_rest,
-                    by: &d_u,
-                };
+                let motion = Motion::new(&at_rest, &d_u);
                 time(&what, mesh.cell_count(), || {
                     block.evaluate(black_box(motion), kind, &mut |cell| {
                         black_box(cell.force);
