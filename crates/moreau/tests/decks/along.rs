@@ -60,7 +60,7 @@ fn what_contradicts_is_told_with_the_groups() {
         "along = [1, 1], u = -0.2 }, { on = \"block.left\", u = { y = 0.1 } }",
     ));
     for word in [
-        "along (0.70710677, 0.70710677)",
+        "along (0.707106781187, 0.707106781187)",
         "\"block.left\" and \"punch\"",
         "remove one",
     ] {
