@@ -6,7 +6,7 @@ use crate::coulomb::flux;
 use crate::samples::{normal, unit_tangent, vector};
 use approx::assert_relative_eq;
 use moreau_laws::{
-    AnisotropicCoulomb, Coulomb, Friction, LawError, LimitedCoulomb, Local, Status, Tresca,
+    AnisotropicCoulomb, Coulomb, Friction, LawError, LimitedCoulomb, Local, Status, Tie, Tresca,
 };
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -311,4 +311,30 @@ fn a_slip_that_is_rounding_has_no_direction() -> Result<(), LawError> {
         Ok(())
     });
     Ok(())
+}
+
+/// Of a tie: the natural map vanishes where u = 0, under any force, and is linear; nothing else has a finite b.
+fn tied<const D: usize>() {
+    let law = Friction::from(Tie);
+    let samples = (vector::<D>(1.0), vector::<D>(3.0), alpha());
+    for_all(&samples, |(u, t, alpha)| {
+        prop_assert_eq!(law.correct(&Local::zeros(), &t, alpha), t);
+        prop_assert_eq!(law.project(&t), t);
+        prop_assert_eq!(law.b(&Local::zeros(), &t), 0.0);
+        prop_assert_eq!(law.b(&u, &t), f64::INFINITY);
+        prop_assert_eq!(law.admissible(&u), Local::zeros());
+        prop_assert_eq!(law.status(&u, &t, alpha), Status::Tied);
+        let (force, displacement) = law.correct_jacobian(&u, &t, alpha);
+        let linear = force * t - displacement * u;
+        let left = (law.correct(&u, &t, alpha) - linear).norm();
+        prop_assert!(left <= 1e-14 * (t.norm() + alpha * u.norm()), "{}", left);
+        prop_assert!((t - linear).norm() >= 0.999 * alpha * u.norm() - 1e-14 * t.norm());
+        Ok(())
+    });
+}
+
+#[test]
+fn a_tie_holds_under_any_force() {
+    tied::<2>();
+    tied::<3>();
 }

@@ -153,6 +153,29 @@ fn a_sheet_yields_in_every_direction_as_hill_says() -> Fallible<()> {
     Ok(())
 }
 
+/// In shear between two of its axes a sheet yields at σ_y/√(2L), σ_y/√(2M) and σ_y/√(2N).
+#[test]
+fn a_sheet_yields_in_every_shear_as_hill_says() -> Fallible<()> {
+    let coefficients = [0.3, 0.4, 0.6, 1.1, 1.7, 2.9];
+    let steel = Elastic::new(YOUNG, 0.3)?;
+    let law = Hill::new(steel, HillCoefficients::new(coefficients)?, YIELD)?;
+    let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+    for ((i, j), c) in [((1, 2), 1.1), ((0, 2), 1.7), ((0, 1), 2.9f64)] {
+        let both = axes[i] * axes[j].transpose();
+        let response = law.respond(
+            &law.initial(),
+            &(0.01 * from_matrix(&(both + both.transpose()))),
+        );
+        let found = to_matrix(&response.stress)[(i, j)];
+        let expected = YIELD / (2.0 * c).sqrt();
+        assert!(
+            (found / expected - 1.0).abs() < 1e-12,
+            "{i}{j}: {found} {expected}"
+        );
+    }
+    Ok(())
+}
+
 /// Coefficients from Lankford's ratios give these back.
 #[test]
 fn lankfords_ratios_come_back() -> Fallible<()> {

@@ -151,6 +151,51 @@ fn sheets_yield_on_the_ellipse_of_von_mises() -> Result<(), LawError> {
     Ok(())
 }
 
+/// σ_Y ε̇_eq of a sheet, with ε̇₃₃ = −(ε̇₁₁ + ε̇₂₂): D = 2 σ_Y/√3 √(ε̇₁₁² + ε̇₁₁ ε̇₂₂ + ε̇₂₂² + ε̇₁₂²), whatever ε̇₃₃ is given.
+#[test]
+fn the_power_of_flow_is_that_of_a_sheet() -> Result<(), LawError> {
+    let law = InPlaneStress(perfect()?);
+    for k in 0..50 {
+        let (a, b) = (0.13 * f64::from(k), 0.37 * f64::from(k));
+        let [x, y, xy] = [a.cos() * b.cos(), a.sin() * b.cos(), b.sin()];
+        let expected = 2.0 * YIELD / 3f64.sqrt() * (x * x + x * y + y * y + xy * xy).sqrt();
+        for given in [0.0, 0.7, -(x + y)] {
+            let rate = Sym2::from([x, y, given, 0.0, 0.0, 2f64.sqrt() * xy]);
+            let power = law.flow_power(&law.initial(), &rate);
+            let found = power.map_or(f64::NAN, |power| power.total);
+            assert!(
+                (found / expected - 1.0).abs() <= 1e-12,
+                "{k}: {found} {expected}"
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Recall makes the tangent unsymmetric: with the part that it does without it is the derivative of the stress.
+#[test]
+fn the_skew_part_of_a_condensed_tangent_is_all_that_it_leaves_out() -> Result<(), LawError> {
+    let law = InPlaneStress(perfect()?.with_recall([(6e4, 400.0), (5e3, 40.0)])?);
+    let strained = |strain: [f64; 3]| {
+        let [x, y, xy] = strain.map(|e| e * STRAIN);
+        Sym2::from([x, y, 0.0, 0.0, 0.0, xy])
+    };
+    let old = law.respond(&law.initial(), &strained([3.0, -1.0, 2.0]));
+    let d_eps = strained([-1.0, 4.0, 3.0]);
+    let stress = |d_eps: Sym2| law.respond(&old.state, &d_eps).stress;
+    let response = law.respond(&old.state, &d_eps);
+    let skew = law.skew(&old.state, &d_eps);
+    assert!(response.flows && skew.norm() > 1e-3 * YOUNG, "{skew}");
+    for k in [0, 1, 5] {
+        let mut step = Sym2::zeros();
+        step[k] = 1e-4 * STRAIN;
+        let slope = (stress(d_eps + step) - stress(d_eps - step)) / (2e-4 * STRAIN);
+        let column = (response.tangent + skew).column(k) - slope;
+        assert!(column.norm() <= 1e-6 * YOUNG, "{k}: {column}");
+    }
+    Ok(())
+}
+
 /// Steps of a hundred thousand strains at yield, and none, and what is no number.
 #[test]
 fn no_strain_leaves_a_stress_through_the_thickness() -> Result<(), Violation> {
