@@ -238,12 +238,17 @@ fn a_turned_block_answers_by_every_linear_solver() {
         ..case(steel())
     };
     let (plain, reports) = pressed(&rough, PlaneStrain::default(), false, Settings::default());
-    let small = Settings {
+    let small = || Settings {
         memory: Some(8 * plain.factor_entries() as u64 - 8),
         ..Settings::default()
     };
-    let (coarse, others) = pressed(&rough, PlaneStrain::default(), true, small);
+    let (coarse, others) = pressed(&rough, PlaneStrain::default(), true, small());
     assert!(others.iter().all(|r| r.linear_iterations > 0));
+    // The coarse space is turned as well: it takes no more iterations.
+    let (_, straight) = pressed(&rough, PlaneStrain::default(), false, small());
+    let count = |r: &[IncrementReport]| r.iter().map(|r| r.linear_iterations).sum::<usize>();
+    let [straight, turned] = [count(&straight), count(&others)];
+    assert!(10 * turned <= 11 * straight, "{turned} after {straight}");
     let exact = |r: &[IncrementReport]| {
         let mut told = r.to_vec();
         told.iter_mut()

@@ -104,6 +104,58 @@ fn each_condition_has_its_own() {
     );
 }
 
+/// Two loads of a block that is held like a drawer: at the end of every increment each is what its own rows say then,
+/// between them too, and from a share on that is not none.
+#[test]
+fn every_load_is_that_of_its_own_rows() {
+    let lines = uniform(0.0, 10.0, 2);
+    let mesh = block2("block", CellKind::Quad8, &lines, &lines).expect("valid");
+    let steel = VonMises::new(210e3, 0.3, 300.0).expect("valid");
+    let model =
+        Model::new(mesh, PlaneStrain::default()).material("block", steel, Integration::Reduced);
+    let mut driver = Driver::new(model.expect("valid"), Settings::default()).expect("valid");
+    let held = |name: &str| {
+        Step::new(name)
+            .fix("block.left", &[Axis::X])
+            .fix("block.bottom", &[Axis::Y])
+    };
+    driver
+        .run(&held("start").pressure("block.top", 10.0), 1, |_, _| {})
+        .expect("linear");
+    let both = held("both")
+        .pressure("block.top", 10.0)
+        .over(1, &[[0.0, 1.0], [0.5, 2.0], [1.0, 0.5]])
+        .traction("block.right", [5.0, 0.0])
+        .over(1, &[[0.0, 0.0], [0.25, 4.0], [0.75, -2.0], [1.0, 1.0]]);
+    let expected = [
+        [1.25, 2.0],
+        [1.5, 4.0],
+        [1.75, 2.5],
+        [2.0, 1.0],
+        [1.625, -0.5],
+        [1.25, -2.0],
+        [0.875, -0.5],
+        [0.5, 1.0],
+    ];
+    let mut found = Vec::new();
+    driver
+        .run(&both, 8, |driver, _| {
+            let force = |group: &str| driver.reaction(group).expect("exists");
+            found.push([
+                force("block.bottom")[1] / 100.0,
+                -force("block.left")[0] / 50.0,
+            ]);
+        })
+        .expect("linear");
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(&expected) {
+        let off = (found[0] - expected[0])
+            .abs()
+            .max((found[1] - expected[1]).abs());
+        assert!(off < 1e-9, "{found:?} {expected:?}");
+    }
+}
+
 #[test]
 fn rows_between_the_ends_of_increments_are_met() {
     let mut driver = block();

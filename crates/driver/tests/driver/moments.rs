@@ -1,6 +1,6 @@
 //! Tools turned by a moment: the same states as tools that turn as told, free rolls, and what no friction carries.
 
-use moreau_contact::{Ball, Plane};
+use moreau_contact::{Ball, Plane, Polyline};
 use moreau_driver::{
     Analysis, Axis, Driver, IncrementError, IncrementReport, Model, ModelError, Numbers, Saved,
     Seam, Settings, Step,
@@ -388,6 +388,40 @@ fn a_flap_is_pressed_by_its_moment() {
             ),
             "{lifted:?}"
         );
+    }
+}
+
+/// A flap with a sharp tip at a node, turned by a moment: at the corner too the moment is that of the contact force.
+#[test]
+fn a_flap_presses_with_its_tip() {
+    let (x, y) = (uniform(-4.0, 4.0, 8), uniform(0.0, 4.0, 4));
+    let make = |large: bool| {
+        let mesh = block2("block", CellKind::Quad4, &x, &y).expect("valid");
+        let model = match large {
+            true => Model::with_large_strains(mesh, PlaneStrain::default()),
+            false => Model::new(mesh, PlaneStrain::default()),
+        };
+        let tip = Polyline::new(&[[10.0, 9.0], [0.0, 4.0], [-10.0, 9.0]]).expect("valid");
+        let model = model
+            .material("block", steel(1e6), Integration::Full)
+            .and_then(|m| m.tool("roll", tip)?.reference([-8.0, 4.0]))
+            .and_then(|m| m.contact("block.top", "roll", Coulomb::new(0.3).expect("valid")))
+            .expect("valid");
+        Driver::new(model, Settings::default()).expect("valid")
+    };
+    let moment = -4e3;
+    for large in [false, true] {
+        let mut driver = make(large);
+        let press = held("press", 0.0).moment("roll", Z, moment);
+        let reports = run(&mut driver, &press, 2);
+        assert!(!reports[1].corners.is_empty(), "{reports:?}");
+        let [carried, turn] = about(&driver, "roll", Z);
+        assert!(
+            (carried / moment - 1.0).abs() < 1e-9 && turn < 0.0,
+            "{carried} {turn}"
+        );
+        let force = driver.tool_force("roll").expect("exists");
+        assert!((force[1] * 8.0 / moment - 1.0).abs() < 5e-3, "{force}");
     }
 }
 

@@ -2,7 +2,8 @@
 
 use moreau_contact::{ContactSolver, GaussSeidel, Penalty, Plane};
 use moreau_driver::{
-    Analysis, Axis, Driver, Model, ModelError, Numbers, Saved, Seam, Settings, Step,
+    Analysis, Axis, Driver, IncrementReport, Model, ModelError, Numbers, Saved, Seam, Settings,
+    Step,
 };
 use moreau_laws::{Coulomb, Isotropic, Status, VonMises};
 use moreau_mesh::{Axisymmetric, CellKind, Mesh, PlaneStrain, Solid, block2, block3, uniform};
@@ -319,6 +320,18 @@ fn a_rotation_leaves_no_stress_also_across_a_distance() {
             let turned = SVector::from([-y - x, x - y]);
             assert!((driver.displacement(a) - turned).norm() < 1e-10);
         }
+        // The top looks along −x now: what pulls it there is normal to the tie.
+        let mut pull = Step::new("pull").traction("upper.top", [-100.0, 0.0]);
+        for &a in &held {
+            let [x, y] = places[a];
+            let group = format!("n{a}");
+            pull = (pull.displace(&group, Axis::X, -y - x)).displace(&group, Axis::Y, x - y);
+        }
+        driver.run(&pull, 1, |_, _| {}).expect("converges");
+        let sum = |k: usize| driver.contacts().iter().map(|c| c.t[k]).sum::<f64>();
+        let [normal, shear] = [sum(0), sum(1)];
+        assert!((normal / -600.0 - 1.0).abs() < 1e-2, "{apart}: {normal}");
+        assert!(shear.abs() < 6.0, "{apart}: {shear}");
     }
 }
 
@@ -418,6 +431,64 @@ fn a_tie_under_a_tool_is_the_same_by_every_way() {
     }
     let mut refused = pressed(Seam::Condensed, Some(Box::new(GaussSeidel::default())));
     assert!(refused.run(&press(), 4, |_, _| {}).is_err());
+}
+
+/// What [`pressed`] and [`press`] are, computed in units of so many millimetres and megapascals; its reports, and its
+/// displacements and forces in millimetres and newtons.
+fn in_units(seam: Seam, [length, stress]: [f64; 2]) -> (Vec<IncrementReport>, [Vec<f64>; 2]) {
+    let kind = CellKind::Quad8;
+    let mesh = plane(kind, [8, 3], 0.0).map(|x| x.map(|x| x / length));
+    let hardening = Isotropic::linear(2000.0 / stress).expect("valid");
+    let law = VonMises::new(210e3 / stress, 0.3, 300.0 / stress).expect("valid");
+    let model = model(
+        mesh.expect("valid"),
+        PlaneStrain::new(1.0 / length).expect("valid"),
+        (kind, &law.with_hardening(hardening), false),
+        &["upper", "lower"],
+    );
+    let die = Plane::new([0.0, 5.0 / length], [0.05, -1.0]).expect("valid");
+    let model = (model.tool("die", die).expect("new"))
+        .contact("upper.top", "die", Coulomb::new(0.2).expect("valid"))
+        .and_then(|m| m.tie("upper.bottom", "lower.top"));
+    let mut driver = Driver::new(model.expect("valid"), settings(seam)).expect("valid");
+    let step = Step::new("press")
+        .fix("lower.bottom", &[Axis::X, Axis::Y])
+        .tool("die", [0.01, -0.03].map(|u| u / length));
+    let reports = driver.run(&step, 4, |_, _| {}).expect("converges");
+    let force = stress * length * length;
+    let moved = driver.displacements().iter().map(|u| u * length);
+    let forces = driver
+        .contacts()
+        .iter()
+        .flat_map(|c| [0, 1].map(|i| c.force[i] * force));
+    let numbers = [moved.collect(), forces.collect()];
+    (reports, numbers)
+}
+
+/// Powers of two do not even round: ties know no length and no stress of their own. In the factor of the stiffness what a
+/// first guess of the forces rounds off is left of them, and no iteration more.
+#[test]
+fn units_do_not_matter_to_a_tie() {
+    for (seam, within) in [(Seam::Condensed, 0.0), (Seam::Tied, 1e-12)] {
+        let (reports, [moved, forces]) = in_units(seam, [1.0, 1.0]);
+        assert!(reports.iter().any(|r| r.plastic_fraction > 0.0));
+        for units in [[10, -20], [-10, 0], [20, 0], [0, 40]] {
+            let (others, found) = in_units(seam, units.map(|e| 2f64.powi(e)));
+            for (a, b) in reports.iter().zip(&others) {
+                let counts = |r: &IncrementReport| (r.newton_iterations, r.contact_iterations);
+                assert_eq!(counts(a), counts(b), "{seam:?} {units:?}");
+            }
+            for (numbers, found) in [&moved, &forces].into_iter().zip(&found) {
+                let size = numbers.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+                let pairs = numbers.iter().zip(found).map(|(a, b)| (a - b).abs());
+                let off = pairs.fold(0.0, f64::max);
+                assert!(
+                    off <= within * size,
+                    "{seam:?} {units:?}: {off:e} of {size:e}"
+                );
+            }
+        }
+    }
 }
 
 #[test]
@@ -600,11 +671,24 @@ fn what_cannot_be_tied_is_refused() {
         ),
         "{away:?}"
     );
-    for (surface, to) in [("upper.bottom", "lower.top"), ("lower.top", "upper.bottom")] {
+    // Up to a quarter of the longer facet, of 2 mm.
+    assert!(make(0.499).tie("upper.bottom", "lower.top").is_ok());
+    let apart = make(0.501).tie("upper.bottom", "lower.top").err();
+    assert!(
+        matches!(apart, Some(ModelError::TiedApart { .. })),
+        "{apart:?}"
+    );
+    for (surface, to, group) in [
+        ("upper.bottom", "lower.top", "upper.bottom"),
+        ("lower.top", "upper.bottom", "lower.top"),
+        ("upper.bottom", "lower.bottom", "upper.bottom"),
+        ("lower.top", "upper.top", "lower.top"),
+        ("lower.bottom", "upper.bottom", "upper.bottom"),
+    ] {
         let twice = make(0.0).tie("upper.bottom", "lower.top").expect("valid");
         let twice = twice.tie(surface, to).err();
         assert!(
-            matches!(twice, Some(ModelError::TiedTwice { .. })),
+            matches!(&twice, Some(ModelError::TiedTwice { group: g, .. }) if g == group),
             "{twice:?}"
         );
     }
@@ -615,4 +699,95 @@ fn what_cannot_be_tied_is_refused() {
             .to_string()
             .contains("upper.bottom")
     );
+}
+
+/// Of a surface that reaches beyond the body opposite: its nodes there are free, carry nothing, and are no points of the tie.
+#[test]
+fn nodes_with_nothing_opposite_are_free() {
+    let kind = CellKind::Quad8;
+    let block = |name: &str, end: f64, cells: usize, y: [f64; 2]| {
+        let (x, y) = (uniform(0.0, end, cells), uniform(y[0], y[1], 2));
+        block2(name, kind, &x, &y).expect("valid")
+    };
+    let whole = [0.5, 1.0, 1.5, 2.0].map(|x| 4.0 + x);
+    for (end, free) in [(4.0, &whole[..]), (4.3, &whole[2..]), (6.0, &[])] {
+        let mesh = block("upper", 6.0, 6, [3.0, 5.0])
+            .joined(block("lower", end, 4, [0.0, 3.0]))
+            .expect("valid");
+        let bodies = ["upper", "lower"];
+        let model = model(
+            mesh,
+            PlaneStrain::default(),
+            (kind, &elastic(), false),
+            &bodies,
+        );
+        let model = model.tie("upper.bottom", "lower.top").expect("valid");
+        let mut driver = Driver::new(model, Settings::default()).expect("valid");
+        let untied = driver.untied_nodes(0);
+        let at = |&a: &usize| driver.mesh().nodes()[a][0];
+        let mut places: Vec<f64> = untied.iter().map(at).collect();
+        places.sort_by(f64::total_cmp);
+        assert_eq!(places, free, "{end}");
+        let surface = driver.mesh().node_group("upper.bottom").expect("there");
+        assert!(driver.contacts().len() <= surface.len() - free.len());
+        let points = driver.contacts().iter().map(|c| c.node);
+        assert!(points.clone().all(|a| !untied.contains(&a)));
+        let pull = Step::new("pull")
+            .fix("lower.bottom", &[Axis::X, Axis::Y])
+            .traction("upper.top", [0.0, 50.0]);
+        driver.run(&pull, 1, |_, _| {}).expect("linear");
+        let force = driver.contact_force("upper.bottom").expect("there");
+        assert!(
+            (force - SVector::from([0.0, -300.0])).norm() < 1e-8,
+            "{force}"
+        );
+        assert!(
+            untied
+                .iter()
+                .all(|&a| driver.nodal_contact_force(a).norm() == 0.0)
+        );
+    }
+}
+
+/// Half of a symmetric body between meshes that do not match: the nodes on the plane of symmetry are held along x, and a tie
+/// holds nothing there that the whole body is free of.
+#[test]
+fn half_of_a_body_moves_as_the_whole() {
+    let kind = CellKind::Quad8;
+    let of = |from: f64, cells: [usize; 2]| {
+        let block = |name: &str, cells: usize, y: [f64; 2]| {
+            let (x, y) = (uniform(from, 6.0, cells), uniform(y[0], y[1], 2));
+            block2(name, kind, &x, &y).expect("valid")
+        };
+        let mesh = block("upper", cells[0], [3.0, 5.0])
+            .joined(block("lower", cells[1], [0.0, 3.0]))
+            .expect("valid");
+        let bodies = ["upper", "lower"];
+        let model = model(
+            mesh,
+            PlaneStrain::default(),
+            (kind, &elastic(), false),
+            &bodies,
+        );
+        let model = model.tie("upper.bottom", "lower.top").expect("valid");
+        Driver::new(model, Settings::default()).expect("valid")
+    };
+    let (mut half, mut whole) = (of(0.0, [5, 3]), of(-6.0, [10, 6]));
+    let squeeze = Step::new("squeeze")
+        .fix("lower.bottom", &[Axis::X, Axis::Y])
+        .pressure("upper.right", 100.0);
+    let both = squeeze.clone().pressure("upper.left", 100.0);
+    whole.run(&both, 1, |_, _| {}).expect("linear");
+    let held = (squeeze.fix("upper.left", &[Axis::X])).fix("lower.left", &[Axis::X]);
+    half.run(&held, 1, |_, _| {}).expect("linear");
+    for (a, x) in half.mesh().nodes().iter().enumerate() {
+        let u = half.displacement(a);
+        let is_here = |y: &[f64; 2]| (x[0] - y[0]).hypot(x[1] - y[1]) < 1e-9;
+        let beside = whole.mesh().nodes().iter().enumerate();
+        // Where the bodies meet one of two.
+        let off = (beside.filter(|(_, y)| is_here(y)))
+            .map(|(b, _)| (whole.displacement(b) - u).norm())
+            .fold(f64::INFINITY, f64::min);
+        assert!(off < 1e-12, "node {a} at {x:?}: {off:e}");
+    }
 }
