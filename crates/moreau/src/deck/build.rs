@@ -12,6 +12,7 @@ mod names;
 mod parts;
 mod penetrations;
 mod slips;
+mod ties;
 
 use super::Given;
 use super::entries::{Action, Analysis, Deck, Method};
@@ -196,6 +197,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     }
     let gaps = driver.least_gaps();
     penetrations::warn(deck, &driver, &gaps, findings);
+    ties::warn(deck, &driver, findings);
     let supports = supports(&driver, (deck, &gaps), &stages, &groups, findings);
     conditions::doubts(deck, &gaps, findings);
     conditions::heat(deck, &groups, findings);

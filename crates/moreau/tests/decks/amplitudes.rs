@@ -1,7 +1,9 @@
 //! Tables over the time of a step.
 
 use super::{says, shown};
-use moreau::deck::open;
+use moreau::deck::{Given, open};
+use moreau::simulation::Simulation;
+use std::ops::ControlFlow;
 
 /// What the punch does in the example.
 const MOVE: &str = "u = { y = -0.2 } }";
@@ -77,4 +79,30 @@ fn a_step_without_end_has_no_table() {
         problem.is_none() && said.contains("until = \"collapse\""),
         "{said}"
     );
+}
+
+/// The force that a block stands on is what the rows of its pressure say, at the end of every increment.
+#[test]
+fn a_table_is_followed() {
+    let deck = r#"
+units = "mm-N-MPa"
+analysis = "plane-strain"
+mesh.block = [{ name = "b", element = "quad4", x = [0, 2], y = [0, 1], cells = [2, 1] }]
+material = [{ on = "b", young = 1000.0, poisson = 0.3 }]
+[[step]]
+name = "press"
+increments = 4
+fix = [{ on = "b.bottom", u = ["y"] }, { on = "b.left", u = ["x"] }]
+load = [{ on = "b.top", pressure = 3.0, table = [[0, 0], [0.5, 2], [1, -1]] }]
+"#;
+    let (simulation, findings) = Simulation::open(deck, ".".as_ref(), &Given::default());
+    let shown = || findings.render("deck.toml", deck, false);
+    let mut simulation = simulation.unwrap_or_else(|| panic!("{}", shown()));
+    let mut advance = || simulation.advance(&mut |_, _| ControlFlow::Continue(()));
+    while advance().expect("an increment").is_some() {}
+    let forces = simulation.history().numbers("force.b.bottom.y");
+    let last = &forces[forces.len() - 4..];
+    for (found, share) in last.iter().zip([1.0, 2.0, 0.5, -1.0]) {
+        assert!((found - 6.0 * share).abs() < 1e-9, "{forces:?}");
+    }
 }

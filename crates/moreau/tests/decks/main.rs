@@ -2,6 +2,7 @@
 
 mod along;
 mod amplitudes;
+mod axes;
 mod heat;
 mod includes;
 mod initial;
@@ -17,6 +18,7 @@ mod rules;
 mod schema;
 mod supports;
 mod surfaces;
+mod ties;
 mod values;
 
 use moreau::deck::{Class, Problem, open, open_in};
