@@ -318,11 +318,11 @@ fn tied<const D: usize>() {
     let law = Friction::from(Tie);
     let samples = (vector::<D>(1.0), vector::<D>(3.0), alpha());
     for_all(&samples, |(u, t, alpha)| {
-        prop_assert_eq!(law.correct(&Local::zeros(), &t, alpha), t);
+        prop_assert_eq!(law.correct(&Local::<D>::zeros(), &t, alpha), t);
         prop_assert_eq!(law.project(&t), t);
-        prop_assert_eq!(law.b(&Local::zeros(), &t), 0.0);
+        prop_assert_eq!(law.b(&Local::<D>::zeros(), &t), 0.0);
         prop_assert_eq!(law.b(&u, &t), f64::INFINITY);
-        prop_assert_eq!(law.admissible(&u), Local::zeros());
+        prop_assert_eq!(law.admissible(&u), Local::<D>::zeros());
         prop_assert_eq!(law.status(&u, &t, alpha), Status::Tied);
         let (force, displacement) = law.correct_jacobian(&u, &t, alpha);
         let linear = force * t - displacement * u;
