@@ -7,3 +7,4 @@ pub(crate) mod passage;
 pub(crate) mod rigid;
 pub(crate) mod smallness;
 pub(crate) mod supports;
+pub(crate) mod untied;

@@ -1,6 +1,5 @@
 //! Ties: surfaces of two bodies held together as they are at first; not contact.
 
-use crate::driver::Driver;
 use crate::error::ModelError;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::{Analysis, Contact, Model};
@@ -125,18 +124,6 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             closed.insert(node, row);
         }
         Ok(closed)
-    }
-}
-
-impl<const D: usize> Driver<D> {
-    /// Nodes of the surface of a tie that are free, because nothing is opposite to them; none of a contact.
-    pub fn untied_nodes(&self, contact: usize) -> Vec<usize> {
-        let points = self.points.iter().filter(|p| p.contact == contact);
-        let rows = points.filter_map(|p| p.tied.as_ref());
-        let held: BTreeSet<usize> = rows.flat_map(|row| &row.own).map(|(a, _)| *a).collect();
-        let surface = self.mesh.node_group(self.contact_name(contact).0);
-        let free = surface.into_iter().flatten().filter(|a| !held.contains(a));
-        free.filter(|_| !held.is_empty()).collect()
     }
 }
 
