@@ -206,7 +206,7 @@ def test_a_function_of_friction_is_sampled():
 
     def load(friction):
         contact = [{**keys["contact"][0], "friction": friction}]
-        return mc.run({**keys, "contact": contact}).history["force.punch.y"].to_numpy()[-1]
+        return np.asarray(mc.run({**keys, "contact": contact}).history["force.punch.y"])[-1]
 
     assert load(lambda p: 0.1 * p) == pytest.approx(load(0.1), rel=1e-9)
     limited = load({"coulomb": 0.1, "tau-max": 20.0})
