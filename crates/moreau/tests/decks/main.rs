@@ -163,7 +163,7 @@ fn findings_have_line_and_column() {
 fn a_resolved_deck_is_the_same_deck() {
     for text in [
         DECK,
-        include_str!("coated-block.toml"),
+        include_str!("../../../../docs/examples/coated-block.toml"),
         include_str!("../../../../docs/examples/indentation-flat-punch.toml"),
         include_str!("../../../../docs/examples/block-dragged-on-block.toml"),
         include_str!("../../../../docs/examples/block-opening-sliding-sticking.toml"),

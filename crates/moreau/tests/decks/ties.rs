@@ -3,7 +3,7 @@
 use super::flat;
 use moreau::deck::open;
 
-const COATED: &str = include_str!("coated-block.toml");
+const COATED: &str = include_str!("../../../../docs/examples/coated-block.toml");
 const TIE: &str = "surface = \"layer.bottom\"\nto = \"block.top\"";
 
 /// What is shown for the deck with a piece of its text replaced, and whether it can be run.
@@ -124,7 +124,7 @@ fn nodes_with_nothing_opposite_are_counted() {
     let (runs, out) = shown(TIE, TIE);
     assert!(runs && !out.contains("opposite"), "{out}");
     let block = "x = [0, 10]\ny = [0, 5]";
-    for (end, count) in [("8", "8 of the 41 nodes"), ("8.2", "6 of the 41 nodes")] {
+    for (end, count) in [("8", "16 of the 81 nodes"), ("8.2", "14 of the 81 nodes")] {
         let (runs, out) = shown(block, &format!("x = [0, {end}]\ny = [0, 5]"));
         assert!(runs, "{out}");
         let words = [count, "\"block.top\"", "they are free"];

@@ -156,10 +156,7 @@ impl<const D: usize> Tied<'_, '_, D> {
         }
         for &i in &self.factor.propped {
             if status[i] == Status::Open {
-                guess.u[i] = Local::zeros();
-                guess.irreversible[i] = Local::zeros();
-                guess.t[i] = Local::zeros();
-                guess.t[i][0] = self.problem.structure.stiffness(i);
+                guess.close(i);
             }
         }
         let moved = guess.u.iter().zip(&self.problem.origin);

@@ -5,6 +5,10 @@ use crate::solvers::ContactSolution;
 use crate::tied::TiedProblem;
 use moreau_laws::Local;
 
+/// Force of a contact of which nothing is known but that it is closed \[N\]: it vanishes beside any other, and tells on
+/// which side of its kink the law is.
+const VANISHING: f64 = 1e-100;
+
 /// A pair (u, t) that obeys the law, of which the statuses are expected.
 pub(super) struct Guess<const D: usize> {
     pub(super) u: Vec<Local<D>>,
@@ -26,7 +30,7 @@ impl<const D: usize> Guess<D> {
             let mut pair = (Local::zeros(), Local::zeros());
             match g[0] <= 0.0 {
                 _ if problem.friction[i].is_tie() => {}
-                true => pair.1[0] = problem.structure.stiffness(i),
+                true => pair.1[0] = VANISHING,
                 false => pair.0[0] = g[0],
             }
             pair
@@ -38,6 +42,14 @@ impl<const D: usize> Guess<D> {
             u,
             t,
         }
+    }
+
+    /// Takes a contact as closed.
+    pub(super) fn close(&mut self, i: usize) {
+        self.u[i] = Local::zeros();
+        self.irreversible[i] = Local::zeros();
+        self.t[i] = Local::zeros();
+        self.t[i][0] = VANISHING;
     }
 }
 
