@@ -11,9 +11,10 @@ use std::fmt;
 
 use crate::dense::square;
 use crate::engine::{Cost, Engine, EngineError, Inertia, TooLarge, check_columns, check_values};
-use crate::panel::{Backward, Forward, Panel, SIDES};
+use crate::panel::SIDES;
 use crate::pattern::Pattern;
-use crate::symbolic::{Supernode, Symbolic};
+use crate::sweep::{Factor, Sweeps};
+use crate::symbolic::Symbolic;
 
 /// L Lᵀ = A, in the order in which A is given.
 ///
@@ -24,9 +25,7 @@ pub struct Cholesky {
     symbolic: Symbolic,
     factor: Vec<f64>,
     memory: MemBuffer,
-    /// Unknowns of a supernode, and the rows below them, of all right-hand sides at once.
-    own: Vec<f64>,
-    below: Vec<f64>,
+    sweeps: Sweeps,
     least_pivot: f64,
     factorised: bool,
     par: Par,
@@ -69,8 +68,7 @@ impl Cholesky {
         Ok(Self {
             factor,
             memory: MemBuffer::try_new(request).map_err(|_| too_large)?,
-            own: Vec::new(),
-            below: Vec::new(),
+            sweeps: Sweeps::new(&symbolic),
             least_pivot: f64::INFINITY,
             factorised: false,
             par,
@@ -94,76 +92,27 @@ impl Cholesky {
         least
     }
 
-    /// The columns of a supernode that are among the first `size`, and the rows below them.
-    fn panel(&self, s: usize, size: usize) -> (Supernode<'_>, Panel<'_>) {
-        let node = self.symbolic.supernode(s);
-        let height = node.width + node.rows.len();
-        let width = node.width.min(size.saturating_sub(node.start));
-        let panel = Panel {
-            values: &self.factor[node.values.clone()][..width * height],
-            width,
-            height,
-            unit: false,
-        };
-        (node, panel)
-    }
-
     /// x ← L⁻¹ x with the first columns of L, so many, of at most [`SIDES`] right-hand sides; what is below
     /// is condensed.
     fn forward(&mut self, columns: usize, x: &mut [f64]) {
-        let mut own = std::mem::take(&mut self.own);
-        let mut below = std::mem::take(&mut self.below);
-        let n = self.size();
-        for s in 0..self.symbolic.count() {
-            let (node, panel) = self.panel(s, columns);
-            let (width, rows) = (panel.width, panel.height - panel.width);
-            if width == 0 {
-                break;
-            }
-            gather(x, n, node.start..node.start + width, &mut own);
-            below.resize(rows * (x.len() / n), 0.0);
-            self.arch.dispatch(Forward {
-                panel,
-                own: &mut own,
-                below: &mut below,
-            });
-            for (x, own) in x.chunks_exact_mut(n).zip(own.chunks_exact(width)) {
-                x[node.start..node.start + width].copy_from_slice(own);
-            }
-            if rows > 0 {
-                for (x, sum) in x.chunks_exact_mut(n).zip(below.chunks_exact(rows)) {
-                    for (i, sum) in node.below(width).zip(sum) {
-                        x[i] -= sum;
-                    }
-                }
-            }
-        }
-        (self.own, self.below) = (own, below);
+        let factor = Factor {
+            symbolic: &self.symbolic,
+            values: &self.factor,
+            columns,
+            arch: self.arch,
+        };
+        self.sweeps.forward(factor, x);
     }
 
     /// x ← L⁻ᵀ x with the first columns of L, so many, where the unknowns after them are known.
     fn backward(&mut self, columns: usize, x: &mut [f64]) {
-        let mut own = std::mem::take(&mut self.own);
-        let mut below = std::mem::take(&mut self.below);
-        let n = self.size();
-        for s in (0..self.symbolic.count()).rev() {
-            let (node, panel) = self.panel(s, columns);
-            let width = panel.width;
-            if width == 0 {
-                continue;
-            }
-            gather(x, n, node.start..node.start + width, &mut own);
-            gather(x, n, node.below(width), &mut below);
-            self.arch.dispatch(Backward {
-                panel,
-                own: &mut own,
-                below: &below,
-            });
-            for (x, own) in x.chunks_exact_mut(n).zip(own.chunks_exact(width)) {
-                x[node.start..node.start + width].copy_from_slice(own);
-            }
-        }
-        (self.own, self.below) = (own, below);
+        let factor = Factor {
+            symbolic: &self.symbolic,
+            values: &self.factor,
+            columns,
+            arch: self.arch,
+        };
+        self.sweeps.backward(factor, x);
     }
 
     /// Right-hand sides, as many at once as are worth it.
@@ -173,14 +122,6 @@ impl Cholesky {
             return Err(EngineError::NotFactorised);
         }
         Ok((SIDES * self.size()).max(1))
-    }
-}
-
-/// Some rows of every column of x, column by column.
-fn gather(x: &[f64], size: usize, rows: impl Iterator<Item = usize> + Clone, to: &mut Vec<f64>) {
-    to.clear();
-    for x in x.chunks_exact(size) {
-        to.extend(rows.clone().map(|i| x[i]));
     }
 }
 

@@ -60,6 +60,7 @@ mod ordering;
 mod panel;
 mod pattern;
 mod sparse_lu;
+mod sweep;
 mod symbolic;
 mod team;
 

@@ -13,7 +13,7 @@ pub(crate) const SIDES: usize = 8;
 
 /// Rows that are gone through at once: those of four columns and of all right-hand sides are then next to the
 /// processor.
-const ROWS: usize = 256;
+const ROWS: usize = 1024;
 
 /// Columns of a factor that are read at once: what they are added to, or multiplied by, is read once for
 /// all.
@@ -24,12 +24,55 @@ const TOGETHER: usize = 4;
 pub(crate) struct Panel<'a> {
     /// Values, column by column.
     pub(crate) values: &'a [f64],
+    /// Number of rows that are stored.
+    pub(crate) stored: usize,
+    /// The one at which the triangle begins.
+    pub(crate) first: usize,
     /// Number of columns.
     pub(crate) width: usize,
-    /// Number of rows.
-    pub(crate) height: usize,
+    /// Number of rows below the triangle.
+    pub(crate) rows: usize,
     /// Whether the diagonal is 1, whatever is stored there.
     pub(crate) unit: bool,
+}
+
+impl<'a> Panel<'a> {
+    /// Some of its columns, without the triangle.
+    pub(crate) fn below(self, columns: Range<usize>) -> Self {
+        Self {
+            values: &self.values[columns.start * self.stored..columns.end * self.stored],
+            first: self.first + self.width - columns.len(),
+            width: columns.len(),
+            ..self
+        }
+    }
+
+    /// The triangle alone.
+    pub(crate) fn triangle(self) -> Self {
+        Self { rows: 0, ..self }
+    }
+
+    /// Its columns, from the triangle on.
+    #[inline(always)]
+    fn columns(self) -> impl DoubleEndedIterator<Item = &'a [f64]> + ExactSizeIterator {
+        let columns = self.values.chunks_exact(self.stored);
+        columns.map(move |column| &column[self.first..][..self.width + self.rows])
+    }
+
+    /// Some rows below the triangle of some columns.
+    #[inline(always)]
+    fn lower(self, columns: &'a [f64], part: Range<usize>) -> impl Iterator<Item = &'a [f64]> {
+        let from = self.first + self.width + part.start;
+        let columns = columns.chunks_exact(self.stored);
+        columns.map(move |column| &column[from..][..part.len()])
+    }
+
+    /// Some rows below the triangle of four columns.
+    #[inline(always)]
+    fn four(self, columns: &'a [f64], part: Range<usize>) -> [&'a [f64]; TOGETHER] {
+        let from = self.first + self.width + part.start;
+        std::array::from_fn(|k| &columns[k * self.stored + from..][..part.len()])
+    }
 }
 
 /// `own` ← L₁⁻¹ `own` with the triangle L₁, then `below` ← L₂ `own` with the rows below it. Both are columns
@@ -53,8 +96,8 @@ impl WithSimd for Forward<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Self { panel, own, below } = self;
-        let (width, height) = (panel.width, panel.height);
-        for (j, column) in panel.values.chunks_exact(height).enumerate() {
+        let width = panel.width;
+        for (j, column) in panel.columns().enumerate() {
             for own in own.chunks_exact_mut(width) {
                 let solved = if panel.unit {
                     own[j]
@@ -68,28 +111,50 @@ impl WithSimd for Forward<'_> {
             }
         }
         below.fill(0.0);
-        let rows = height - width;
-        for from in (0..rows).step_by(ROWS) {
-            let part = from..rows.min(from + ROWS);
-            multiply(panel, own, below, part);
-        }
+        multiply(panel, own, below);
+    }
+}
+
+/// `below` ← L₂ `own`, alone.
+pub(crate) struct Product<'a> {
+    pub(crate) panel: Panel<'a>,
+    pub(crate) own: &'a [f64],
+    pub(crate) below: &'a mut [f64],
+}
+
+impl WithSimd for Product<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { panel, own, below } = self;
+        below.fill(0.0);
+        multiply(panel, own, below);
+    }
+}
+
+/// Adds L₂ `own` to `below`.
+#[inline(always)]
+fn multiply(panel: Panel<'_>, own: &[f64], below: &mut [f64]) {
+    let rows = panel.rows;
+    for from in (0..rows).step_by(ROWS) {
+        add_rows(panel, own, below, from..rows.min(from + ROWS));
     }
 }
 
 /// Adds to some rows of `below` their part of L₂ `own`.
 #[inline(always)]
-fn multiply(panel: Panel<'_>, own: &[f64], below: &mut [f64], part: Range<usize>) {
-    let (width, height) = (panel.width, panel.height);
+fn add_rows(panel: Panel<'_>, own: &[f64], below: &mut [f64], part: Range<usize>) {
+    let (width, stored) = (panel.width, panel.stored);
     let mut rest = panel.values;
     for first in (0..width).step_by(TOGETHER) {
-        let (columns, others) = rest.split_at(rest.len().min(TOGETHER * height));
+        let (columns, others) = rest.split_at(rest.len().min(TOGETHER * stored));
         rest = others;
         let own = own.chunks_exact(width);
-        let mut sides = own.zip(below.chunks_exact_mut(height - width));
+        let mut sides = own.zip(below.chunks_exact_mut(panel.rows));
         if first + TOGETHER > width {
             for (x, sum) in sides {
-                for (column, x) in columns.chunks_exact(height).zip(&x[first..]) {
-                    let l = &column[width..][part.clone()];
+                for (l, x) in panel.lower(columns, part.clone()).zip(&x[first..]) {
                     for (sum, l) in sum[part.clone()].iter_mut().zip(l) {
                         *sum += l * x;
                     }
@@ -97,7 +162,7 @@ fn multiply(panel: Panel<'_>, own: &[f64], below: &mut [f64], part: Range<usize>
             }
             return;
         }
-        let columns = lower_parts(columns, (width, height), part.clone());
+        let columns = panel.four(columns, part.clone());
         while let Some((x, sum)) = sides.next() {
             let (x, sum) = (four(&x[first..]), &mut sum[part.clone()]);
             match sides.next() {
@@ -117,13 +182,9 @@ impl WithSimd for Backward<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Self { panel, own, below } = self;
-        let (width, height) = (panel.width, panel.height);
-        let rows = height - width;
-        for from in (0..rows).step_by(ROWS) {
-            let part = from..rows.min(from + ROWS);
-            subtract_transposed(panel, own, below, part);
-        }
-        for (j, column) in panel.values.chunks_exact(height).enumerate().rev() {
+        let width = panel.width;
+        multiply_transposed(panel, own, below);
+        for (j, column) in panel.columns().enumerate().rev() {
             for own in own.chunks_exact_mut(width) {
                 let left = own[j] - dot(&column[j + 1..width], &own[j + 1..]);
                 own[j] = if panel.unit { left } else { left / column[j] };
@@ -132,25 +193,52 @@ impl WithSimd for Backward<'_> {
     }
 }
 
+/// `own` ← −L₂ᵀ `below`, alone.
+pub(crate) struct TransposedProduct<'a> {
+    pub(crate) panel: Panel<'a>,
+    pub(crate) own: &'a mut [f64],
+    pub(crate) below: &'a [f64],
+}
+
+impl WithSimd for TransposedProduct<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { panel, own, below } = self;
+        own.fill(0.0);
+        multiply_transposed(panel, own, below);
+    }
+}
+
+/// Subtracts L₂ᵀ `below` from `own`.
+#[inline(always)]
+fn multiply_transposed(panel: Panel<'_>, own: &mut [f64], below: &[f64]) {
+    let rows = panel.rows;
+    for from in (0..rows).step_by(ROWS) {
+        subtract_rows(panel, own, below, from..rows.min(from + ROWS));
+    }
+}
+
 /// Subtracts from `own` what some rows of `below` are to L₂ᵀ `below`.
 #[inline(always)]
-fn subtract_transposed(panel: Panel<'_>, own: &mut [f64], below: &[f64], part: Range<usize>) {
-    let (width, height) = (panel.width, panel.height);
+fn subtract_rows(panel: Panel<'_>, own: &mut [f64], below: &[f64], part: Range<usize>) {
+    let (width, stored) = (panel.width, panel.stored);
     let mut rest = panel.values;
     for first in (0..width).step_by(TOGETHER) {
-        let (columns, others) = rest.split_at(rest.len().min(TOGETHER * height));
+        let (columns, others) = rest.split_at(rest.len().min(TOGETHER * stored));
         rest = others;
         let own = own.chunks_exact_mut(width);
-        let mut sides = own.zip(below.chunks_exact(height - width));
+        let mut sides = own.zip(below.chunks_exact(panel.rows));
         if first + TOGETHER > width {
             for (x, known) in sides {
-                for (column, x) in columns.chunks_exact(height).zip(&mut x[first..]) {
-                    *x -= dot(&column[width..][part.clone()], &known[part.clone()]);
+                for (l, x) in panel.lower(columns, part.clone()).zip(&mut x[first..]) {
+                    *x -= dot(l, &known[part.clone()]);
                 }
             }
             return;
         }
-        let columns = lower_parts(columns, (width, height), part.clone());
+        let columns = panel.four(columns, part.clone());
         let subtract = |x: &mut [f64], sums: [f64; TOGETHER]| {
             for (x, sum) in x[first..first + TOGETHER].iter_mut().zip(sums) {
                 *x -= sum;
@@ -168,16 +256,6 @@ fn subtract_transposed(panel: Panel<'_>, own: &mut [f64], below: &[f64], part: R
             }
         }
     }
-}
-
-/// Some rows below the triangle of four columns.
-#[inline(always)]
-fn lower_parts(
-    columns: &[f64],
-    (width, height): (usize, usize),
-    part: Range<usize>,
-) -> [&[f64]; TOGETHER] {
-    std::array::from_fn(|k| &columns[k * height + width..(k + 1) * height][part.clone()])
 }
 
 /// The first four numbers.

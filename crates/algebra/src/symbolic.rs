@@ -160,6 +160,12 @@ impl Symbolic {
         self.supernodes.n_supernodes()
     }
 
+    /// Rows below all supernodes before one.
+    #[inline]
+    pub(crate) fn rows_before(&self, s: usize) -> usize {
+        self.supernodes.col_ptr_for_row_idx()[s] as usize
+    }
+
     #[inline]
     pub(crate) fn supernode(&self, s: usize) -> Supernode<'_> {
         let all = &self.supernodes;

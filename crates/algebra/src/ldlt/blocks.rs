@@ -72,8 +72,10 @@ impl Blocks {
     fn panel(&self, block: &Block) -> Panel<'_> {
         Panel {
             values: &self.values[block.values..][..block.width * block.height],
+            stored: block.height,
+            first: 0,
             width: block.width,
-            height: block.height,
+            rows: block.height - block.width,
             unit: true,
         }
     }
