@@ -211,9 +211,15 @@ impl Engine for Cholesky {
             let values = &self.factor[node.values.clone()];
             let columns = values.chunks_exact(node.width + node.rows.len());
             for (j, column) in columns.enumerate() {
-                if node.start + j >= first {
-                    let below = node.below(j).zip(&column[j..]);
-                    below.for_each(|(i, &v)| l[(i - first, node.start + j - first)] = v);
+                if node.start + j < first {
+                    continue;
+                }
+                let (own, below) = column[j..].split_at(node.width - j);
+                let at = node.start + j - first;
+                let mut l = l.column_mut(at);
+                l.as_mut_slice()[at..at + own.len()].copy_from_slice(own);
+                for (&i, &v) in node.rows.iter().zip(below) {
+                    l[i as usize - first] = v;
                 }
             }
         }

@@ -4,6 +4,7 @@ use crate::engine::Inertia;
 use faer::diag::{DiagMut, DiagRef};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::{lblt, llt::factor};
+use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve;
 use faer::perm::PermRef;
@@ -172,8 +173,73 @@ pub fn square(l: &DMatrix<f64>) -> DMatrix<f64> {
         1.0,
         Par::Seq,
     );
-    out.fill_upper_triangle_with_lower_triangle();
+    mirror(&mut out);
     out
+}
+
+/// A − Cᵀ C of the first rows and columns of a symmetric A, of which the lower triangle is read, as many as C has
+/// columns.
+///
+/// # Panics
+/// If A is smaller.
+pub fn less_gram(mut a: DMatrix<f64>, c: &DMatrix<f64>) -> DMatrix<f64> {
+    let (n, (rows, kept)) = (a.nrows(), c.shape());
+    let c = MatRef::from_column_major_slice(c.as_slice(), rows, kept);
+    let whole = MatMut::from_column_major_slice_mut(a.as_mut_slice(), n, n);
+    triangular::matmul(
+        whole.submatrix_mut(0, 0, kept, kept),
+        BlockStructure::TriangularLower,
+        Accum::Add,
+        c.transpose(),
+        BlockStructure::Rectangular,
+        c,
+        BlockStructure::Rectangular,
+        -1.0,
+        Par::Seq,
+    );
+    let mut a = a.remove_columns(kept, n - kept).remove_rows(kept, n - kept);
+    mirror(&mut a);
+    a
+}
+
+/// Aᵀ B.
+///
+/// # Panics
+/// If they have not as many rows.
+pub fn transposed_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    let view = |m| -> MatRef<'_, f64> {
+        let m: &DMatrix<f64> = m;
+        MatRef::from_column_major_slice(m.as_slice(), m.nrows(), m.ncols())
+    };
+    let (rows, columns) = (a.ncols(), b.ncols());
+    let mut out = DMatrix::zeros(rows, columns);
+    matmul(
+        MatMut::from_column_major_slice_mut(out.as_mut_slice(), rows, columns),
+        Accum::Replace,
+        view(a).transpose(),
+        view(b),
+        1.0,
+        Par::Seq,
+    );
+    out
+}
+
+/// Rows and columns that are copied at once: both are then next to the processor.
+const TILE: usize = 32;
+
+/// Makes the upper triangle what the lower one is.
+pub fn mirror(a: &mut DMatrix<f64>) {
+    let n = a.nrows();
+    let a = a.as_mut_slice();
+    for first in (0..n).step_by(TILE) {
+        for row in (first..n).step_by(TILE) {
+            for j in first..n.min(first + TILE) {
+                for i in row.max(j + 1)..n.min(row + TILE) {
+                    a[i * n + j] = a[j * n + i];
+                }
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -204,6 +270,19 @@ mod tests {
                 prop_assert!((solved - x).norm() < 1e-8);
             }
         }
+    }
+
+    #[test]
+    fn products_are_those_of_the_definition() {
+        let c = DMatrix::from_fn(3, 50, |i, j| ((i + 2 * j) as f64).sin());
+        let d = DMatrix::from_fn(3, 4, |i, j| ((5 * i + j) as f64).cos());
+        assert!((transposed_product(&c, &d) - c.transpose() * &d).amax() < 1e-14);
+        let a = DMatrix::from_fn(70, 70, |i, j| ((i * j) as f64).sin() + (i + j) as f64);
+        let mut lower = a.lower_triangle();
+        let expected = a.view((0, 0), (50, 50)) - c.transpose() * &c;
+        assert!((less_gram(lower.clone(), &c) - expected).amax() < 1e-12);
+        mirror(&mut lower);
+        assert_eq!(lower, a);
     }
 
     #[test]

@@ -67,7 +67,7 @@ mod team;
 pub use cholesky::Cholesky;
 pub use coarse::{CoarseError, CoarseSpace};
 pub use conjugate::{ConjugateGradients, Interface, Operator, Stop};
-pub use dense::{DenseCholesky, DenseLdlt, square};
+pub use dense::{DenseCholesky, DenseLdlt, less_gram, mirror, square, transposed_product};
 pub use either::Either;
 pub use engine::{Cost, Engine, EngineError, Inertia, TooLarge};
 pub use ldlt::Ldlt;

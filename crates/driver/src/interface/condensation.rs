@@ -6,7 +6,7 @@ use crate::linear::suspension::Suspended;
 use crate::linear::system::System;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Kinematics};
-use moreau_algebra::DenseCholesky;
+use moreau_algebra::{DenseCholesky, less_gram};
 use moreau_contact::{CondensedProblem, ContactError};
 use moreau_laws::{Local, Status};
 use nalgebra::{DMatrix, DVector};
@@ -217,15 +217,13 @@ impl InternalUnknowns {
         if others == 0 {
             return Ok((s, f, rest));
         }
-        let own = s.view((0, 0), (kept, kept)).into_owned();
         let block = s.view((kept, kept), (others, others)).into_owned();
         let stiffest = block.diagonal().amax();
         let factor = DenseCholesky::new(block).filter(|f| f.holds(stiffest));
         let factor = factor.ok_or(ContactError::Singular)?;
         factor.forward(&mut rest.coupling);
         rest.factor = Some(factor);
-        let mut own = own - rest.coupling.tr_mul(&rest.coupling);
-        own.fill_upper_triangle_with_lower_triangle();
+        let own = less_gram(s, &rest.coupling);
         let (load, y) = rest.reduce(&f, kept);
         rest.load = y;
         Ok((own, load, rest))

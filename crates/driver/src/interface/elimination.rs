@@ -4,6 +4,7 @@
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::Kinematics;
 use crate::vector::directions::Directions;
+use moreau_algebra::mirror;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 
@@ -208,7 +209,7 @@ impl Transformation {
                 out.column_mut(k).axpy(c, &column, 1.0);
             }
         }
-        out.fill_upper_triangle_with_lower_triangle();
+        mirror(&mut out);
         out
     }
 }

@@ -1,7 +1,7 @@
 //! The linear equations of a Newton step on the natural map; not the map.
 
 use crate::CondensedProblem;
-use moreau_algebra::{DenseCholesky, Lu};
+use moreau_algebra::{DenseCholesky, Lu, transposed_product};
 use moreau_laws::Local;
 use nalgebra::{DMatrix, DVector, SMatrix};
 
@@ -76,29 +76,34 @@ pub(super) fn solve<const D: usize>(
 
 /// The matrix of the rows that are left, contact by contact in an order, in the unknowns of the same.
 fn matrix<const D: usize>(s: &DMatrix<f64>, own: &[Own<D>], order: &[usize]) -> DMatrix<f64> {
-    let size = own.iter().map(|o| o.left).sum();
-    let mut matrix = DMatrix::zeros(size, size);
-    let mut column = 0;
+    // E of every row, and where its contact is.
+    let row = |i: usize| (0..own[i].left).map(move |r| (D * i, own[i].elastic.row(r)));
+    let rows = order.iter().flat_map(|&i| row(i));
+    let rows: Vec<(usize, [f64; D])> = rows
+        .map(|(at, e)| (at, std::array::from_fn(|k| e[k])))
+        .collect();
+    let mut matrix = DMatrix::zeros(rows.len(), rows.len());
+    let mut answer = DVector::zeros(s.nrows());
+    let mut first = 0;
+    let mut columns = matrix.column_iter_mut();
     for &j in order {
-        for direction in own[j].free.column_iter().take(own[j].left) {
-            let mut answer = s.column(D * j) * direction[0];
+        let o = &own[j];
+        for (direction, mut column) in o.free.column_iter().take(o.left).zip(&mut columns) {
+            answer.copy_from(&s.column(D * j));
+            answer *= direction[0];
             for k in (1..D).filter(|&k| direction[k] != 0.0) {
                 answer.axpy(direction[k], &s.column(D * j + k), 1.0);
             }
-            let mut row = 0;
-            for &i in order {
-                let (o, answer) = (&own[i], answer.fixed_rows::<D>(D * i));
-                for r in 0..o.left {
-                    let mut entry: f64 = (0..D).map(|k| o.elastic[(r, k)] * answer[k]).sum();
-                    if i == j {
-                        entry += (0..D).map(|k| o.shift[(r, k)] * direction[k]).sum::<f64>();
-                    }
-                    matrix[(row, column)] = entry;
-                    row += 1;
-                }
+            for (entry, (at, e)) in column.iter_mut().zip(&rows) {
+                let seen = &answer.as_slice()[*at..][..D];
+                *entry = e.iter().zip(seen).map(|(e, s)| e * s).sum();
             }
-            column += 1;
+            let alone = o.shift * direction;
+            for r in 0..o.left {
+                column[first + r] += alone[r];
+            }
         }
+        first += o.left;
     }
     matrix
 }
@@ -123,7 +128,7 @@ fn eliminated(a: &DMatrix<f64>, first: usize, b: &DVector<f64>) -> Option<DVecto
     let mut down = a.view((first, 0), (rest, first)).transpose();
     factor.forward(&mut across);
     factor.forward(&mut down);
-    let left = a.view((first, first), (rest, rest)) - down.tr_mul(&across);
+    let left = a.view((first, first), (rest, rest)) - transposed_product(&down, &across);
     let mut lu = Lu::new(left).filter(|lu| {
         let least = lu.least_pivot * lu.largest_pivot;
         least > RIGID * stiffest.max(lu.largest_pivot)
