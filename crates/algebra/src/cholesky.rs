@@ -223,6 +223,6 @@ impl Engine for Cholesky {
                 }
             }
         }
-        Ok(square(&l))
+        Ok(square(l))
     }
 }

@@ -8,6 +8,7 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
 use faer::linalg::triangular_solve;
 use faer::perm::PermRef;
+use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, MatMut, MatRef, Par};
 use nalgebra::{DMatrix, DVector};
 
@@ -157,24 +158,66 @@ impl DenseLdlt {
     }
 }
 
-/// L Lᵀ of a lower triangular L.
-pub fn square(l: &DMatrix<f64>) -> DMatrix<f64> {
+/// Columns of L Lᵀ that are made at once.
+const BLOCK: usize = 128;
+
+/// L Lᵀ of a lower triangular L, of which the lower triangle is read.
+pub fn square(mut l: DMatrix<f64>) -> DMatrix<f64> {
     let n = l.nrows();
-    let mut out = DMatrix::zeros(n, n);
-    let view = MatRef::from_column_major_slice(l.as_slice(), n, n);
-    triangular::matmul(
-        MatMut::from_column_major_slice_mut(out.as_mut_slice(), n, n),
-        BlockStructure::TriangularLower,
-        Accum::Replace,
-        view,
-        BlockStructure::TriangularLower,
-        view.transpose(),
-        BlockStructure::TriangularUpper,
-        1.0,
-        Par::Seq,
-    );
-    mirror(&mut out);
-    out
+    let whole = MatMut::from_column_major_slice_mut(l.as_mut_slice(), n, n);
+    let mut rest = whole;
+    let mut own = Vec::<f64>::new();
+    // Of a column only those before it are read: from the last on they take each other's place.
+    for first in (0..n).step_by(BLOCK).rev() {
+        let width = rest.ncols() - first;
+        let (before, columns) = rest.split_at_col_mut(first);
+        let mut columns = columns.subrows_mut(first, n - first);
+        own.clear();
+        for column in columns.rb().col_iter() {
+            own.extend(column.iter());
+        }
+        let own = MatRef::from_column_major_slice(&own, n - first, width);
+        let (triangle, below) = own.split_at_row(width);
+        let (mut top, mut bottom) = columns.rb_mut().split_at_row_mut(width);
+        triangular::matmul(
+            top.rb_mut(),
+            BlockStructure::TriangularLower,
+            Accum::Replace,
+            triangle,
+            BlockStructure::TriangularLower,
+            triangle.transpose(),
+            BlockStructure::TriangularUpper,
+            1.0,
+            Par::Seq,
+        );
+        triangular::matmul(
+            bottom.rb_mut(),
+            BlockStructure::Rectangular,
+            Accum::Replace,
+            below,
+            BlockStructure::Rectangular,
+            triangle.transpose(),
+            BlockStructure::TriangularUpper,
+            1.0,
+            Par::Seq,
+        );
+        let (row, rows) = before.rb().subrows(first, n - first).split_at_row(width);
+        triangular::matmul(
+            top,
+            BlockStructure::TriangularLower,
+            Accum::Add,
+            row,
+            BlockStructure::Rectangular,
+            row.transpose(),
+            BlockStructure::Rectangular,
+            1.0,
+            Par::Seq,
+        );
+        matmul(bottom, Accum::Add, rows, row.transpose(), 1.0, Par::Seq);
+        rest = before;
+    }
+    mirror(&mut l);
+    l
 }
 
 /// A − Cᵀ C of the first rows and columns of a symmetric A, of which the lower triangle is read, as many as C has
@@ -292,7 +335,7 @@ mod tests {
             std::cmp::Ordering::Equal => 2.0 + (i as f64).sin(),
             std::cmp::Ordering::Greater => 0.1 * ((3 * i + j) as f64).cos(),
         });
-        let a = square(&l);
+        let a = square(l.clone());
         assert!((&a - &l * l.transpose()).norm() < 1e-12 * a.norm());
         let cholesky = DenseCholesky::new(a.clone()).expect("definite");
         let least = l.diagonal().amin().powi(2);

@@ -192,21 +192,31 @@ impl Transformation {
 
     /// Tᵀ S T of a symmetric S.
     pub(crate) fn congruence(&self, s: DMatrix<f64>) -> DMatrix<f64> {
-        let own = |(i, row): (usize, &Vec<(usize, f64)>)| {
-            let row = row.iter().map(move |&(k, c)| (i, k, c));
-            row.collect::<Vec<_>>()
-        };
-        let entries: Vec<(usize, usize, f64)> =
-            self.rows.iter().enumerate().flat_map(own).collect();
+        // Entries of T by columns, and where those of each column begin.
+        let mut entries: Vec<(usize, usize, f64)> = Vec::new();
+        for (i, row) in self.rows.iter().enumerate() {
+            entries.extend(row.iter().map(|&(k, c)| (k, i, c)));
+        }
+        entries.sort_unstable_by_key(|&(k, i, _)| (k, i));
+        let start = |k: usize| entries.partition_point(|entry| entry.0 < k);
+        let start: Vec<usize> = (0..=self.columns).map(start).collect();
         let mut out = DMatrix::zeros(self.columns, self.columns);
-        let mut column = DVector::zeros(self.columns);
+        // A column of Tᵀ S, of which the lower triangle takes what is below the diagonal.
+        let mut answer = vec![0.0; self.columns];
         for (s, row) in s.column_iter().zip(&self.rows) {
-            column.fill(0.0);
-            for &(i, k, c) in &entries {
-                column[k] += c * s[i];
+            let Some(first) = row.iter().map(|&(k, _)| k).min() else {
+                continue;
+            };
+            answer[first..].fill(0.0);
+            for &(k, i, c) in &entries[start[first]..] {
+                answer[k] += c * s[i];
             }
             for &(k, c) in row {
-                out.column_mut(k).axpy(c, &column, 1.0);
+                let mut column = out.column_mut(k);
+                let column = &mut column.as_mut_slice()[k..];
+                for (entry, answer) in column.iter_mut().zip(&answer[k..]) {
+                    *entry += c * answer;
+                }
             }
         }
         mirror(&mut out);

@@ -46,8 +46,8 @@ pub(super) fn solve<const D: usize>(
         (0..own.len()).partition(|&i| own[i].is_symmetric());
     let order: Vec<usize> = symmetric.iter().chain(&others).copied().collect();
     let first = symmetric.iter().map(|&i| own[i].left).sum();
-    let matrix = matrix(s, &own, &order);
-    let mut value = DVector::zeros(matrix.nrows());
+    let equations = || Equations::new(s, &own, (&order, first));
+    let mut value = DVector::zeros(own.iter().map(|o| o.left).sum());
     let mut row = 0;
     for &i in &order {
         let (o, known) = (&own[i], known.fixed_rows::<D>(D * i));
@@ -57,8 +57,9 @@ pub(super) fn solve<const D: usize>(
             row += 1;
         }
     }
-    let solved = eliminated(&matrix, first, &value).or_else(|| {
-        let mut lu = Lu::new(matrix).filter(|lu| lu.least_pivot > RIGID)?;
+    let solved = (first > 0).then(|| equations().eliminated(&value));
+    let solved = solved.flatten().or_else(|| {
+        let mut lu = Lu::new(equations().whole()).filter(|lu| lu.least_pivot > RIGID)?;
         Some(lu.solve(value))
     })?;
     let mut step = fixed;
@@ -75,69 +76,108 @@ pub(super) fn solve<const D: usize>(
 }
 
 /// The matrix of the rows that are left, contact by contact in an order, in the unknowns of the same.
-fn matrix<const D: usize>(s: &DMatrix<f64>, own: &[Own<D>], order: &[usize]) -> DMatrix<f64> {
-    // E of every row, and where its contact is.
-    let row = |i: usize| (0..own[i].left).map(move |r| (D * i, own[i].elastic.row(r)));
-    let rows = order.iter().flat_map(|&i| row(i));
-    let rows: Vec<(usize, [f64; D])> = rows
-        .map(|(at, e)| (at, std::array::from_fn(|k| e[k])))
-        .collect();
-    let mut matrix = DMatrix::zeros(rows.len(), rows.len());
-    let mut answer = DVector::zeros(s.nrows());
-    let mut first = 0;
-    let mut columns = matrix.column_iter_mut();
-    for &j in order {
-        let o = &own[j];
-        for (direction, mut column) in o.free.column_iter().take(o.left).zip(&mut columns) {
-            answer.copy_from(&s.column(D * j));
-            answer *= direction[0];
-            for k in (1..D).filter(|&k| direction[k] != 0.0) {
-                answer.axpy(direction[k], &s.column(D * j + k), 1.0);
-            }
-            for (entry, (at, e)) in column.iter_mut().zip(&rows) {
-                let seen = &answer.as_slice()[*at..][..D];
-                *entry = e.iter().zip(seen).map(|(e, s)| e * s).sum();
-            }
-            let alone = o.shift * direction;
-            for r in 0..o.left {
-                column[first + r] += alone[r];
-            }
-        }
-        first += o.left;
-    }
-    matrix
+struct Equations {
+    /// That of the first unknowns, which is symmetric: its lower triangle.
+    block: DMatrix<f64>,
+    /// That of the first unknowns in the rows of the others, transposed.
+    down: DMatrix<f64>,
+    /// That of the others, in all rows.
+    others: DMatrix<f64>,
 }
 
-/// x of A x = b, of which the `first` unknowns have a symmetric block, by Cholesky's factor of that and the L U of what
-/// it leaves of the others; `None` if it has none, or if what is left is singular beside it.
-fn eliminated(a: &DMatrix<f64>, first: usize, b: &DVector<f64>) -> Option<DVector<f64>> {
-    if first == 0 {
-        return None;
+impl Equations {
+    /// Of contacts in an order, of which the first with so many unknowns are symmetric.
+    fn new<const D: usize>(
+        s: &DMatrix<f64>,
+        own: &[Own<D>],
+        (order, first): (&[usize], usize),
+    ) -> Self {
+        // E of every row, and where its contact is.
+        let row = |i: usize| (0..own[i].left).map(move |r| (D * i, own[i].elastic.row(r)));
+        let rows = order.iter().flat_map(|&i| row(i));
+        let rows: Vec<(usize, [f64; D])> = rows
+            .map(|(at, e)| (at, std::array::from_fn(|k| e[k])))
+            .collect();
+        let mut new = Self {
+            block: DMatrix::zeros(first, first),
+            down: DMatrix::zeros(first, rows.len() - first),
+            others: DMatrix::zeros(rows.len(), rows.len() - first),
+        };
+        let mut answer = DVector::zeros(s.nrows());
+        let mut column = 0;
+        for &j in order {
+            let (o, begin) = (&own[j], column);
+            for direction in o.free.column_iter().take(o.left) {
+                answer.copy_from(&s.column(D * j));
+                answer *= direction[0];
+                for k in (1..D).filter(|&k| direction[k] != 0.0) {
+                    answer.axpy(direction[k], &s.column(D * j + k), 1.0);
+                }
+                let seen = |(at, e): &(usize, [f64; D])| -> f64 {
+                    let own = &answer.as_slice()[*at..][..D];
+                    e.iter().zip(own).map(|(e, s)| e * s).sum()
+                };
+                if column < first {
+                    let mut block = new.block.column_mut(column);
+                    let entries = block.iter_mut().zip(&rows[..first]);
+                    entries
+                        .skip(column)
+                        .for_each(|(entry, row)| *entry = seen(row));
+                    let mut down = new.down.row_mut(column);
+                    let entries = down.iter_mut().zip(&rows[first..]);
+                    entries.for_each(|(entry, row)| *entry = seen(row));
+                } else {
+                    let mut others = new.others.column_mut(column - first);
+                    let entries = others.iter_mut().zip(&rows);
+                    entries.for_each(|(entry, row)| *entry = seen(row));
+                    let alone = o.shift * direction;
+                    for r in 0..o.left {
+                        others[begin + r] += alone[r];
+                    }
+                }
+                column += 1;
+            }
+        }
+        new
     }
-    let rest = a.nrows() - first;
-    let block = a.view((0, 0), (first, first)).into_owned();
-    let stiffest = block.diagonal().amax();
-    let factor = DenseCholesky::new(block).filter(|f| f.holds(stiffest))?;
-    let mut x = b.rows(0, first).into_owned();
-    factor.forward_one(&mut x);
-    if rest == 0 {
+
+    fn whole(&self) -> DMatrix<f64> {
+        let (size, first) = (self.others.nrows(), self.block.nrows());
+        DMatrix::from_fn(size, size, |i, j| match (i < first, j < first) {
+            (_, false) => self.others[(i, j - first)],
+            (true, true) => self.block[(i.max(j), i.min(j))],
+            (false, true) => self.down[(j, i - first)],
+        })
+    }
+
+    /// x by Cholesky's factor of the symmetric block and the L U of what it leaves of the others; `None` if there is none,
+    /// or if what is left is singular beside it.
+    fn eliminated(self, b: &DVector<f64>) -> Option<DVector<f64>> {
+        let first = self.block.nrows();
+        let rest = b.len() - first;
+        let stiffest = self.block.diagonal().amax();
+        let factor = DenseCholesky::new(self.block).filter(|f| f.holds(stiffest))?;
+        let mut x = b.rows(0, first).into_owned();
+        factor.forward_one(&mut x);
+        if rest == 0 {
+            factor.backward_one(&mut x);
+            return Some(x);
+        }
+        let mut across = self.others.rows(0, first).into_owned();
+        let mut down = self.down;
+        factor.forward(&mut across);
+        factor.forward(&mut down);
+        let left = self.others.rows(first, rest) - transposed_product(&down, &across);
+        let mut lu = Lu::new(left).filter(|lu| {
+            let least = lu.least_pivot * lu.largest_pivot;
+            least > RIGID * stiffest.max(lu.largest_pivot)
+        })?;
+        let y = lu.solve(b.rows(first, rest) - down.tr_mul(&x));
+        x -= across * &y;
         factor.backward_one(&mut x);
-        return Some(x);
+        let all = x.iter().chain(y.iter()).copied();
+        Some(DVector::from_iterator(first + rest, all))
     }
-    let mut across = a.view((0, first), (first, rest)).into_owned();
-    let mut down = a.view((first, 0), (rest, first)).transpose();
-    factor.forward(&mut across);
-    factor.forward(&mut down);
-    let left = a.view((first, first), (rest, rest)) - transposed_product(&down, &across);
-    let mut lu = Lu::new(left).filter(|lu| {
-        let least = lu.least_pivot * lu.largest_pivot;
-        least > RIGID * stiffest.max(lu.largest_pivot)
-    })?;
-    let y = lu.solve(b.rows(first, rest) - down.tr_mul(&x));
-    x -= across * &y;
-    factor.backward_one(&mut x);
-    let all = x.iter().chain(y.iter()).copied();
-    Some(DVector::from_iterator(first + rest, all))
 }
 
 /// Components of a contact at most, in the plane and in space.
@@ -339,12 +379,12 @@ mod tests {
                 .into_iter()
                 .chain((0..n / 2).filter(|i| i % 4 == 1))
                 .collect();
-            let matrix = matrix(&s, &own, &order);
-            let value = DVector::from_fn(matrix.nrows(), |i, _| (i as f64).cos());
-            let found = eliminated(&matrix, 18, &value);
+            let equations = || Equations::new(&s, &own, (&order, 18));
+            let value = DVector::from_fn(21, |i, _| (i as f64).cos());
+            let found = equations().eliminated(&value);
             assert_eq!(found.is_some(), is_stable);
             if let Some(x) = found {
-                assert!((matrix * x - value).amax() < 1e-10);
+                assert!((equations().whole() * x - value).amax() < 1e-10);
             }
         }
     }
