@@ -15,7 +15,7 @@ use moreau_laws::{Local, Status};
 use nalgebra::SVector;
 
 /// Slip that is rounding, over the size of the mesh.
-const NO_SLIP: f64 = 1e-13;
+const NO_SLIP: f64 = 1e-11;
 
 impl<const D: usize> Driver<D> {
     pub(crate) fn plastic_fraction(&self) -> f64 {
