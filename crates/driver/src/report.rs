@@ -175,7 +175,7 @@ pub struct ContactRecord<const D: usize> {
     pub area: f64,
     /// Status; for a point held along the surface, `Open` or `Stick`.
     pub status: Status,
-    /// Whether a displacement condition holds the point along the surface.
+    /// Whether a displacement condition holds the point along the surface; one that such conditions drag along it slips.
     pub held: bool,
     /// Displacement in the springs of the penalty method \[mm\]: total across the gap, of the
     /// increment along the surface; zero for the exact methods.

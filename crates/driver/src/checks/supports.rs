@@ -174,17 +174,20 @@ impl<const D: usize> Driver<D> {
         free.filter_map(tool).collect()
     }
 
-    /// A rigid motion of a body in a step, in words after a cell of the body, that nothing resists once some of the
-    /// contact points are open; the others resist by their normals, and by friction.
+    /// A rigid motion of a body in a step, in words after a cell of the body, that nothing resists where contact points
+    /// have these statuses: what slips resists by its normal, what sticks by friction too, a tie always.
     pub fn let_go(
         &self,
         step: &Step<D>,
-        is_open: impl Fn(usize) -> bool,
+        status: impl Fn(usize) -> Status,
     ) -> Option<(usize, String)> {
         let loading = self.loading(step).ok()?;
-        let rows = self.resisted(&loading, |driver, k| match is_open(k) {
-            true => 0,
-            false => driver.may_resist(k),
+        let rows = self.resisted(&loading, |driver, k| {
+            let told = match driver.points[k].law.is_tie() {
+                true => Status::Tied,
+                false => status(k),
+            };
+            resists::<D>(told).min(driver.may_resist(k))
         });
         let bodies = rows.cells.len();
         let (body, motion) = rows.free().into_iter().find(|(body, _)| *body < bodies)?;

@@ -148,6 +148,16 @@ impl<const D: usize> Driver<D> {
         };
         let mut all: Vec<_> = self.points.iter().zip(&self.footing.rows).map(at).collect();
         self.stop_once(|a| system.free_at(a), &mut all);
+        for (k, motion_row) in all.iter_mut().zip(&self.footing.rows) {
+            // Neither the cone of a corner nor a tool that feels its friction turn it.
+            let decided = k.at_corner || k.lever.is_some();
+            let alone = |n: &SVector<f64, D>| {
+                let mut nodes = motion_row.weights();
+                nodes.all(|(a, _)| system.free_at(a).is_along(n))
+            };
+            let n = k.axes.column(0).into_owned();
+            k.dragged = k.dragged.filter(|_| !decided && alone(&n));
+        }
         all
     }
 

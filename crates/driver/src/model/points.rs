@@ -4,7 +4,7 @@ use crate::error::ModelError;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::vector::subspace::Subspace;
 use moreau_contact::{Obstacle, frame};
-use moreau_laws::{Friction, Local};
+use moreau_laws::{Friction, Local, Status};
 use moreau_mesh::{NodeKind, nearest};
 use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
 
@@ -142,6 +142,9 @@ pub(crate) struct Kinematics<const D: usize> {
     pub(crate) active: [bool; D],
     /// Whether the point is at a sharp corner of its tool.
     pub(crate) at_corner: bool,
+    /// Slip of the step in space \[mm\] where conditions prescribe it along the whole surface and leave the point free
+    /// across: friction against it acts on no unknown displacement, so that it can follow from the pressure.
+    pub(crate) dragged: Option<SVector<f64, D>>,
     /// ∂n/∂x of what is opposite, where forces turn with it \[1/mm\].
     pub(crate) curvature: SMatrix<f64, D, D>,
     /// The degree of freedom of the turn of a tool that a moment turns, and how the tool moves here with that.
@@ -191,6 +194,7 @@ impl<const D: usize> Kinematics<D> {
                 .into();
         }
         out.axes.set_column(0, n);
+        out.dragged = (dimension == 1 && 1.0 - length < PRESCRIBED).then(|| slip - free.part(slip));
         for k in 0..dimension {
             let e = q.column(k);
             out.active[k] = true;
@@ -249,10 +253,48 @@ impl<const D: usize> Kinematics<D> {
             gap,
             active: [false; D],
             at_corner: false,
+            dragged: None,
             curvature: SMatrix::zeros(),
             lever: None,
             law,
         }
+    }
+
+    /// Friction on a point that conditions drag along the surface, under the pressure that was found: against its slip,
+    /// and where that is rounding what there was before, as far as the pressure bears it. Its tangents take part then,
+    /// with the status that is returned.
+    pub(crate) fn drag(
+        &mut self,
+        axis: Option<&SVector<f64, D>>,
+        t: &mut Local<D>,
+        before: &SVector<f64, D>,
+        rounding: f64,
+    ) -> Option<Status> {
+        let slip = self.dragged.filter(|_| t[0] > 0.0)?;
+        let q = frame_along(&self.axes.column(0).into_owned(), axis);
+        let along = |v: &SVector<f64, D>| {
+            let mut tangential: Local<D> = q.tr_mul(v);
+            tangential[0] = 0.0;
+            tangential
+        };
+        let (u, before) = (along(&slip), along(before));
+        // Of an ellipse between stretched vectors, where it is a circle.
+        let (m, bound) = (self.law.stretch::<D>(), self.law.bound(t[0]));
+        let held = before.component_div(&m);
+        let (status, way, size) = match u.norm() > rounding {
+            true => (Status::Slip, -u.component_mul(&m), bound),
+            false => (Status::Stick, held, bound.min(held.norm())),
+        };
+        if size <= 0.0 {
+            return None;
+        }
+        *t += (way * (size / way.norm())).component_mul(&m);
+        for j in 1..D {
+            self.axes.set_column(j, &q.column(j));
+            self.active[j] = true;
+            self.u[j] = u[j];
+        }
+        Some(status)
     }
 
     /// Force on the body in space, for a force t in the frame \[N\].

@@ -14,6 +14,9 @@ use moreau_contact::{Certificate, ContactSolution};
 use moreau_laws::{Local, Status};
 use nalgebra::SVector;
 
+/// Slip that is rounding, over the size of the mesh.
+const NO_SLIP: f64 = 1e-11;
+
 impl<const D: usize> Driver<D> {
     pub(crate) fn plastic_fraction(&self) -> f64 {
         let energies = self.blocks.iter().map(|b| b.energy());
@@ -35,13 +38,15 @@ impl<const D: usize> Driver<D> {
         let Candidate {
             d_u,
             internal,
-            kinematics,
+            mut kinematics,
             solution,
             out_of_balance,
             counts,
         } = candidate;
         self.check_laws()?;
-        let record = |i: usize| self.record(i, &kinematics[i], &solution);
+        let mut told = solution.clone();
+        self.drag(&mut kinematics, &mut told);
+        let record = |i: usize| self.record(i, &kinematics[i], &told);
         let contacts: Vec<ContactRecord<D>> = (0..kinematics.len()).map(record).collect();
         let forces: Vec<Local<D>> = contacts.iter().map(|c| c.t).collect();
         let obeying: Vec<Local<D>> = contacts.iter().map(|c| c.u + c.spring).collect();
@@ -80,6 +85,17 @@ impl<const D: usize> Driver<D> {
         };
         let verdict = (plastic_fraction, certificate);
         Ok(self.report(verdict, corners, out_of_balance, counts))
+    }
+
+    /// Friction at the points that conditions drag along a surface.
+    fn drag(&self, kinematics: &mut [Kinematics<D>], solution: &mut ContactSolution<D>) {
+        let rounding = NO_SLIP * self.mesh.size();
+        let solved = solution.force.iter_mut().zip(&mut solution.status);
+        let known = self.points.iter().zip(&self.state.contacts);
+        for ((k, (point, before)), (t, status)) in kinematics.iter_mut().zip(known).zip(solved) {
+            let dragged = k.drag(point.axis.as_ref(), t, &before.force, rounding);
+            *status = dragged.unwrap_or(*status);
+        }
     }
 
     /// What is kept of a contact point under a solution.

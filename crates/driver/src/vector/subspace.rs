@@ -74,6 +74,12 @@ impl<const D: usize> Subspace<D> {
         Self { basis, within }
     }
 
+    /// Whether it has nothing across a unit vector.
+    pub(crate) fn is_along(&self, n: &SVector<f64, D>) -> bool {
+        self.vectors()
+            .all(|v| (v - n * n.dot(&v)).norm() < PARALLEL)
+    }
+
     pub(crate) fn dimension(&self) -> usize {
         self.within.iter().filter(|w| **w).count()
     }

@@ -9,6 +9,7 @@ mod coarse;
 mod collapse;
 mod corners;
 mod doubts;
+mod dragged;
 mod examples;
 mod increments;
 mod interrupted;

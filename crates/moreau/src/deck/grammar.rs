@@ -121,6 +121,8 @@ fn not_toml(text: &str, span: &Range<usize>, said: &str) -> String {
         format!("the key \"{here}\" stands twice in one table")
     } else if from.starts_with(',') && digit(before.chars().last()) && digit(from.chars().nth(1)) {
         "a comma within a number: decimals have a point, as in 0.3".into()
+    } else if from.starts_with('.') && digit(from.chars().nth(1)) {
+        "a number begins with a digit, as in 0.3".into()
     } else {
         format!("not TOML: {}", said.replace('\n', ", "))
     }

@@ -83,14 +83,25 @@ impl Diagnosis {
             }
         );
         let free = step.filter(|_| pushed(deck, stage).is_none());
+        let seen = |k: usize| match last.is_some_and(|all| all.get(k) == Some(&Status::Open)) {
+            true => Status::Open,
+            false => Status::Stick,
+        };
         let free = free.and_then(|step| {
-            let is_open =
-                |k: usize| singular || last.is_some_and(|all| all.get(k) == Some(&Status::Open));
-            let (cell, motion) = driver.let_go(step, is_open)?;
-            Some((body_of(driver, cell), motion))
+            // Where nothing says which of them gave way, what slides is asked for first.
+            let all = |status: Status| driver.let_go(step, |_| status).filter(|_| singular);
+            let left = driver.let_go(step, seen).map(|free| (free, false));
+            let left = left.or_else(|| Some((all(Status::Slip)?, true)));
+            let ((cell, motion), slides) = left.or_else(|| Some((all(Status::Open)?, false)))?;
+            Some((body_of(driver, cell), motion, slides))
         });
         let suggestion = match (free, deck.steps.get(stage)) {
-            (Some((body, motion)), Some(step)) => format!(
+            (Some((body, motion, true)), Some(step)) => format!(
+                "contacts alone hold {body} against its {motion}, and they open, or slide under more than friction \
+                 bears: hold it in step \"{}\", press it on more, or end the step before",
+                step.name.value
+            ),
+            (Some((body, motion, false)), Some(step)) => format!(
                 "nothing holds {body} any longer, free is its {motion}: the contacts that held it are open; end step \
                  \"{}\" before, or hold it there",
                 step.name.value
@@ -156,7 +167,9 @@ fn suggestion(
         )
     });
     let pushed = pushed(deck, stage);
-    let yields = matches!(cause, IncrementError::Mechanism { .. }) || plastic_fraction > WIDESPREAD;
+    let yields = deck.materials.iter().any(|m| m.yields().is_some());
+    let yields = yields
+        && (matches!(cause, IncrementError::Mechanism { .. }) || plastic_fraction > WIDESPREAD);
     let exact = deck.solver.method == Method::Exact && !deck.solver.outside;
     match (load, cause) {
         (Some(load), _) if yields => format!(

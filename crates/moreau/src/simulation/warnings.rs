@@ -91,13 +91,14 @@ struct Balance {
 }
 
 impl Balance {
-    fn add(&mut self, energies: &Energies, increment: usize) {
+    /// Takes note of the energies after an increment, of which so much is the work of rounding.
+    fn add(&mut self, energies: &Energies, increment: usize, rounding: f64) {
         let imbalance = energies.imbalance();
         let change = imbalance - self.last;
         if change.abs() > self.change.abs() {
             (self.change, self.increment) = (change, increment);
         }
-        if imbalance.abs() > self.worst[0].abs() {
+        if imbalance.abs() > self.worst[0].abs().max(rounding) {
             self.worst = [imbalance, energies.external_work, energies.taken()];
         }
         self.last = imbalance;
@@ -144,7 +145,12 @@ impl Warnings {
         report: &IncrementReport,
         to_collapse: bool,
     ) {
-        self.balance.add(&report.energies, report.increment);
+        // No more than what is out of balance at every node, along the longest way.
+        let way = driver.displacements().iter();
+        let way = way.fold(0.0, |most: f64, u| most.max(u.abs()));
+        let rounding = driver.mesh().nodes().len() as f64 * report.out_of_balance * way;
+        self.balance
+            .add(&report.energies, report.increment, rounding);
         if !(to_collapse || driver.has_large_strains()) {
             self.deformed(&driver.deformation(), report.increment);
         }

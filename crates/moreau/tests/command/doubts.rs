@@ -191,6 +191,18 @@ fn tools_that_pass_between_nodes_are_told() {
     );
 }
 
+/// A block that is moved as a whole has forces that are rounding, whose work is no imbalance.
+#[test]
+fn energies_that_are_rounding_are_not_told() {
+    let tool = "plane = { point = [0, 20], normal = [0, -1] }";
+    let deck = block("quad8", [0.0, 20.0], [4, 2], tool, -0.1);
+    let deck = deck.replace(
+        "fix = [{ on = \"b.bottom\", u = [\"x\", \"y\"] }]",
+        "move = [{ on = \"b.bottom\", u = { x = 0.03, y = 0.07 } }]",
+    );
+    tells("rounding", &deck, &[&["never closed"]]);
+}
+
 /// A cylinder through 100 mm of air and 0.1 mm into a block in one increment, with friction all the way; with
 /// the way in a step of its own the balance closes.
 #[test]

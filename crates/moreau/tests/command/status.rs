@@ -299,3 +299,36 @@ fn a_tool_that_nothing_holds_is_told() {
         "{err}"
     );
 }
+
+/// A block that is pushed harder than friction holds it: nothing has opened, and nothing says so.
+#[test]
+fn a_body_that_slides_away_is_told() {
+    let deck = r#"
+units = "mm-N-MPa"
+analysis = "plane-strain"
+mesh.block = [{ name = "b", element = "quad8", x = [0, 4], y = [0, 2], cells = [4, 2] }]
+material = [{ on = "b", young = 1e5, poisson = 0.3 }]
+tool = [{ name = "floor", plane = { point = [0, 0], normal = [0, 1] } }]
+contact = [{ surface = "b.bottom", against = "floor", friction = 0.3 }]
+[[step]]
+name = "push"
+increments = 2
+load = [{ on = "b", body-force = [0.2, -0.5] }]
+"#;
+    let (status, out, err, _) = run("slides", deck, &[]);
+    assert_eq!(status, 2, "{out}{err}");
+    assert!(
+        err.contains("contacts alone hold the body \"b\" against its translation along x"),
+        "{err}"
+    );
+    assert!(!err.contains("are open"), "{err}");
+    // What needs bodies that are held without their contacts: an elastic one has no limit load.
+    let solver = "[solver]\ncontact = \"uzawa\"\nnesting = \"outside\"\n";
+    let nested = format!("{}{solver}", deck.replace("[0.2, -0.5]", "[0, -0.5]"));
+    let (status, out, err, _) = run("floats", &nested, &[]);
+    assert_eq!(status, 2, "{out}{err}");
+    assert!(
+        err.contains("it moves freely") && !err.contains("beyond the limit load"),
+        "{err}"
+    );
+}

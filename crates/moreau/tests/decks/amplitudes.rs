@@ -68,6 +68,30 @@ fn what_would_jump_is_pointed_at_with_the_row_that_does_not() {
     assert_eq!(more(load, "[[0, 0], [0.5, 1], [1, 0.5]]"), "");
 }
 
+/// Loads of one kind on one group act together: what a table varies begins at nothing beside what goes on.
+#[test]
+fn a_load_that_varies_beside_one_that_stays_jumps_from_nothing() {
+    let more = |loads: &str| {
+        let second = format!(
+            "load = [{{ on = \"block.top\", pressure = 5.0 }}]\n\n[[step]]\nname = \"more\"\nincrements = 2\nfix = [{{ on = \"block.left\", u = [\"x\"] }}]\nmove = [{{ on = \"punch\", u = {{ y = -0.2 }} }}]\nload = [{loads}]\n\n[expect]"
+        );
+        shown("\n[expect]", &second)
+    };
+    let stays = "{ on = \"block.top\", pressure = 5.0 }";
+    let varies = |first: f64| {
+        format!(
+            "{{ on = \"block.top\", pressure = 2.0, table = [[0, {first}], [0.5, 1], [1, 0]] }}"
+        )
+    };
+    assert_eq!(more(&format!("{stays}, {}", varies(0.0))), "");
+    assert_eq!(more(&format!("{}, {}", varies(0.5), varies(2.0))), "");
+    let jumps = more(&format!("{}, {}", varies(0.5), varies(0.5)));
+    assert!(
+        jumps.contains("would jump from 5 to 2") && jumps.contains("[0, 2]"),
+        "{jumps}"
+    );
+}
+
 #[test]
 fn a_step_without_end_has_no_table() {
     let text = include_str!("../../../../docs/examples/cylinder-to-collapse.toml");

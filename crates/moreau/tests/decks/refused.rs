@@ -212,6 +212,7 @@ const IN_THE_PLANE: [(&str, &[&str]); 22] = [
         "fix = [{ on = \"block.left\", u = [\"x\"] }]",
         &[
             "fix = [{ on = \"block.left\", u = [] }]",
+            "fix = [{ on = \"block.left\", u = [\"x\", \"x\"] }]",
             "fix = [{ on = \"block.left\", u = [\"z\"] }]",
             "fix = [{ on = \"block.left\", u = \"x\" }]",
             "fix = [{ on = \"block.left\" }]",

@@ -322,6 +322,7 @@ fn of_array(
     let first = |part: &Value| part.as_array().map_or(0, Vec::len);
     Ok(match keyword.as_str() {
         "minItems" => list.len() as u64 >= count,
+        "uniqueItems" => (1..list.len()).all(|k| !list[..k].contains(&list[k])),
         "maxItems" => list.len() as u64 <= count,
         "items" => {
             for inner in list.iter().skip(first(&part["prefixItems"])) {
@@ -372,7 +373,7 @@ fn matches(text: &str, pattern: &Value) -> bool {
 
 /// A keyword that asks nothing of a value of this kind. One that is not known here would pass unseen.
 fn of_another_kind(keyword: &str) -> bool {
-    const KNOWN: [&str; 19] = [
+    const KNOWN: [&str; 20] = [
         "required",
         "dependentRequired",
         "minProperties",
@@ -381,6 +382,7 @@ fn of_another_kind(keyword: &str) -> bool {
         "additionalProperties",
         "minItems",
         "maxItems",
+        "uniqueItems",
         "items",
         "prefixItems",
         "contains",

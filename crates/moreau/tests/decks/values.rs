@@ -4,6 +4,52 @@ use super::{DECK, flat, says, shown};
 use moreau::deck::open;
 
 #[test]
+fn what_is_told_twice_is_pointed_at() {
+    says(
+        "u = [\"x\"]",
+        "u = [\"x\", \"x\"]",
+        "\"x\", \"x\"",
+        &["each direction once"],
+    );
+    let tools = |told: &str| {
+        let tools = format!("increments = 20\ntools = [{told}]");
+        shown("increments = 20", &tools)
+    };
+    for (twice, what) in [
+        (
+            "{ name = \"foundation\", move = [0, 0.1] }, { name = \"foundation\", move = [0, 0.2] }",
+            "motion",
+        ),
+        (
+            "{ name = \"foundation\", force = [0, 1] }, { name = \"foundation\", force = [0, 2] }",
+            "force",
+        ),
+        (
+            "{ name = \"foundation\", turn = 1 }, { name = \"foundation\", moment = 3 }",
+            "turn",
+        ),
+    ] {
+        let out = tools(twice);
+        assert!(
+            out.contains(&format!("the {what} of \"foundation\" is told already")),
+            "{out}"
+        );
+    }
+    // Pressed by a force and turned by an angle.
+    let both = tools("{ name = \"foundation\", force = [0, 1], turn = 1 }");
+    assert_eq!(
+        both,
+        tools("{ name = \"foundation\", force = [0, 1] }, { name = \"foundation\", turn = 1 }")
+    );
+    assert!(!both.contains("error"), "{both}");
+    let point = shown("friction = 0.1", "friction = .1");
+    assert!(
+        point.contains("a number begins with a digit, as in 0.3"),
+        "{point}"
+    );
+}
+
+#[test]
 fn values_out_of_their_range_are_pointed_at() {
     says(
         "0.3",

@@ -37,13 +37,19 @@ pub(super) fn check(deck: &Deck, findings: &mut Findings) {
                     .about(Class::Steps);
                 continue;
             }
-            jumps(&deck.steps[..number], condition, findings);
+            jumps(&deck.steps[..number], step, condition, findings);
         }
     }
 }
 
-/// The parts of a condition that start elsewhere than the steps before have ended.
-fn jumps(before: &[StepEntry], condition: &ConditionEntry, findings: &mut Findings) {
+/// The parts of a condition that start elsewhere than the steps before have ended: with others of the same kind on the
+/// same group, all of which act together. One without a table goes on from what the others leave.
+fn jumps(
+    before: &[StepEntry],
+    step: &StepEntry,
+    condition: &ConditionEntry,
+    findings: &mut Findings,
+) {
     let Some((table, &[_, share])) = condition
         .table
         .as_ref()
@@ -52,7 +58,20 @@ fn jumps(before: &[StepEntry], condition: &ConditionEntry, findings: &mut Findin
         return;
     };
     for (part, value) in parts(&condition.action) {
-        let starts = value * share;
+        let beside = step
+            .conditions
+            .iter()
+            .filter(|c| !std::ptr::eq(*c, condition));
+        let beside = beside.filter(|c| c.on.value == condition.on.value);
+        let beside = beside.flat_map(|c| {
+            let share = c.table.as_ref().and_then(|t| Some(t.value.first()?[1]));
+            let own = parts(&c.action).into_iter().filter(|(p, _)| *p == part);
+            own.map(move |(_, v)| share.map(|share| v * share))
+        });
+        let Some(beside) = beside.sum::<Option<f64>>() else {
+            continue;
+        };
+        let starts = value * share + beside;
         let Some(held) = held(before, &condition.on.value, &part) else {
             continue;
         };
@@ -62,7 +81,7 @@ fn jumps(before: &[StepEntry], condition: &ConditionEntry, findings: &mut Findin
         let (what, on) = (part.0, &condition.on.value);
         let remedy = match value {
             0.0 => "a step of its own that takes it back".to_owned(),
-            _ => format!("[0, {}] as the first row", held / value + 0.0), // Not −0.
+            _ => format!("[0, {}] as the first row", (held - beside) / value + 0.0), // Not −0.
         };
         findings
             .error_with(

@@ -34,6 +34,7 @@ pub(super) fn read(table: Table<'_>, dimension: usize) -> Option<StepEntry> {
             read
         }));
     }
+    told_once(&conditions, table.log());
     let span = table.span.clone();
     table.finish();
     // A stand-in for what was refused, so that the conditions are still checked.
@@ -45,6 +46,27 @@ pub(super) fn read(table: Table<'_>, dimension: usize) -> Option<StepEntry> {
         conditions,
         span,
     })
+}
+
+/// What moves or drives a tool does not add up: it is told once in a step.
+fn told_once(conditions: &[ConditionEntry], log: &Log) {
+    let told = |c: &ConditionEntry| match &c.action {
+        Action::Tool(motion, turn) => [motion.as_ref().map(|_| "motion"), turn.map(|_| "turn")],
+        Action::Push(_, motion) => [motion.as_ref().map(|_| "motion"), Some("force")],
+        Action::Moment(_) => [Some("turn"), None],
+        _ => [None, None],
+    };
+    for (k, c) in conditions.iter().enumerate() {
+        let own = conditions[..k].iter().filter(|b| b.on.value == c.on.value);
+        let before: Vec<&str> = own.flat_map(told).flatten().collect();
+        if let Some(what) = told(c).into_iter().flatten().find(|w| before.contains(w)) {
+            let message = format!(
+                "the {what} of \"{}\" is told already in this step",
+                c.on.value
+            );
+            log.borrow_mut().error(&c.span, message, "expected once");
+        }
+    }
 }
 
 /// A number of equal increments, or their lengths.
@@ -143,6 +165,9 @@ fn fix(table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
     if axes.is_empty() {
         return reader::wrong(value, "u", "at least one direction", log);
     }
+    if (1..axes.len()).any(|k| axes[..k].contains(&axes[k])) {
+        return reader::wrong(value, "u", "each direction once", log);
+    }
     condition(on, Action::Fix(axes), table)
 }
 
@@ -223,10 +248,14 @@ fn tool(table: &Table<'_>, dimension: usize) -> Vec<ConditionEntry> {
     let moment = moment.and_then(|m| condition(name.clone(), Action::Moment(m), table));
     let moves = ["move", "force"].iter().any(|key| table.get(key).is_some());
     let motion = match given.is_none() || moves {
-        true => motion(name, table, dimension),
+        true => motion(name.clone(), table, dimension),
         false => None,
     };
-    motion.into_iter().chain(moment).collect()
+    // Beside a force, which moves it.
+    let turned = table.get("force").and(table.get("turn"));
+    let turned = turned.and_then(|value| turn(value, dimension, log));
+    let turned = turned.and_then(|t| condition(name, Action::Tool(None, Some(t)), table));
+    motion.into_iter().chain(turned).chain(moment).collect()
 }
 
 fn motion(name: Option<At<String>>, table: &Table<'_>, dimension: usize) -> Option<ConditionEntry> {
