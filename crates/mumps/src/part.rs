@@ -86,10 +86,10 @@ impl Part {
         let Some(instance) = &mut self.instance else {
             return;
         };
-        for _ in 0..=self.larger {
+        for times in 0..=self.larger {
             // As many as were analysed: the callers have seen to it.
             instance.factorise(values, schur.as_deref_mut());
-            if !SPACE.contains(&instance.integer(1)) {
+            if !SPACE.contains(&instance.integer(1)) || times == self.larger {
                 return;
             }
             self.spare = 2 * self.spare.max(20);
