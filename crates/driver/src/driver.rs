@@ -1,6 +1,6 @@
 //! The driver: the state of a model, and steps applied to it; not the iteration of an increment.
 
-use crate::assembly::block::{Block, PointField, PointState};
+use crate::assembly::block::{Block, PointField, PointState, points_of};
 use crate::assembly::cell_law::{Motion, Stiffness};
 use crate::assembly::spread::serve;
 use crate::error::{IncrementError, LawFault, ModelError};
@@ -239,6 +239,12 @@ impl<const D: usize> Driver<D> {
             .map_or_else(Timings::default, |s| s.timings)
     }
 
+    /// Gives back the memory of the linear system, which another increment makes anew; what is told of it, its times among
+    /// that, is gone with it.
+    pub fn free_system(&mut self) {
+        self.system = None;
+    }
+
     /// Contact points, in the order of the contacts and of the nodes in each.
     pub fn contacts(&self) -> &[ContactRecord<D>] {
         &self.state.contacts
@@ -277,7 +283,7 @@ impl<const D: usize> Driver<D> {
         let mut all: Vec<PointField> = Vec::new();
         let mut before = 0;
         for block in &self.blocks {
-            let points = block.points(&self.state.displacement).len();
+            let points = points_of(block.as_ref());
             for own in block.fields(&self.state.displacement) {
                 let same = |f: &PointField| (&f.name, f.components) == (&own.name, own.components);
                 match all.iter_mut().find(|f| same(f)) {

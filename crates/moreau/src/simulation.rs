@@ -339,6 +339,11 @@ impl Simulation {
         either!(&self.course, course => course.outcome(&self.deck))
     }
 
+    /// Gives back the memory of the linear system at the end, after the [`outcome`](Self::outcome), which tells of it.
+    pub(crate) fn free_system(&mut self) {
+        either!(&mut self.course, course => course.free_system());
+    }
+
     /// Appends all that [`Simulation::read`] needs.
     pub(crate) fn write(&self, numbers: &mut Vec<f64>) {
         either!(&self.course, course => course.write(numbers));

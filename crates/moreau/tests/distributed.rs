@@ -324,6 +324,42 @@ fn too_little_space_of_mumps_is_made_larger() {
     place.assert_alike("one", "two");
 }
 
+/// Where no larger working space helps, the increment fails with the number of the error, what has converged stays, and
+/// a run that has the room goes on from it.
+#[test]
+fn an_error_of_mumps_that_stays_is_told_and_nothing_is_lost() {
+    if !has_mpi("an error of MUMPS that stays") {
+        return;
+    }
+    let place = Place::new(
+        "gave-up",
+        &deck([4, 4, 2], 3, "strain = \"finite\"", "block.front"),
+    );
+    let run = ["run", "deck.toml", "--quiet", "--out"];
+    assert!(place.alone(&[&run[..], &["one"]].concat()).status.success());
+    let ended = place.on(2, &[&run[..], &["out"]].concat()).output();
+    assert!(ended.expect("mpirun").status.success());
+    // As if it had ended after its second increment.
+    let last = |n: usize| {
+        place
+            .0
+            .join(format!("out/checkpoint/increment-{n:06}.ckpt"))
+    };
+    fs::remove_file(last(3)).expect("the last");
+    let resume = ["resume", "out", "--quiet"];
+    let mut command = place.on(2, &resume);
+    let tight = command.env("MOREAU_SPARE", "-60").env("MOREAU_LARGER", "0");
+    let told = tight.output().expect("mpirun");
+    let text = String::from_utf8_lossy(&told.stderr).into_owned();
+    assert_eq!(told.status.code(), Some(2), "{text}");
+    assert!(text.contains("gave up with its error -9"), "{text}");
+    assert!(last(2).exists() && !last(3).exists());
+    assert_eq!(place.history("out").len(), 2);
+    let told = place.on(2, &resume).output().expect("mpirun");
+    assert!(told.status.success(), "{told:?}");
+    place.assert_alike("one", "out");
+}
+
 #[test]
 fn a_deck_with_errors_is_told_once_and_ends_all() {
     if !has_mpi("a deck with errors") {

@@ -3,6 +3,9 @@
 
 #define _POSIX_C_SOURCE 200809L
 #include <dmumps_c.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <mpi.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -13,6 +16,11 @@ static MPI_Comm ours = MPI_COMM_NULL;
 
 int moreau_mpi_begin(int *rank, int *size) {
     int given = 0, begun = 0;
+#ifdef __GLIBC__
+    // Vectors over all unknowns are given back to the system when they are freed: what they leave between others is
+    // room that nothing fits in, a tenth of a process.
+    mallopt(M_MMAP_THRESHOLD, 4 << 20);
+#endif
     MPI_Initialized(&begun);
     if (!begun && MPI_Init_thread(NULL, NULL, MPI_THREAD_SERIALIZED, &given) != MPI_SUCCESS)
         return 1;
@@ -120,6 +128,7 @@ void moreau_mumps_factorise(DMUMPS_STRUC_C *m, const double *values, double *sch
     }
     run(m, 2);
     m->a_loc = NULL;
+    m->schur = NULL;
 }
 
 void moreau_mumps_solve(DMUMPS_STRUC_C *m, double *x, int n) {

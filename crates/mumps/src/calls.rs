@@ -93,7 +93,6 @@ pub(crate) struct Instance {
     /// Rows, columns, kept unknowns and order, counted from 1: MUMPS keeps their addresses.
     places: [Vec<c_int>; 4],
     size: usize,
-    schur: Vec<f64>,
 }
 
 // SAFETY: the structure belongs to this value alone, nothing in it is bound to a thread, and calls are one at a
@@ -112,7 +111,6 @@ impl Instance {
             raw,
             places: [const { Vec::new() }; 4],
             size: 0,
-            schur: Vec::new(),
         })
     }
 
@@ -190,32 +188,24 @@ impl Instance {
         }
     }
 
-    /// Factorises the values of the analysed entries; the Schur complement is written on the first process. Values
-    /// that are not as many as the entries are not looked at: false.
-    pub(crate) fn factorise(&mut self, values: &[f64], first: bool) -> bool {
-        if values.len() != self.places[0].len() {
+    /// Factorises the values of the analysed entries; the Schur complement is written on the first process, which gives
+    /// room for it, both triangles. Values that are not as many as the entries are not looked at, nor is room that
+    /// is not as large: false.
+    pub(crate) fn factorise(&mut self, values: &[f64], schur: Option<&mut [f64]>) -> bool {
+        let kept = self.places[2].len();
+        let fits = schur.as_ref().is_none_or(|s| s.len() == kept * kept);
+        if values.len() != self.places[0].len() || !fits {
             return false;
         }
         let _alone = alone();
-        let kept = self.places[2].len();
-        let schur = match first && kept > 0 {
-            true => {
-                self.schur.resize(kept * kept, 0.0);
-                self.schur.as_mut_ptr()
-            }
-            false => null_mut(),
-        };
-        // SAFETY: there are as many values as entries were analysed, which are only read and which C forgets after the call, and
-        // room for kept × kept numbers, which lives as long as the instance.
+        let schur = schur.filter(|s| !s.is_empty());
+        let schur = schur.map_or(null_mut(), |s| s.as_mut_ptr());
+        // SAFETY: there are as many values as entries were analysed, which are only read, and room for kept × kept
+        // numbers or no address; C forgets both after the call.
         unsafe {
             moreau_mumps_factorise(self.raw.as_ptr(), values.as_ptr(), schur, kept as c_int);
         }
         true
-    }
-
-    /// The Schur complement, both triangles.
-    pub(crate) fn schur(&self) -> &[f64] {
-        &self.schur
     }
 
     /// Solves for one right-hand side, which the first process gives and gets; the others give nothing. False where

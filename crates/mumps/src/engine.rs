@@ -46,7 +46,7 @@ pub(crate) fn assist(
                 let places: Vec<u32> = all.iter().flat_map(|&(i, j, _)| [i, j]).collect();
                 let values: Vec<f64> = all.iter().map(|&(_, _, k)| k).collect();
                 team.send(0, Parcel::default().indices(&places).reals(&values).bytes());
-                part.factorise(share.values, false);
+                part.factorise(share.values, None);
             }
         }
         SOLVE => {
@@ -361,17 +361,12 @@ impl Engine for Mumps {
             let pairs = places.chunks_exact(2).zip(values);
             self.coupling.extend(pairs.map(|(at, k)| (at[0], at[1], k)));
         }
-        self.part.factorise(values, true);
         let first = self.inner();
         self.schur.fill(0.0);
+        self.part.factorise(values, Some(self.schur.as_mut_slice()));
         match &self.part.instance {
-            Some(instance) if instance.integer(1) >= 0 => {
-                let own = self.schur.as_mut_slice().iter_mut().zip(instance.schur());
-                own.for_each(|(s, found)| *s = *found);
-                // By rows, its lower triangle is the upper one by columns.
-                self.schur.fill_lower_triangle_with_upper_triangle();
-            }
-            Some(_) => {}
+            // By rows, its lower triangle is the upper one by columns.
+            Some(_) => self.schur.fill_lower_triangle_with_upper_triangle(),
             None => {
                 for &(i, j, k) in &self.coupling {
                     let (i, j) = (i as usize - first, j as usize - first);

@@ -12,6 +12,8 @@ pub struct Options {
     pub metis: bool,
     /// Part by which working space is larger than was estimated, in percent; `None` as MUMPS has it.
     pub spare: Option<i32>,
+    /// How many times working space that turns out too small is doubled; `None` as this crate has it, six times.
+    pub larger: Option<usize>,
 }
 
 impl Options {
@@ -21,6 +23,7 @@ impl Options {
             self.low_rank.unwrap_or(-1.0),
             f64::from(u8::from(self.metis)),
             spare,
+            self.larger.map_or(-1.0, |n| n as f64),
         ];
         parcel.reals(&numbers)
     }
@@ -32,6 +35,7 @@ impl Options {
             low_rank: at(0),
             metis: at(1) == Some(1.0),
             spare: at(2).map(|x| x as i32),
+            larger: at(3).map(|x| x as usize),
         }
     }
 }

@@ -49,6 +49,8 @@ pub(crate) struct Part {
     first: usize,
     /// By how much working space is larger than was estimated, in percent.
     spare: i32,
+    /// How many times it is made larger still.
+    larger: usize,
 }
 
 impl Part {
@@ -74,18 +76,20 @@ impl Part {
             instance,
             first: size - kept,
             spare: options.spare.unwrap_or(20),
+            larger: options.larger.unwrap_or(LARGER),
         }
     }
 
-    /// Factorises, with more working space as long as there is too little: on all processes alike.
-    pub(crate) fn factorise(&mut self, values: &[f64], first: bool) {
+    /// Factorises, with more working space as long as there is too little: on all processes alike. S is written where the
+    /// first process has room for it.
+    pub(crate) fn factorise(&mut self, values: &[f64], mut schur: Option<&mut [f64]>) {
         let Some(instance) = &mut self.instance else {
             return;
         };
-        for _ in 0..=LARGER {
+        for times in 0..=self.larger {
             // As many as were analysed: the callers have seen to it.
-            instance.factorise(values, first);
-            if !SPACE.contains(&instance.integer(1)) {
+            instance.factorise(values, schur.as_deref_mut());
+            if !SPACE.contains(&instance.integer(1)) || times == self.larger {
                 return;
             }
             self.spare = 2 * self.spare.max(20);

@@ -13,14 +13,12 @@ pub(crate) struct Numbering {
     pub(crate) dofs: Vec<usize>,
     /// Number of interface unknowns: the last.
     pub(crate) interface: usize,
-    /// Which unknowns share a cell.
-    pub(crate) pattern: Pattern,
 }
 
 impl Numbering {
     /// By nested dissection of the nodes, and with those of the interface, the pivot and the tools
     /// last; the tools are nodes after those of the mesh. Nodes are neighbours where they share a cell, or
-    /// are in one of the `coupled` lists.
+    /// are in one of the `coupled` lists; which they are is handed on.
     pub(crate) fn new<const D: usize>(
         mesh: &Mesh<D>,
         fixed: impl Fn(usize) -> bool,
@@ -28,7 +26,7 @@ impl Numbering {
         pivot: Option<usize>,
         tools: usize,
         coupled: &[Vec<usize>],
-    ) -> Self {
+    ) -> (Self, Adjacency) {
         let nodes = mesh.nodes().len() + tools;
         let cells = (0..mesh.cell_count()).map(|c| mesh.cell_nodes(c));
         let coupled = coupled.iter().map(Vec::as_slice);
@@ -60,13 +58,17 @@ impl Numbering {
                 }
             }
         }
-        let pattern = adjacency.pattern::<D>(&position, &dofs, interface);
-        Self {
+        let numbering = Self {
             position,
             dofs,
             interface,
-            pattern,
-        }
+        };
+        (numbering, adjacency)
+    }
+
+    /// Which unknowns share a node, or nodes that are neighbours.
+    pub(crate) fn pattern<const D: usize>(&self, adjacency: &Adjacency) -> Pattern {
+        adjacency.pattern::<D>(&self.position, &self.dofs, self.interface)
     }
 }
 
@@ -82,7 +84,8 @@ pub(crate) fn pattern_of<const D: usize>(
     Adjacency::new(groups, nodes).pattern::<D>(position, dofs, kept)
 }
 
-struct Adjacency {
+/// Which nodes are neighbours.
+pub(crate) struct Adjacency {
     start: Vec<usize>,
     entries: Vec<usize>,
 }

@@ -38,7 +38,7 @@ impl Coarse {
             return None;
         }
         let fixed = |dof: usize| fixed(dof) || !kept[dof / D];
-        let coarse = Numbering::new(mesh, fixed, interface, pivot, tools, &[]);
+        let (coarse, _) = Numbering::new(mesh, fixed, interface, pivot, tools, &[]);
         let mut followed = vec![Vec::new(); kept.len()];
         for cell in 0..mesh.cell_count() {
             let nodes = mesh.cell_nodes(cell);

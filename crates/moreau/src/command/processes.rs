@@ -96,6 +96,7 @@ mod several {
         Options {
             metis: std::env::var_os("MOREAU_METIS").is_some(),
             spare: real("MOREAU_SPARE").map(|x| x as i32),
+            larger: real("MOREAU_LARGER").map(|x| x as usize),
             ..Options::default()
         }
     }

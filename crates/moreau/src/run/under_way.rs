@@ -177,6 +177,9 @@ impl<'a> Run<'a> {
     /// Runs to the end, or to where it stops, and writes what is written at the end.
     pub(super) fn finish(mut self, watch: &mut dyn Watch) -> Result<Outcome, RunError> {
         self.steps(watch)?;
+        let outcome = self.outcome();
+        // There is as much memory for the files as the factor has held.
+        self.simulation.free_system();
         let (simulation, out) = (&self.simulation, &mut self.out);
         let deck = simulation.deck();
         if let Some(grid) = simulation.failed() {
@@ -190,7 +193,8 @@ impl<'a> Run<'a> {
         let now = SystemTime::now().duration_since(UNIX_EPOCH);
         let outcome = Outcome {
             finished: now.ok().map(|now| now.as_secs()),
-            ..self.outcome()
+            seconds: self.seconds(),
+            ..outcome
         };
         replace_file(&self.directory.join(RUN), outcome.json().as_bytes())?;
         let simulation = &self.simulation;

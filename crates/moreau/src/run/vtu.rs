@@ -13,6 +13,9 @@ const LIST_HEAD: &str = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" v
                          byte_order=\"LittleEndian\">\n<Collection>";
 const LIST_TAIL: &str = "</Collection>\n</VTKFile>\n";
 
+/// A grid to be made: whether it is asked for, its part and its name in the list, and how.
+type Made<'a> = (bool, usize, &'a str, &'a dyn Fn() -> Option<Grid>);
+
 /// The files written so far, listed in `result.pvd`.
 pub(super) struct Collection {
     directory: PathBuf,
@@ -62,15 +65,15 @@ impl Collection {
         simulation: &Simulation,
         (bodies, at_points): (bool, bool),
     ) -> Result<(), RunError> {
-        let mut files = Vec::new();
-        if bodies {
-            files.push((0, "body", simulation.body()));
-            files.extend(simulation.surface().map(|grid| (1, "contact", grid)));
-            files.extend(simulation.tools().map(|grid| (3, "tools", grid)));
-        }
-        if at_points {
-            files.push((2, "points", simulation.points()));
-        }
+        // Each is written before the next one is made.
+        let made: [Made<'_>; 4] = [
+            (bodies, 0, "body", &|| Some(simulation.body())),
+            (bodies, 1, "contact", &|| simulation.surface()),
+            (bodies, 3, "tools", &|| simulation.tools()),
+            (at_points, 2, "points", &|| Some(simulation.points())),
+        ];
+        let asked = made.into_iter().filter(|&(asked, ..)| asked);
+        let files = asked.filter_map(|(_, part, name, grid)| Some((part, name, grid()?)));
         self.list(simulation, files)
     }
 
@@ -81,16 +84,17 @@ impl Collection {
         mode: &[f64],
     ) -> Result<(), RunError> {
         let grid = simulation.mode(mode).map(|grid| (4, "mode", grid));
-        self.list(simulation, grid.into_iter().collect())
+        self.list(simulation, grid.into_iter())
     }
 
     /// Writes parts of a simulation as it is, and lists them.
-    fn list(
+    fn list<'a>(
         &mut self,
         simulation: &Simulation,
-        files: Vec<(usize, &str, Grid)>,
+        files: impl Iterator<Item = (usize, &'a str, Grid)>,
     ) -> Result<(), RunError> {
-        if files.is_empty() {
+        let mut files = files.peekable();
+        if files.peek().is_none() {
             return Ok(());
         }
         let number = simulation.increments();
@@ -117,7 +121,7 @@ impl Collection {
     /// Writes a grid, in pieces where several processes hold its cells; the file to be listed.
     fn write(&self, simulation: &Simulation, name: &str, grid: &Grid) -> Result<String, RunError> {
         let parts = simulation.processes().and_then(|of| pieces(grid, of));
-        let Some(parts) = parts.filter(|parts| parts.len() > 1) else {
+        let Some(mut parts) = parts.filter(|parts| parts.len() > 1) else {
             let file = format!("{name}.vtu");
             write_file(&self.directory.join(&file), &grid.bytes())?;
             return Ok(file);
@@ -125,11 +129,13 @@ impl Collection {
         let files: Vec<String> = (0..parts.len())
             .map(|p| format!("{name}_{p}.vtu"))
             .collect();
-        for (piece, file) in parts.iter().zip(&files) {
+        let listed = parts.next().map(|first| (whole(&first, &files), first));
+        let (listed, first) = listed.unzip();
+        for (piece, file) in first.into_iter().chain(parts).zip(&files) {
             write_file(&self.directory.join(file), &piece.bytes())?;
         }
         let file = format!("{name}.pvtu");
-        write_file(&self.directory.join(&file), &whole(&parts, &files))?;
+        write_file(&self.directory.join(&file), &listed.unwrap_or_default())?;
         Ok(file)
     }
 }

@@ -187,6 +187,11 @@ impl<const D: usize> Course<D> {
         contact::table(&self.setup.driver, deck.units, stage as usize)
     }
 
+    /// See [`Simulation::free_system`](super::Simulation::free_system).
+    pub(super) fn free_system(&mut self) {
+        self.setup.driver.free_system();
+    }
+
     /// See [`Simulation::failed`](super::Simulation::failed).
     pub(super) fn failed(&self) -> Option<Grid> {
         let driver = &self.setup.driver;

@@ -21,12 +21,19 @@ fn crc(bytes: &[u8]) -> u64 {
 
 /// Numbers of a resolved deck as bytes.
 pub(crate) fn sealed(deck: &str, numbers: &[f64]) -> Vec<u8> {
-    let body: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
-    let mut bytes = MAGIC.to_vec();
-    for word in [crc(deck.as_bytes()), crc(&body), numbers.len() as u64] {
-        bytes.extend(word.to_le_bytes());
+    let head = MAGIC.len() + 24;
+    let mut bytes = Vec::with_capacity(head + 8 * numbers.len());
+    bytes.extend(MAGIC);
+    bytes.resize(head, 0);
+    numbers.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+    let words = [
+        crc(deck.as_bytes()),
+        crc(&bytes[head..]),
+        numbers.len() as u64,
+    ];
+    for (place, word) in bytes[MAGIC.len()..head].chunks_exact_mut(8).zip(words) {
+        place.copy_from_slice(&word.to_le_bytes());
     }
-    bytes.extend(body);
     bytes
 }
 

@@ -26,8 +26,8 @@ pub(super) const SOLVE: f64 = 60.0;
 /// Operations of a factorisation in about the time of the conjugate gradients of a Newton step: ten
 /// iterations, each of which reads the matrix five times and the factor of its coarse space twice; an
 /// entry is read in the time of eighty operations.
-fn conjugate_operations(pattern: &Pattern, coarse: f64) -> f64 {
-    10.0 * 80.0 * (5.0 * pattern.entries() as f64 + 2.0 * coarse)
+fn conjugate_operations(entries: usize, coarse: f64) -> f64 {
+    10.0 * 80.0 * (5.0 * entries as f64 + 2.0 * coarse)
 }
 
 /// What factorises a stiffness of a pattern, in so much memory \[bytes\], positive definite or of any sign: the
@@ -77,22 +77,22 @@ const CONDENSED: f64 = 6.0;
 fn ties_are_cheaper<const D: usize>(
     interface: usize,
     (entries, room): (usize, f64),
-    tied: impl Fn() -> Numbering,
-    condensed: impl Fn() -> Numbering,
-) -> Option<Numbering> {
+    tied: impl Fn() -> Numbered,
+    condensed: impl Fn() -> Numbered,
+) -> Option<Numbered> {
     let dense = CONDENSED * 2.0 / 3.0 * (interface as f64).powi(3);
     let (solves, factorisations) = TIED;
     if dense < solves * SOLVE * entries as f64 {
         return None;
     }
     let tied = tied();
-    let own = Cost::of(&tied.pattern);
+    let own = Cost::of(&tied.1);
     let through = factorisations * own.operations + solves * SOLVE * own.entries;
     let other = || {
-        let condensed = condensed();
-        let own = Cost::of(&condensed.pattern).operations;
+        let (_, pattern) = condensed();
+        let own = Cost::of(&pattern).operations;
         match D {
-            3 => own.min(conjugate_operations(&condensed.pattern, 0.0)),
+            3 => own.min(conjugate_operations(pattern.entries(), 0.0)),
             _ => own,
         }
     };
@@ -108,6 +108,9 @@ fn pairs<const D: usize>(blocks: &[Box<dyn Block<D>>]) -> usize {
     };
     blocks.iter().map(|b| of(b.as_ref())).sum()
 }
+
+/// A numbering, and which of its unknowns share a cell.
+type Numbered = (Numbering, Pattern);
 
 /// What is chosen to be factorised, and on which of its own entries this process adds K up.
 struct Chosen {
@@ -126,26 +129,50 @@ struct Choice<'a, const D: usize, F> {
     numbering: &'a Numbering,
     is_tied: bool,
     is_definite: bool,
+    /// Of all of K, on whatever process its entries are.
+    whole: Whole,
+}
+
+/// What is to be known of all of K.
+struct Whole {
+    entries: usize,
+    /// Operations of a factorisation.
+    operations: f64,
+    /// Where one process has it all.
+    pattern: Option<Pattern>,
+}
+
+impl Whole {
+    fn new(pattern: Pattern, is_of_one: bool) -> Self {
+        Self {
+            entries: pattern.entries(),
+            operations: Cost::of(&pattern).operations,
+            pattern: is_of_one.then_some(pattern),
+        }
+    }
 }
 
 impl<const D: usize, F: Fn(usize) -> bool> Choice<'_, D, F> {
     /// The factor of K itself, unless that of a coarse space is cheaper or the only one that has room.
     fn made(&self, others: &mut Option<Others>) -> Result<Chosen, TooLarge> {
-        let pattern = &self.numbering.pattern;
-        let cost = Cost::of(pattern).operations;
+        let &Whole {
+            entries,
+            operations: cost,
+            ..
+        } = &self.whole;
         // In the plane a factor is small, and linear cells in plastic flow are a poor coarse space.
-        if D == 3 && !self.is_tied && conjugate_operations(pattern, 0.0) < cost {
+        if D == 3 && !self.is_tied && conjugate_operations(entries, 0.0) < cost {
             let coarse = self.coarse(others).and_then(Result::ok);
             let is_cheaper = |chosen: &Chosen| {
                 let own = chosen.engine.cost();
-                own.operations + conjugate_operations(pattern, own.entries) < cost
+                own.operations + conjugate_operations(entries, own.entries) < cost
             };
             if let Some(chosen) = coarse.filter(is_cheaper) {
                 return Ok(chosen);
             }
             others.iter_mut().for_each(Others::refine);
         }
-        self.own(others.as_ref())
+        self.own()
             .or_else(|too_large| self.coarse(others).unwrap_or(Err(too_large)))
     }
 
@@ -153,11 +180,9 @@ impl<const D: usize, F: Fn(usize) -> bool> Choice<'_, D, F> {
         engine(pattern, self.memory, self.is_definite)
     }
 
-    fn own(&self, others: Option<&Others>) -> Result<Chosen, TooLarge> {
-        let pattern = match others {
-            None => self.numbering.pattern.clone(),
-            Some(_) => self.here(&[]).0,
-        };
+    fn own(&self) -> Result<Chosen, TooLarge> {
+        let pattern = self.whole.pattern.clone();
+        let pattern = pattern.unwrap_or_else(|| self.here(&[]).0);
         Ok(Chosen {
             engine: self.engine(&pattern)?,
             pattern,
@@ -167,10 +192,11 @@ impl<const D: usize, F: Fn(usize) -> bool> Choice<'_, D, F> {
 
     /// `None` if no node is between others.
     fn coarse(&self, others: &mut Option<Others>) -> Option<Result<Chosen, TooLarge>> {
-        let Numbering { dofs, pattern, .. } = self.numbering;
-        let (pattern, here) = match others {
-            None => (pattern.clone(), Vec::new()),
-            Some(others) => self.here(&others.shared(dofs.len())),
+        let dofs = &self.numbering.dofs;
+        let shared = others.as_ref().map(|others| others.shared(dofs.len()));
+        let (pattern, here) = match &self.whole.pattern {
+            Some(pattern) => (pattern.clone(), Vec::new()),
+            None => self.here(&shared.unwrap_or_default()),
         };
         let &Contacts {
             nodes,
@@ -275,13 +301,19 @@ impl System {
             coupled,
             turned,
         } = contacts;
-        let condensed = || Numbering::new(mesh, &fixed, interface_nodes, pivot, tools, turned);
+        let numbered = |interface: &[usize], pivot, coupled: &[Vec<usize>]| {
+            let (numbering, adjacency) =
+                Numbering::new(mesh, &fixed, interface, pivot, tools, coupled);
+            let pattern = numbering.pattern::<D>(&adjacency);
+            (numbering, pattern)
+        };
+        let condensed = || numbered(interface_nodes, pivot, turned);
         let tied = coupled.and_then(|coupled| {
-            let tied = || Numbering::new(mesh, &fixed, &[], None, tools, coupled);
+            let tied = || numbered(&[], None, coupled);
             let room = bytes.map_or(f64::INFINITY, |b| b as f64 / size_of::<f64>() as f64);
             if seam == Seam::Tied {
                 let tied = tied();
-                return (Cost::of(&tied.pattern).entries <= room).then_some(tied);
+                return (Cost::of(&tied.1).entries <= room).then_some(tied);
             }
             let free = |a: &usize| (D * a..D * a + D).filter(|&dof| !fixed(dof)).count();
             let nodes: BTreeSet<usize> = interface_nodes.iter().copied().collect();
@@ -291,8 +323,10 @@ impl System {
         let is_tied = tied.is_some();
         // Under large strains stresses add to the stiffness what may make it indefinite.
         let is_definite = blocks.iter().all(|b| b.keeps_elastic_stiffness());
-        let numbering = tied.unwrap_or_else(condensed);
+        let (numbering, pattern) = tied.unwrap_or_else(condensed);
         let several = team.filter(|team| team.size() > 1);
+        // On several processes it goes before they tell what is theirs.
+        let whole = Whole::new(pattern, several.is_none());
         let mut others = several.map(|team| Others::new(team, (&numbering.position, directions)));
         let choice = Choice {
             mesh,
@@ -303,6 +337,7 @@ impl System {
             numbering: &numbering,
             is_tied,
             is_definite,
+            whole,
         };
         let chosen = choice.made(&mut others);
         let Chosen {

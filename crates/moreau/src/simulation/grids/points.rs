@@ -18,6 +18,7 @@ pub(in crate::simulation) fn points<const D: usize>(driver: &Driver<D>) -> Grid 
     let mut order: Vec<usize> = (0..all.len()).collect();
     order.sort_by_key(|&k| all[k].cell);
     let states: Vec<_> = order.iter().map(|&k| all[k]).collect();
+    drop(all);
     let mut of_laws = driver.fields();
     for field in &mut of_laws {
         let n = field.components;
@@ -57,12 +58,9 @@ pub(in crate::simulation) fn points<const D: usize>(driver: &Driver<D>) -> Grid 
         values,
     };
     let of = |value: &dyn Fn(&PointState<D>) -> f64| states.iter().map(value).collect();
-    let values: Vec<_> = states
-        .iter()
-        .map(|p| (p.stress, von_mises(&p.stress), p.plastic_strain))
-        .collect();
+    let shown = |p: &PointState<D>| (p.stress, von_mises(&p.stress), p.plastic_strain);
     let mut data = vec![array("displacement", 3, displacement)];
-    data.extend(fields(&values));
+    data.extend(fields(&states.iter().map(shown).collect::<Vec<_>>()));
     data.extend(own_fields(&of_laws));
     data.push(array("cell", 1, of(&|p| p.cell as f64)));
     data.push(array("point", 1, numbers));
