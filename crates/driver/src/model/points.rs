@@ -145,6 +145,9 @@ pub(crate) struct Kinematics<const D: usize> {
     /// Slip of the step in space \[mm\] where conditions prescribe it along the whole surface and leave the point free
     /// across: friction against it acts on no unknown displacement, so that it can follow from the pressure.
     pub(crate) dragged: Option<SVector<f64, D>>,
+    /// Slip of the step in a solid \[mm\] where conditions prescribe it along one direction of the surface and leave the
+    /// other free: friction against it is none that the free displacement decides.
+    pub(crate) half_dragged: f64,
     /// ∂n/∂x of what is opposite, where forces turn with it \[1/mm\].
     pub(crate) curvature: SMatrix<f64, D, D>,
     /// The degree of freedom of the turn of a tool that a moment turns, and how the tool moves here with that.
@@ -195,6 +198,9 @@ impl<const D: usize> Kinematics<D> {
         }
         out.axes.set_column(0, n);
         out.dragged = (dimension == 1 && 1.0 - length < PRESCRIBED).then(|| slip - free.part(slip));
+        if D == 3 && dimension == 2 && 1.0 - length < PRESCRIBED {
+            out.half_dragged = (slip - free.part(slip)).norm();
+        }
         for k in 0..dimension {
             let e = q.column(k);
             out.active[k] = true;
@@ -254,6 +260,7 @@ impl<const D: usize> Kinematics<D> {
             active: [false; D],
             at_corner: false,
             dragged: None,
+            half_dragged: 0.0,
             curvature: SMatrix::zeros(),
             lever: None,
             law,

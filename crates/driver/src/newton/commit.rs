@@ -65,6 +65,12 @@ impl<const D: usize> Driver<D> {
         }
         let touches = |i: &usize| kinematics[*i].at_corner && contacts[*i].status != Status::Open;
         let corners = (0..contacts.len()).filter(touches).collect();
+        let rounding = NO_SLIP * self.mesh.size();
+        let half = |i: &usize| {
+            let (k, t) = (&kinematics[*i], contacts[*i].t);
+            k.half_dragged > rounding && t[0] > 0.0 && k.law.bound(t[0]) > 0.0
+        };
+        let half_dragged = (0..contacts.len()).filter(half).collect();
         let displacement = self.displacement_after(&d_u, end);
         // Against stresses heat does work, by the trapezoidal rule, that comes back from what it moves.
         energies.external_work -= 0.5 * (at_start + self.work_on_free(&free, &displacement));
@@ -84,7 +90,7 @@ impl<const D: usize> Driver<D> {
             solution: Some(solution),
         };
         let verdict = (plastic_fraction, certificate);
-        Ok(self.report(verdict, corners, out_of_balance, counts))
+        Ok(self.report(verdict, (corners, half_dragged), out_of_balance, counts))
     }
 
     /// Friction at the points that conditions drag along a surface.
@@ -212,7 +218,7 @@ impl<const D: usize> Driver<D> {
     fn report(
         &self,
         (plastic_fraction, certificate): (f64, Certificate),
-        corners: Vec<usize>,
+        (corners, half_dragged): (Vec<usize>, Vec<usize>),
         out_of_balance: f64,
         counts: Counts,
     ) -> IncrementReport {
@@ -248,6 +254,7 @@ impl<const D: usize> Driver<D> {
                 false => Vec::new(),
             },
             corners,
+            half_dragged,
             out_of_balance,
             residuals: counts.residuals,
         }

@@ -162,3 +162,34 @@ fn laws_hold_where_conditions_prescribe_the_slip_in_space() {
     let found = plate(ellipse.into(), Some([0.0, 0.0, 1.0]), [0.1, 0.0, 0.2]);
     close(found, [across, 8.0, along]);
 }
+
+/// A solid that is pushed by its side alone: what friction lacks there is told, and nothing else.
+#[test]
+fn nodes_that_are_dragged_in_one_direction_alone_are_told() {
+    for (also, told) in [(Some("block.left"), 0), (None, 3)] {
+        let line = uniform(0.0, 2.0, 2);
+        let mesh: Mesh<3> = block3("block", CellKind::Hex8, &line, &line, &line).expect("valid");
+        let floor = Plane::new([0.0, 0.0, 0.0], [0.0, 1.0, 0.0]).expect("a plane");
+        let model = Model::new(mesh, Solid)
+            .material(
+                "block",
+                Elastic::new(1e5, 0.3).expect("elastic"),
+                CellKind::Hex8.integration(),
+            )
+            .and_then(|m| m.tool("floor", floor))
+            .and_then(|m| m.contact("block.bottom", "floor", Coulomb::new(0.3).expect("valid")))
+            .expect("a model");
+        let mut driver = Driver::new(model, Settings::default()).expect("a driver");
+        let push = Step::new("push").pressure("block.top", 1.0);
+        let push = push.displace("block.left", Axis::X, 0.1);
+        let push = match also {
+            Some(side) => push.fix(side, &[Axis::Z]),
+            None => push,
+        };
+        let reports = driver.run(&push, 1, |_, _| ()).expect("slides");
+        assert_eq!(reports[0].half_dragged.len(), told);
+        let friction = -driver.tool_force("floor").expect("a tool")[0];
+        // All of the weight rubs but that of the nodes that are told.
+        assert_eq!((friction - 0.3 * 4.0).abs() < 1e-9, told == 0, "{friction}");
+    }
+}
