@@ -66,9 +66,18 @@ impl Numbering {
         (numbering, adjacency)
     }
 
-    /// Which unknowns share a node, or nodes that are neighbours.
-    pub(crate) fn pattern<const D: usize>(&self, adjacency: &Adjacency) -> Pattern {
-        adjacency.pattern::<D>(&self.position, &self.dofs, self.interface)
+    /// The same, and which unknowns share a node or nodes that are neighbours.
+    pub(crate) fn with_pattern<const D: usize>(
+        mesh: &Mesh<D>,
+        fixed: impl Fn(usize) -> bool,
+        interface_nodes: &[usize],
+        pivot: Option<usize>,
+        tools: usize,
+        coupled: &[Vec<usize>],
+    ) -> (Self, Pattern) {
+        let (new, adjacency) = Self::new(mesh, fixed, interface_nodes, pivot, tools, coupled);
+        let pattern = adjacency.pattern::<D>(&new.position, &new.dofs, new.interface);
+        (new, pattern)
     }
 }
 

@@ -301,15 +301,10 @@ impl System {
             coupled,
             turned,
         } = contacts;
-        let numbered = |interface: &[usize], pivot, coupled: &[Vec<usize>]| {
-            let (numbering, adjacency) =
-                Numbering::new(mesh, &fixed, interface, pivot, tools, coupled);
-            let pattern = numbering.pattern::<D>(&adjacency);
-            (numbering, pattern)
-        };
-        let condensed = || numbered(interface_nodes, pivot, turned);
+        let condensed =
+            || Numbering::with_pattern(mesh, &fixed, interface_nodes, pivot, tools, turned);
         let tied = coupled.and_then(|coupled| {
-            let tied = || numbered(&[], None, coupled);
+            let tied = || Numbering::with_pattern(mesh, &fixed, &[], None, tools, coupled);
             let room = bytes.map_or(f64::INFINITY, |b| b as f64 / size_of::<f64>() as f64);
             if seam == Seam::Tied {
                 let tied = tied();
