@@ -73,9 +73,9 @@ fn a_block_is_upset_with_friction() -> Fallible {
     Ok(())
 }
 
-/// Without hardening the tangent is indefinite, and shear bands form. With μ = 1 the reference goes over to
-/// another branch in increment 32; there following the platen in parts of the increment leads to the one that
-/// is found here.
+/// Without hardening the tangent is indefinite, and shear bands form. With μ = 1 there are several branches from increment
+/// 31 on: the order in which a product is summed decides there between that of the reference and one of a load that differs by
+/// 0.15 %, and in increment 32 the reference goes over to another itself.
 #[test]
 fn a_block_without_hardening_is_upset_with_friction() -> Fallible {
     let plane = PlaneStrain::default();
@@ -83,7 +83,7 @@ fn a_block_without_hardening_is_upset_with_friction() -> Fallible {
         let name = format!("F2_Q8_8x8_mu{mu}_H0");
         squeezed(SQUARE, plane, (0.0, mu), (4.0, 40), &name)?;
     }
-    squeezed(SQUARE, plane, (0.0, 1.0), (3.1, 31), "F2_Q8_8x8_mu1_H0").map(|_| ())
+    squeezed(SQUARE, plane, (0.0, 1.0), (3.0, 30), "F2_Q8_8x8_mu1_H0").map(|_| ())
 }
 
 #[test]
