@@ -320,6 +320,10 @@ mod tests {
         let c = DMatrix::from_fn(3, 50, |i, j| ((i + 2 * j) as f64).sin());
         let d = DMatrix::from_fn(3, 4, |i, j| ((5 * i + j) as f64).cos());
         assert!((transposed_product(&c, &d) - c.transpose() * &d).amax() < 1e-14);
+        // In more than one block of columns.
+        let l = DMatrix::from_fn(300, 300, |i, j| ((3 * i + 7 * j) as f64).sin());
+        let l = l.lower_triangle();
+        assert!((square(l.clone()) - &l * l.transpose()).amax() < 1e-11);
         let a = DMatrix::from_fn(70, 70, |i, j| ((i * j) as f64).sin() + (i + j) as f64);
         let mut lower = a.lower_triangle();
         let expected = a.view((0, 0), (50, 50)) - c.transpose() * &c;
