@@ -129,9 +129,6 @@ pub struct IncrementReport {
     /// [`Driver::contacts`](crate::Driver::contacts): their normal is any of a cone, see
     /// [`Obstacle::corner`](moreau_contact::Obstacle::corner).
     pub corners: Vec<usize>,
-    /// Closed contact points of solids that conditions drag along one direction of the surface and leave free along the
-    /// other, as indices of [`Driver::contacts`](crate::Driver::contacts): friction against the first is not in the result.
-    pub half_dragged: Vec<usize>,
     /// Largest nodal force that nothing balances \[N\].
     pub out_of_balance: f64,
     /// Out-of-balance force of every Newton iteration \[N\].

@@ -2,7 +2,7 @@
 //! it is solved.
 
 use crate::interface::elimination::{Elimination, Transformation, row};
-use crate::linear::suspension::Suspended;
+use crate::linear::suspension::{Suspended, steepness};
 use crate::linear::system::System;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Kinematics};
@@ -10,6 +10,7 @@ use moreau_algebra::{DenseCholesky, less_gram};
 use moreau_contact::{CondensedProblem, ContactError};
 use moreau_laws::{Local, Status};
 use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
 
 /// The contact problem of a linearised increment, and the way back to the interface unknowns.
 ///
@@ -116,20 +117,27 @@ impl InFrames {
         let mut rows = Elimination::new(load.len());
         let mut suspended = Vec::new();
         for (c, k) in kinematics.iter().enumerate() {
+            let mut normal = BTreeMap::new();
             for j in (0..D).filter(|&j| k.active[j]) {
                 let given = (&motion_rows[c], &system.prescribed().directions);
                 let row = row(given, k, j, |dof| system.interface_index(dof));
                 let own = (0..D).filter_map(|i| system.interface_index(D * points[c].node + i));
                 let own: Vec<usize> = own.collect();
-                if row.is_empty() {
+                if j == 0 {
+                    normal.clone_from(&row);
+                }
+                let is_known = j > 0 && k.known_slip.is_some();
+                if row.is_empty() && !is_known {
                     return Err(ContactError::Overconstrained { contact: c });
                 }
                 if !rows.solve(D * c + j, &row, &own) {
-                    let (component, force) = (D * c + j, force[c][j]);
+                    let measure = if is_known { &normal } else { &row }.clone();
                     suspended.push(Suspended {
-                        component,
+                        component: D * c + j,
                         row,
-                        force,
+                        force: force[c][j],
+                        measure,
+                        steepness: steepness(k, &force[c]),
                     });
                 }
             }

@@ -6,12 +6,19 @@ use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Kinematics, Turn, in_space, turned};
 use crate::vector::SparseVector;
-use moreau_laws::Local;
+use crate::vector::subspace::Subspace;
+use moreau_laws::{Friction, Local};
 use nalgebra::{SMatrix, SVector};
 
 /// How far sideways of a sharp corner a point may be to be at it, over the size of the mesh: what
 /// decides between its two faces is then rounding, and not the model.
 const AHEAD: f64 = 1e-6;
+
+/// Slip that is rounding, over the size of the mesh.
+pub(crate) const NO_SLIP: f64 = 1e-11;
+
+/// Part of a force that is rounding.
+const NO_FORCE: f64 = 1e-9;
 
 impl<const D: usize> Driver<D> {
     /// Where a tool is at the end of an increment: as it is told, or moved by what it was driven to.
@@ -83,7 +90,7 @@ impl<const D: usize> Driver<D> {
     ) -> Vec<Kinematics<D>> {
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
         let size = self.mesh.size();
-        let at = |(p, motion_row): (&ContactPoint<D>, &RelativeMotionRow<D>)| {
+        let at = |(i, (p, motion_row)): (usize, (&ContactPoint<D>, &RelativeMotionRow<D>))| {
             let free = &motion_row.free(p.node, |a| system.free_at(a));
             if p.law.is_tie() {
                 // Of the undeformed bodies, not of the increment: nothing adds up.
@@ -99,7 +106,15 @@ impl<const D: usize> Driver<D> {
                 let kinematics = match motion_row.plane(&since) {
                     Some((n, gap)) => {
                         let slip = motion_row.slipped.map_or(since, |before| before + since);
-                        Kinematics::new(p, &n, gap - p.offset, &slip, free)
+                        let kinematics = Kinematics::new(p, &n, gap - p.offset, &slip, free);
+                        // Nodes that are not held decide of the slip.
+                        let mut nodes = motion_row.nodes().into_iter();
+                        let known = nodes.all(|a| system.free_at(a).is_within(free))
+                            && self.is_dragged(i, &kinematics, &slip, free);
+                        match known {
+                            true => kinematics.with_known_slip(p, &slip),
+                            false => kinematics,
+                        }
                     }
                     // Opposite to nothing: as far away as anything can be.
                     None => Kinematics::apart(p.law, size),
@@ -126,6 +141,9 @@ impl<const D: usize> Driver<D> {
                 let gap = p.gap(obstacle.as_ref(), |a| tool.seen(now(a) - at, &turn));
                 let n = turned(obstacle.normal(&x), &turn);
                 let mut kinematics = Kinematics::new(p, &n, gap, &slip, free);
+                if lever.is_none() && self.is_dragged(i, &kinematics, &slip, free) {
+                    kinematics = kinematics.with_known_slip(p, &slip);
+                }
                 kinematics.lever = lever;
                 if self.has_large_strains() {
                     let axes = [0, 1, 2].map(|k| {
@@ -146,7 +164,8 @@ impl<const D: usize> Driver<D> {
             kinematics.lever = lever;
             kinematics
         };
-        let mut all: Vec<_> = self.points.iter().zip(&self.footing.rows).map(at).collect();
+        let points = self.points.iter().zip(&self.footing.rows);
+        let mut all: Vec<_> = points.enumerate().map(at).collect();
         self.stop_once(|a| system.free_at(a), &mut all);
         for (k, motion_row) in all.iter_mut().zip(&self.footing.rows) {
             // Neither the cone of a corner nor a tool that feels its friction turn it.
@@ -159,6 +178,34 @@ impl<const D: usize> Driver<D> {
             k.dragged = k.dragged.filter(|_| !decided && alone(&n));
         }
         all
+    }
+
+    /// Whether friction acts along what conditions prescribe of a slip while the point is free across the surface or
+    /// along an incline: against a slip there, or because there was some before.
+    fn is_dragged(
+        &self,
+        contact: usize,
+        kinematics: &Kinematics<D>,
+        slip: &SVector<f64, D>,
+        free: &Subspace<D>,
+    ) -> bool {
+        let decided = kinematics.dragged.is_some() || free.dimension() == D;
+        if decided || !kinematics.active[0] || !kinematics.law.resists_slip() {
+            return false;
+        }
+        let prescribed = (slip - free.part(slip)).norm();
+        let before = &self.state.contacts[contact];
+        let beside = match kinematics.law {
+            Friction::Anisotropic(_) => {
+                let within = kinematics.force(&kinematics.local_force(&before.force));
+                (before.force - within).norm()
+            }
+            _ => {
+                let left = (1..D).filter(|&j| !kinematics.active[j]);
+                left.map(|j| before.t[j].abs()).fold(0.0, f64::max)
+            }
+        };
+        prescribed > NO_SLIP * self.mesh.size() || beside > NO_FORCE * before.force.norm()
     }
 
     /// Contact forces t₀ at the start of the step, in the frames of now.

@@ -4,7 +4,7 @@
 use crate::driver::Driver;
 use crate::error::Inaccurate;
 use crate::interface::elimination::{Elimination, row};
-use crate::linear::suspension::STIFFER;
+use crate::linear::suspension::{spring, steepness};
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
@@ -212,25 +212,30 @@ impl<'a, const D: usize> Tied<'a, D> {
     }
 
     /// Compliances of the springs of components that follow from others, as where a node touches several
-    /// tools; zero of the others \[mm/N\]. See [`Suspended`](crate::linear::suspension::Suspended).
+    /// tools or conditions prescribe a slip; zero of the others \[mm/N\]. `force` are the last contact forces that were
+    /// found. See [`Suspended`](crate::linear::suspension::Suspended).
     pub(crate) fn suspended(
         &self,
         driver: &Driver<D>,
         kinematics: &[Kinematics<D>],
+        force: &[Local<D>],
     ) -> Vec<Local<D>> {
         let mut compliance = vec![Local::zeros(); kinematics.len()];
         let mut at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (c, point) in driver.points.iter().enumerate() {
             at.entry(point.node).or_default().push(c);
         }
-        for points in at.values().filter(|points| points.len() > 1) {
+        let may_follow =
+            |points: &&Vec<usize>| points.len() > 1 || kinematics[points[0]].known_slip.is_some();
+        for points in at.values().filter(may_follow) {
             let mut rows = Elimination::new(self.load.len());
             for &c in points {
                 for j in (0..D).filter(|&j| kinematics[c].active[j]) {
                     let row = self.rows[D * c + j].iter();
                     let row: BTreeMap<usize, f64> = row.map(|&(p, v)| (p as usize, v)).collect();
                     if !rows.solve(D * c + j, &row, &[]) {
-                        compliance[c][j] = 1.0 / (STIFFER * self.stiffness[c]);
+                        let steepness = steepness(&kinematics[c], &force[c]);
+                        compliance[c][j] = 1.0 / spring(self.stiffness[c], steepness);
                     }
                 }
             }

@@ -1,6 +1,8 @@
-//! Contact components that follow from others, as where a node touches several tools: a spring whose
-//! force starts from the last multiplier; not the contact problem.
+//! Contact components that follow from others, as where a node touches several tools or conditions prescribe a slip: a
+//! spring whose force starts from the last multiplier; not the contact problem.
 
+use crate::model::points::Kinematics;
+use moreau_laws::Local;
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 
@@ -25,17 +27,37 @@ pub(crate) struct Suspended {
     pub(crate) row: BTreeMap<usize, f64>,
     /// t₀ \[N\].
     pub(crate) force: f64,
+    /// The row whose stiffness the spring has a multiple of: R, or where that may be empty that of the normal.
+    pub(crate) measure: BTreeMap<usize, f64>,
+    /// Least stiffness of the spring, [`steepness`] \[N/mm\].
+    pub(crate) steepness: f64,
 }
 
 /// k over the stiffness of the unknowns: e shrinks by about its inverse with every iteration, and the
 /// rounding of forces grows with it.
-pub(crate) const STIFFER: f64 = 30.0;
+const STIFFER: f64 = 30.0;
+
+/// The same at most, where the slip is so short that friction turns steeply with it.
+const STIFFEST: f64 = 1e6;
+
+/// k \[N/mm\] for a stiffness of the unknowns and the [`steepness`] of friction.
+pub(crate) fn spring(stiffness: f64, steepness: f64) -> f64 {
+    STIFFER * steepness.clamp(stiffness, STIFFEST / STIFFER * stiffness)
+}
+
+/// How much friction turns with a known slip, g / ‖u_t‖: what an elongation of the spring changes of its direction vanishes
+/// as fast as the spring is stiffer \[N/mm\].
+pub(crate) fn steepness<const D: usize>(kinematics: &Kinematics<D>, force: &Local<D>) -> f64 {
+    let known = kinematics.known_slip.filter(|&slip| slip > 0.0);
+    known.map_or(0.0, |slip| kinematics.law.bound(force[0].max(0.0)) / slip)
+}
 
 impl Suspended {
     /// k \[N/mm\], from the diagonal of the stiffness of the unknowns.
     pub(crate) fn spring(&self, stiffness: &DMatrix<f64>) -> f64 {
-        let entries = self.row.iter().map(|(&x, c)| c * c * stiffness[(x, x)]);
-        STIFFER * entries.sum::<f64>()
+        let entries = self.measure.iter();
+        let entries = entries.map(|(&x, c)| c * c * stiffness[(x, x)]);
+        spring(entries.sum(), self.steepness)
     }
 
     /// Adds ½ k e² + t₀ e to a stiffness and a load whose first unknowns are the components of all

@@ -145,9 +145,10 @@ pub(crate) struct Kinematics<const D: usize> {
     /// Slip of the step in space \[mm\] where conditions prescribe it along the whole surface and leave the point free
     /// across: friction against it acts on no unknown displacement, so that it can follow from the pressure.
     pub(crate) dragged: Option<SVector<f64, D>>,
-    /// Slip of the step in a solid \[mm\] where conditions prescribe it along one direction of the surface and leave the
-    /// other free: friction against it is none that the free displacement decides.
-    pub(crate) half_dragged: f64,
+    /// Length of the slip of the step \[mm\] where conditions and the surface prescribe a part of it which the free
+    /// displacement of the point does not decide, zero elsewhere. All components take part in the law there; one of them
+    /// follows from the others, see [`Suspended`](crate::linear::suspension::Suspended).
+    pub(crate) known_slip: Option<f64>,
     /// ∂n/∂x of what is opposite, where forces turn with it \[1/mm\].
     pub(crate) curvature: SMatrix<f64, D, D>,
     /// The degree of freedom of the turn of a tool that a moment turns, and how the tool moves here with that.
@@ -198,9 +199,6 @@ impl<const D: usize> Kinematics<D> {
         }
         out.axes.set_column(0, n);
         out.dragged = (dimension == 1 && 1.0 - length < PRESCRIBED).then(|| slip - free.part(slip));
-        if D == 3 && dimension == 2 && 1.0 - length < PRESCRIBED {
-            out.half_dragged = (slip - free.part(slip)).norm();
-        }
         for k in 0..dimension {
             let e = q.column(k);
             out.active[k] = true;
@@ -210,6 +208,30 @@ impl<const D: usize> Kinematics<D> {
             }
         }
         out
+    }
+
+    /// With all components in the law, also those whose slip conditions prescribe: friction against it turns with all of
+    /// the slip, and on an incline bears on what is free.
+    pub(crate) fn with_known_slip(
+        mut self,
+        point: &ContactPoint<D>,
+        slip: &SVector<f64, D>,
+    ) -> Self {
+        let n = self.axes.column(0).into_owned();
+        // Along what is free, where the law has no directions of its own.
+        let first = self.axes.column(1).into_owned();
+        let along = match point.law {
+            Friction::Anisotropic(_) => point.axis,
+            _ => (first.norm() > 0.0).then_some(first),
+        };
+        self.law = point.law;
+        self.axes = frame_along(&n, along.as_ref());
+        self.active = [true; D];
+        self.dragged = None;
+        let tangential = self.axes.tr_mul(slip);
+        (1..D).for_each(|j| self.u[j] = tangential[j]);
+        self.known_slip = Some(tangential.rows(1, D - 1).norm());
+        self
     }
 
     /// Of a tie: it holds along every free direction, also where the normal is none of them.
@@ -260,7 +282,7 @@ impl<const D: usize> Kinematics<D> {
             active: [false; D],
             at_corner: false,
             dragged: None,
-            half_dragged: 0.0,
+            known_slip: None,
             curvature: SMatrix::zeros(),
             lever: None,
             law,

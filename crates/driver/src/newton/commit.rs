@@ -3,6 +3,7 @@
 
 use crate::driver::{Driver, State};
 use crate::error::IncrementError;
+use crate::interface::kinematics::NO_SLIP;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Kinematics, in_space, turned};
@@ -13,9 +14,6 @@ use crate::vector::largest;
 use moreau_contact::{Certificate, ContactSolution};
 use moreau_laws::{Local, Status};
 use nalgebra::SVector;
-
-/// Slip that is rounding, over the size of the mesh.
-const NO_SLIP: f64 = 1e-11;
 
 impl<const D: usize> Driver<D> {
     pub(crate) fn plastic_fraction(&self) -> f64 {
@@ -65,12 +63,6 @@ impl<const D: usize> Driver<D> {
         }
         let touches = |i: &usize| kinematics[*i].at_corner && contacts[*i].status != Status::Open;
         let corners = (0..contacts.len()).filter(touches).collect();
-        let rounding = NO_SLIP * self.mesh.size();
-        let half = |i: &usize| {
-            let (k, t) = (&kinematics[*i], contacts[*i].t);
-            k.half_dragged > rounding && t[0] > 0.0 && k.law.bound(t[0]) > 0.0
-        };
-        let half_dragged = (0..contacts.len()).filter(half).collect();
         let displacement = self.displacement_after(&d_u, end);
         // Against stresses heat does work, by the trapezoidal rule, that comes back from what it moves.
         energies.external_work -= 0.5 * (at_start + self.work_on_free(&free, &displacement));
@@ -90,7 +82,7 @@ impl<const D: usize> Driver<D> {
             solution: Some(solution),
         };
         let verdict = (plastic_fraction, certificate);
-        Ok(self.report(verdict, (corners, half_dragged), out_of_balance, counts))
+        Ok(self.report(verdict, corners, out_of_balance, counts))
     }
 
     /// Friction at the points that conditions drag along a surface.
@@ -218,7 +210,7 @@ impl<const D: usize> Driver<D> {
     fn report(
         &self,
         (plastic_fraction, certificate): (f64, Certificate),
-        (corners, half_dragged): (Vec<usize>, Vec<usize>),
+        corners: Vec<usize>,
         out_of_balance: f64,
         counts: Counts,
     ) -> IncrementReport {
@@ -254,7 +246,6 @@ impl<const D: usize> Driver<D> {
                 false => Vec::new(),
             },
             corners,
-            half_dragged,
             out_of_balance,
             residuals: counts.residuals,
         }

@@ -89,11 +89,11 @@ impl<const D: usize> Driver<D> {
         let method = self.settings.contact.springs();
         let (compliance, tolerance) = method.ok_or(ContactError::Singular).map_err(contact)?;
         let previous = self.previous_forces(kinematics);
-        let suspended = tied.suspended(self, kinematics);
         let last = match linearised.guess {
             Some(s) if counts.newton > 1 => &s.force,
             _ => &previous,
         };
+        let suspended = tied.suspended(self, kinematics, last);
         let springs = springs(&compliance, &suspended, (last, &previous), kinematics);
         let largest_load = tied.largest_load();
         let largest_of =

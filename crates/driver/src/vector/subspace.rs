@@ -80,6 +80,12 @@ impl<const D: usize> Subspace<D> {
             .all(|v| (v - n * n.dot(&v)).norm() < PARALLEL)
     }
 
+    /// Whether another has all of it.
+    pub(crate) fn is_within(&self, other: &Self) -> bool {
+        self.vectors()
+            .all(|v| (v - other.part(&v)).norm() < PARALLEL)
+    }
+
     pub(crate) fn dimension(&self) -> usize {
         self.within.iter().filter(|w| **w).count()
     }

@@ -1,7 +1,7 @@
 //! Friction where displacement conditions drag a surface along a tool; not where the contact problem decides of slip.
 
 use moreau_contact::Plane;
-use moreau_driver::{Axis, Driver, Model, Settings, Step};
+use moreau_driver::{Axis, Driver, Model, Seam, Settings, Step};
 use moreau_laws::{AnisotropicCoulomb, Coulomb, Elastic, Friction, Tresca};
 use moreau_mesh::{CellKind, Mesh, PlaneStrain, Solid, block2, block3, uniform};
 
@@ -163,33 +163,171 @@ fn laws_hold_where_conditions_prescribe_the_slip_in_space() {
     close(found, [across, 8.0, along]);
 }
 
-/// A solid that is pushed by its side alone: what friction lacks there is told, and nothing else.
+/// Unit cubes of a solid on a floor, with 2 MPa on top.
+fn pushed(kind: CellKind, law: Friction, seam: Seam) -> Driver<3> {
+    let line = uniform(0.0, 2.0, 2);
+    let mesh: Mesh<3> = block3("block", kind, &line, &line, &line).expect("valid");
+    let floor = Plane::new([0.0, 0.0, 0.0], [0.0, 1.0, 0.0]).expect("a plane");
+    let steel = Elastic::new(1e5, 0.3).expect("elastic");
+    let model = Model::new(mesh, Solid)
+        .material("block", steel, kind.integration())
+        .and_then(|m| m.tool("floor", floor))
+        .and_then(|m| m.contact("block.bottom", "floor", law))
+        .expect("a model");
+    let settings = Settings {
+        seam,
+        ..Settings::default()
+    };
+    Driver::new(model, settings).expect("a driver")
+}
+
+const SEAMS: [Seam; 2] = [Seam::Condensed, Seam::Tied];
+
+/// Of a solid whose side is pushed alone: nodes of that are dragged in one direction and free in the other.
 #[test]
-fn nodes_that_are_dragged_in_one_direction_alone_are_told() {
-    for (also, told) in [(Some("block.left"), 0), (None, 3)] {
-        let line = uniform(0.0, 2.0, 2);
-        let mesh: Mesh<3> = block3("block", CellKind::Hex8, &line, &line, &line).expect("valid");
-        let floor = Plane::new([0.0, 0.0, 0.0], [0.0, 1.0, 0.0]).expect("a plane");
-        let model = Model::new(mesh, Solid)
-            .material(
-                "block",
-                Elastic::new(1e5, 0.3).expect("elastic"),
-                CellKind::Hex8.integration(),
-            )
-            .and_then(|m| m.tool("floor", floor))
-            .and_then(|m| m.contact("block.bottom", "floor", Coulomb::new(0.3).expect("valid")))
-            .expect("a model");
-        let mut driver = Driver::new(model, Settings::default()).expect("a driver");
-        let push = Step::new("push").pressure("block.top", 1.0);
-        let push = push.displace("block.left", Axis::X, 0.1);
-        let push = match also {
-            Some(side) => push.fix(side, &[Axis::Z]),
-            None => push,
+fn a_solid_that_is_pushed_by_its_side_takes_the_friction_of_all_of_its_weight() {
+    let coulomb: Friction = Coulomb::new(FRICTION).expect("a coefficient").into();
+    for (kind, seam) in [CellKind::Hex8, CellKind::Hex20]
+        .into_iter()
+        .flat_map(|kind| SEAMS.map(|seam| (kind, seam)))
+    {
+        let mut driver = pushed(kind, coulomb, seam);
+        let stand = |name: &str| Step::new(name).pressure("block.top", 1.0);
+        driver.run(&stand("stand"), 1, |_, _| ()).expect("stands");
+        let weight = 4.0;
+        let force = |d: &Driver<3>| d.reaction("block.left").expect("a group")[0];
+        for (name, way, sign) in [("push", 0.1, 1.0), ("rest", 0.1, 1.0), ("back", 0.05, -1.0)] {
+            let step = stand(name).displace("block.left", Axis::X, way);
+            let reports = driver.run(&step, 2, |_, _| ()).expect("slides");
+            let expected = sign * FRICTION * weight;
+            let off = (force(&driver) - expected).abs();
+            assert!(off < 1e-8, "{kind:?}, {seam:?}, {name}: {}", force(&driver));
+            let certificate = reports[1].certificate;
+            assert!(
+                certificate.bipotential_gap.abs() < 1e-9 * weight,
+                "{name}: {certificate:?}"
+            );
+        }
+    }
+}
+
+/// All nodes are dragged along x, and a force pulls them along z: once the body is strained as it stays, it creeps that
+/// way by just as much as turns friction into balance, in increments however short; and it begins to from rest.
+#[test]
+fn what_is_dragged_creeps_across_under_a_force() {
+    let (weight, pull) = (8.0, 1.0);
+    let coulomb = Coulomb::new(0.25).expect("a coefficient");
+    let tresca = Tresca::new(0.4).expect("a limit");
+    let ellipse = AnisotropicCoulomb::new(0.2, 0.3).expect("coefficients");
+    // Force along x, and the way across over that along.
+    let round = |g: f64| {
+        let along = f64::sqrt(g * g - pull * pull);
+        (along, pull / along)
+    };
+    let (a, b) = (0.2 * weight, 0.3 * weight);
+    let along = a * f64::sqrt(1.0 - (pull / b) * (pull / b));
+    let cases: [(Friction, (f64, f64)); 3] = [
+        (coulomb.into(), round(0.25 * weight)),
+        (tresca.into(), round(0.4 * 4.0)),
+        // The slip is along the normal of the ellipse, (t_x/a², t_z/b²).
+        (
+            ellipse.into(),
+            (along, (pull / (b * b)) / (along / (a * a))),
+        ),
+    ];
+    for ((law, (along, slope)), seam) in cases
+        .into_iter()
+        .flat_map(|case| SEAMS.map(|seam| (case, seam)))
+    {
+        let drag = |driver: &mut Driver<3>, to: f64| {
+            let step = Step::new("drag")
+                .pressure("block.top", weight / 4.0)
+                .displace("block", Axis::X, to)
+                .body_force("block", [0.0, 0.0, pull / 8.0]);
+            let outcome = driver.run(&step, 4, |_, _| ());
+            outcome.unwrap_or_else(|error| panic!("{law:?}, {seam:?}, to {to:e}: {error}"));
+            let floor = driver.tool_force("floor").expect("a tool");
+            assert!(
+                (floor[2] + pull).abs() < 1e-7,
+                "{law:?}, {seam:?}, to {to:e}: {floor:?}"
+            );
+            (floor[0], driver.displacement(0)[2])
         };
-        let reports = driver.run(&push, 1, |_, _| ()).expect("slides");
-        assert_eq!(reports[0].half_dragged.len(), told);
-        let friction = -driver.tool_force("floor").expect("a tool")[0];
-        // All of the weight rubs but that of the nodes that are told.
-        assert_eq!((friction - 0.3 * 4.0).abs() < 1e-9, told == 0, "{friction}");
+        let mut driver = pushed(CellKind::Hex8, law, seam);
+        let (mut at, (_, mut before)) = (0.1, drag(&mut driver, 0.1));
+        for way in [0.1, 1e-3, 1e-5, 1e-7] {
+            at += way;
+            let (force, across) = drag(&mut driver, at);
+            let (case, crept) = (format!("{law:?}, {seam:?}, {way:e}"), across - before);
+            assert!(
+                (force + along).abs() < 1e-5 * along,
+                "{case}: {force} for {along}"
+            );
+            assert!(
+                (crept - way * slope).abs() < 1e-4 * way * slope,
+                "{case}: {crept:e} for {}",
+                way * slope
+            );
+            before = across;
+        }
+        for first in [1e-4, 1e-6, 1e-8] {
+            drag(&mut pushed(CellKind::Hex8, law, seam), first);
+        }
+    }
+}
+
+/// A node that conditions push up an incline of angle α takes W tan(α + φ), and down it W tan(α − φ).
+#[test]
+fn friction_on_an_incline_bears_on_what_is_free() {
+    let (angle, phi) = (0.3f64, FRICTION.atan());
+    for (seam, large) in SEAMS
+        .into_iter()
+        .flat_map(|seam| [(seam, false), (seam, true)])
+    {
+        let lines = [uniform(0.0, 1.0, 1), uniform(0.0, 1.0, 1)];
+        let kind = CellKind::Quad4;
+        let mesh = block2("block", kind, &lines[0], &lines[1]).expect("valid");
+        let incline = Plane::new([0.0, 0.0], [-angle.sin(), angle.cos()]).expect("a plane");
+        let start = match large {
+            true => Model::with_large_strains,
+            false => Model::new,
+        };
+        let steel = Elastic::new(1e5, 0.3).expect("elastic");
+        let model = start(mesh, PlaneStrain::default())
+            .material("block", steel, kind.integration())
+            .and_then(|m| m.tool("incline", incline))
+            .and_then(|m| {
+                m.contact(
+                    "block.bottom",
+                    "incline",
+                    Coulomb::new(FRICTION).expect("a coefficient"),
+                )
+            })
+            .expect("a model");
+        let settings = Settings {
+            seam,
+            ..Settings::default()
+        };
+        let mut driver = Driver::new(model, settings).expect("a driver");
+        let weight = |name: &str| Step::new(name).body_force("block", [0.0, -WEIGHT]);
+        let mut at = 0.0;
+        for (name, way, expected) in [
+            ("up", 0.1, (angle + phi).tan()),
+            ("rest", 0.0, (angle + phi).tan()),
+            ("down", -0.05, (angle - phi).tan()),
+            ("creep", -1e-6, (angle - phi).tan()),
+        ] {
+            at += way;
+            let step = weight(name).displace("block", Axis::X, at);
+            let case = format!("{name}, {seam:?}, large: {large}");
+            let outcome = driver.run(&step, 2, |_, _| ());
+            outcome.unwrap_or_else(|error| panic!("{case}: {error}"));
+            let push = driver.reaction("block").expect("a group")[0];
+            assert!(
+                (push - WEIGHT * expected).abs() < 1e-7,
+                "{case}: {push} for {}",
+                WEIGHT * expected
+            );
+        }
     }
 }

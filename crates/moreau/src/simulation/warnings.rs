@@ -23,8 +23,6 @@ enum Kind {
     Held,
     /// Nodes at sharp corners of tools.
     Corner,
-    /// Nodes that are dragged without friction.
-    Dragged,
     /// Rigid motions that nothing resists.
     Free,
     /// An equilibrium that is unstable.
@@ -35,7 +33,7 @@ enum Kind {
     Distorted,
 }
 
-const KINDS: [Kind; 12] = [
+const KINDS: [Kind; 11] = [
     Kind::Strain,
     Kind::Rotation,
     Kind::Inverted,
@@ -43,7 +41,6 @@ const KINDS: [Kind; 12] = [
     Kind::Buckling,
     Kind::Held,
     Kind::Corner,
-    Kind::Dragged,
     Kind::Free,
     Kind::Unstable,
     Kind::Limit,
@@ -191,12 +188,6 @@ impl Warnings {
             let numbers = vec![report.corners.len() as f64, point.contact as f64];
             let at = (point.node, point.position.to_vec());
             self.note(Kind::Corner, numbers, at, when);
-        }
-        if let Some(&first) = report.half_dragged.first() {
-            let point = &driver.contacts()[first];
-            let numbers = vec![report.half_dragged.len() as f64, point.contact as f64];
-            let at = (point.node, point.position.to_vec());
-            self.note(Kind::Dragged, numbers, at, when);
         }
         if report.negative_eigenvalues > 0 && self.worst[Kind::Unstable as usize].is_none() {
             let (at, direction) = most_moved(driver, report.mode.as_deref());
@@ -352,7 +343,6 @@ impl Worst {
             Kind::Between => self.between(driver, deck),
             Kind::Held => self.held(driver, deck),
             Kind::Corner => self.corner(driver),
-            Kind::Dragged => self.dragged(driver),
             Kind::Free => self.free(driver),
             Kind::Unstable => format!(
                 "the equilibrium is unstable from increment {when} on: with what may touch held, its tangent has {} \
@@ -422,17 +412,6 @@ impl Worst {
             "node {index} of \"{surface}\" at {at} is at a sharp corner of \"{tool}\" in increment {when}: \
              the normal there is any between those of both faces, and a finer mesh gives another stress; \
              give the corner a radius of a few facets"
-        )
-    }
-
-    fn dragged<const D: usize>(&self, driver: &Driver<D>) -> String {
-        let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
-        let (surface, opposite) = driver.contact_name(self.number(1) as usize);
-        format!(
-            "in increment {when} conditions drag {} nodes of \"{surface}\" along \"{opposite}\" in one direction and leave \
-             them free in the other, as node {index} at {at}: the friction against what is prescribed is missing \
-             there; prescribe both directions at these nodes, or push them by a tool",
-            shown(self.number(0), 9)
         )
     }
 

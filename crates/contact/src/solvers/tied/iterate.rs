@@ -15,9 +15,17 @@ pub(super) struct Row<const D: usize> {
 }
 
 impl<const D: usize> Tied<'_, '_, D> {
+    /// α of a contact \[N/mm\]. A component that alone hangs on a spring turns friction by as much as that gives way, and
+    /// with another α the first steps would miss by the ratio of both.
     pub(super) fn alpha(&self, i: usize) -> f64 {
-        let alpha = PARTS[self.part] * self.problem.structure.stiffness(i);
-        alpha / (1.0 + alpha * self.problem.springs[i].compliance.mean())
+        let part = PARTS[self.part];
+        let compliance = &self.problem.springs[i].compliance;
+        let (least, most) = (compliance.min(), compliance.max());
+        if least == 0.0 && most > 0.0 {
+            return part / PARTS[0] / most;
+        }
+        let alpha = part * self.problem.structure.stiffness(i);
+        alpha / (1.0 + alpha * compliance.mean())
     }
 
     /// The map at z, of which v is the answer.
