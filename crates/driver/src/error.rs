@@ -483,6 +483,19 @@ pub enum IncrementError {
         /// Largest displacement of the increment \[mm\].
         moved: f64,
     },
+    /// The load of a step has passed a limit on the path of equilibria, and falls along it until the body leaves what
+    /// pushes it: there is no equilibrium near under a larger load.
+    #[error(
+        "step {step:?} passes the limit of its load at {:.4} % of it: beyond that the body snaps away from what pushes \
+         it, and finds no balance near; prescribe the motion of the tool to see more of it, or load less",
+        100.0 * .limit
+    )]
+    SnapsAway {
+        /// Name of the step.
+        step: String,
+        /// The limit, in parts of the load of the step.
+        limit: f64,
+    },
     /// The tangent is not positive definite: a mechanism.
     #[error(
         "the stiffness is not positive definite at node {node}, u_{axis} ({position:?}): \
@@ -568,6 +581,12 @@ pub enum IncrementError {
 }
 
 impl IncrementError {
+    /// Whether no closed contact holds a body.
+    pub(crate) fn is_singular(&self) -> bool {
+        let singular = ContactError::Singular;
+        matches!(self, Self::Contact { source, .. } if *source == singular)
+    }
+
     /// Whether the increment was broken off from outside, by whoever watched it or by a law: the next one begins as if
     /// it had not.
     pub fn is_broken_off(&self) -> bool {

@@ -5,8 +5,9 @@
 //! integration of its equation.
 
 use crate::close;
-use moreau::driver::{Axis, Driver, Model, Settings, Step};
-use moreau::laws::Elastic;
+use moreau::contact::Ball;
+use moreau::driver::{Axis, Driver, IncrementError, Model, Seam, Settings, Step};
+use moreau::laws::{Coulomb, Elastic};
 use moreau::mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
@@ -184,8 +185,8 @@ fn arch_load(down: f64, guess: &mut [f64; 3]) -> f64 {
     -guess[2]
 }
 
-#[test]
-fn a_shallow_arch_snaps_through() -> Fallible {
+/// Half of the arch, elastic.
+fn arch() -> Fallible<Model<2, PlaneStrain>> {
     let [span, rise, height] = ARCH;
     let (x, y) = (
         uniform(0.0, span, 50),
@@ -198,12 +199,14 @@ fn a_shallow_arch_snaps_through() -> Fallible {
         [x - y * slope / long, centre + y / long]
     })?;
     mesh.node_group_where("crown", "arch.right", |x| (x[1] - rise).abs() < 1e-9)?;
-    let model = Model::with_large_strains(mesh, PlaneStrain::default()).material(
-        "arch",
-        Elastic::new(YOUNG, 0.0)?,
-        Integration::Reduced,
-    )?;
-    let mut driver = Driver::new(model, Settings::default())?;
+    let elastic = Elastic::new(YOUNG, 0.0)?;
+    let model = Model::with_large_strains(mesh, PlaneStrain::default());
+    Ok(model.material("arch", elastic, Integration::Reduced)?)
+}
+
+#[test]
+fn a_shallow_arch_snaps_through() -> Fallible {
+    let mut driver = Driver::new(arch()?, Settings::default())?;
     let node = driver.mesh().node_group("crown")?[0];
     let step = Step::new("press")
         .fix("arch.left", &[Axis::X, Axis::Y])
@@ -236,5 +239,46 @@ fn a_shallow_arch_snaps_through() -> Fallible {
     // On its way the load pulls, and in the end it is all there.
     assert!(path.iter().any(|[_, load]| *load < -0.004));
     assert_eq!(path[path.len() - 1][1], 0.1);
+    Ok(())
+}
+
+/// The same arch under a roll that a force drives: beyond the limit of the load it leaves the roll, and nothing near is in
+/// balance. That is told with the limit, in however few increments.
+#[test]
+fn a_shallow_arch_under_a_roll_snaps_away() -> Fallible {
+    let [span, rise, height] = ARCH;
+    let mut guess = [0.0; 3];
+    let peak = (1..=80)
+        .map(|k| arch_load(0.02 * f64::from(k), &mut guess))
+        .fold(0.0, f64::max);
+    // Where the roll is lost at once beyond the limit, that is the largest load that was in balance.
+    let cases = [
+        (Seam::Condensed, 20, 3e-2),
+        (Seam::Tied, 20, 5e-3),
+        (Seam::Tied, 3, 1e-2),
+    ];
+    for (seam, increments, accuracy) in cases {
+        let radius = 2.0;
+        let roll = Ball::new([span, rise + 0.5 * height + radius], radius)?;
+        let model = arch()?
+            .tool("roll", roll)?
+            .contact("arch.top", "roll", Coulomb::new(0.0)?)?;
+        let settings = Settings {
+            seam,
+            ..Settings::default()
+        };
+        let mut driver = Driver::new(model, settings)?;
+        let step = Step::new("press")
+            .fix("arch.left", &[Axis::X, Axis::Y])
+            .fix("arch.right", &[Axis::X])
+            .tool("roll", [0.0, 0.0])
+            .push("roll", Axis::Y, -0.1);
+        match driver.run(&step, increments, |_, _| ()) {
+            Err(IncrementError::SnapsAway { limit, .. }) => {
+                close("limit", 0.1 * limit, peak, accuracy)
+            }
+            other => panic!("{seam:?}, {increments}: {other:?}"),
+        }
+    }
     Ok(())
 }

@@ -90,6 +90,9 @@ impl<const D: usize> ContactSolver<D> for SemismoothNewton {
 /// of ten.
 const PARTS: [f64; 3] = [0.1, 1.0, 0.01];
 
+/// How far the nearest contacts are beyond the first, in parts of how far the last is.
+const NEAREST: f64 = 1e-3;
+
 /// Iterations for one of the parts.
 const ATTEMPT: usize = 30;
 
@@ -105,6 +108,9 @@ struct Iterate<const D: usize> {
     residual: f64,
     merit: f64,
 }
+
+/// Another start, from the displacements of the first.
+type Start<const D: usize> = fn(&CondensedProblem<D>, &[Local<D>]) -> Option<Vec<Local<D>>>;
 
 /// Newton on the natural map at u + C (t − t₀*), with a diagonal compliance C \[mm/N\] of every contact
 /// (zero: the exact law) and t₀* = (0, t₀ₜ), the penalty of \[81\]–\[82\] as a spring in series. Ties have none.
@@ -128,9 +134,11 @@ pub(super) fn newton<const D: usize>(
     let mut start = guess.map_or(zero, |g| problem.relative(&g.displacement));
     let mut iterations = 0;
     let mut part = 0;
-    // A body that only contact holds has no stiffness against contacts that are open at the start:
-    // then start again with all of them closed.
-    let mut closed = Some(close(problem, &start));
+    // A body that only contact holds has no stiffness against contacts that are open at the start: then start again with
+    // all of them closed, and with the nearest held.
+    let begun = start.clone();
+    let others: [Start<D>; 2] = [all_closed, nearest_held];
+    let mut others = others.iter().filter_map(|other| other(problem, &begun));
     loop {
         let newton = Newton {
             problem,
@@ -162,7 +170,7 @@ pub(super) fn newton<const D: usize>(
             now = next;
         }
         if newton.step(&now).is_none()
-            && let Some(other) = closed.take()
+            && let Some(other) = others.next()
         {
             start = other;
             continue;
@@ -182,7 +190,9 @@ pub(super) fn newton<const D: usize>(
             };
             match newton.sweep(&from) {
                 Ok(u) => start = problem.relative(&u),
-                Err(ContactError::Floating { .. }) => return Err(ContactError::Singular),
+                Err(ContactError::Floating { .. }) => {
+                    start = others.next().ok_or(ContactError::Singular)?;
+                }
                 Err(_) => {}
             }
         }
@@ -324,10 +334,44 @@ impl<const D: usize> Newton<'_, D> {
 }
 
 /// The same slips at closed gaps.
-fn close<const D: usize>(problem: &CondensedProblem<D>, x: &[Local<D>]) -> Vec<Local<D>> {
+fn all_closed<const D: usize>(
+    problem: &CondensedProblem<D>,
+    x: &[Local<D>],
+) -> Option<Vec<Local<D>>> {
     let closed =
         |(x, g): (&Local<D>, &Local<D>)| Local::from_fn(|k, _| if k == 0 { -g[0] } else { x[k] });
-    x.iter().zip(problem.origin()).map(closed).collect()
+    Some(x.iter().zip(problem.origin()).map(closed).collect())
+}
+
+/// Where the contacts with next to the smallest gap stick and the others are without force; `None` if that does not hold
+/// the bodies.
+fn nearest_held<const D: usize>(
+    problem: &CondensedProblem<D>,
+    x: &[Local<D>],
+) -> Option<Vec<Local<D>>> {
+    let gaps = || problem.origin().iter().map(|g| g[0]);
+    let least = gaps().fold(f64::INFINITY, f64::min);
+    let most = gaps().fold(f64::NEG_INFINITY, f64::max);
+    let forces = problem.force_of(x);
+    let row = |(x, (g, t)): (&Local<D>, (&Local<D>, Local<D>))| {
+        let holds = g[0] - least <= NEAREST * (most - least);
+        let one = SMatrix::identity();
+        match holds {
+            true => Row {
+                elastic: one * 0.0,
+                shift: one,
+                value: -(x + g),
+            },
+            false => Row {
+                elastic: one,
+                shift: one * 0.0,
+                value: -t,
+            },
+        }
+    };
+    let rows = x.iter().zip(problem.origin().iter().zip(forces)).map(row);
+    let step = linearised::solve(problem, rows.collect())?;
+    Some(add(x, &step, 1.0))
 }
 
 fn add<const D: usize>(u: &[Local<D>], step: &DVector<f64>, s: f64) -> Vec<Local<D>> {

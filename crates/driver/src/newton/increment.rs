@@ -29,9 +29,11 @@ const WELL: f64 = 0.1;
 /// Imbalance over the forces in play, from which on a tangent that is not positive definite leads nowhere.
 const FAR: f64 = 0.1;
 
-/// Motion, over that of the increment before as often as the load grows, from which on a body has snapped where
-/// its tangent was indefinite on the way.
+/// Motion, over that of the increment before as often as the load grows, from which on a body may have snapped.
 const SNAP: f64 = 4.0;
+
+/// The same over the size of the mesh, below which nothing has.
+const STILL: f64 = 1e-6;
 
 /// Halvings of the part of the increment in which the body moves most, before it counts as one that snaps.
 const HALVINGS: usize = 4;
@@ -144,7 +146,7 @@ impl<const D: usize> Driver<D> {
     ) -> Result<(), IncrementError> {
         let moves = start.displacement != end.displacement || start.turn != end.turn;
         let stable = candidate.counts.negative == 0;
-        if moves || !stable || !system.was_indefinite() || !self.has_large_strains() {
+        if moves || !stable || !self.has_large_strains() {
             return Ok(());
         }
         let dofs = self.mesh_dofs();
@@ -152,7 +154,11 @@ impl<const D: usize> Driver<D> {
             |a: &[f64], b: &[f64]| largest(a.iter().zip(b).take(dofs).map(|(a, b)| a - b));
         let rest = vec![0.0; candidate.d_u.len()];
         let moved = between(&candidate.d_u, &rest);
-        if moved <= SNAP * between(&self.predictor(start, end), &rest) {
+        let expected = between(&self.predictor(start, end), &rest);
+        // Of the first increment nothing is expected. One in which contact opens may pass a limit although no tangent of its
+        // iterates was indefinite.
+        let may_snap = expected > 0.0 || system.was_indefinite();
+        if !may_snap || moved <= SNAP * expected.max(STILL * self.mesh.size()) {
             return Ok(());
         }
         // A body that yields moves less in less of the increment, one that snaps as much.

@@ -12,7 +12,6 @@ use crate::saved::{Numbers, Saved};
 use crate::settings::Nesting;
 use crate::vector::SparseVector;
 use crate::vector::largest;
-use moreau_contact::ContactError;
 use std::ops::ControlFlow;
 
 /// A step under way: the loadings at both of its ends, and how far it has come.
@@ -115,6 +114,9 @@ const SPRING: f64 = 1e-2;
 /// Motion in an increment along a path of large strains, in sizes of the mesh, up to which it is doubled: the path
 /// is to be seen.
 const SEEN: f64 = 5e-3;
+
+/// Part of the largest load that is left where a body that snaps takes leave of what pushes it.
+const LEFT: f64 = 0.05;
 
 /// Times that an increment is halved at most where a tool moves through a body.
 const MOST_CUTS: usize = 30;
@@ -292,7 +294,8 @@ impl<const D: usize> Driver<D> {
     /// [`IncrementReport::fraction`] is then that factor.
     ///
     /// # Errors
-    /// [`IncrementError::Collapse`] where displacements grow at a constant load;
+    /// [`IncrementError::Collapse`] where displacements grow at a constant load, and
+    /// [`IncrementError::SnapsAway`] where they lead away from what pushes;
     /// [`IncrementError::Stopped`] when the increment has been halved as often as the settings allow;
     /// what converged before is kept. [`IncrementError::Model`] for a step that makes no sense;
     /// [`IncrementError::Interrupted`] where `watch` breaks off, and [`IncrementError::Law`] where a law does.
@@ -377,13 +380,7 @@ impl<const D: usize> Driver<D> {
     /// Why a step stopped: a tool that nothing holds, if there is one.
     fn out_of_hand(&self, ramp: &Ramp<D>, stopped: IncrementError) -> IncrementError {
         let is_singular = |error: &IncrementError| match error {
-            IncrementError::Stopped { cause, .. } => matches!(
-                **cause,
-                IncrementError::Contact {
-                    source: ContactError::Singular,
-                    ..
-                }
-            ),
+            IncrementError::Stopped { cause, .. } => cause.is_singular(),
             _ => false,
         };
         let loose = self.loose_tool(&ramp.end).or_else(|| {
@@ -486,7 +483,8 @@ impl<const D: usize> Driver<D> {
                         }
                     }
                     path.last = report.fraction - before;
-                    path.peak = path.peak.max(report.fraction);
+                    let peak = report.limit.unwrap_or(0.0).max(report.fraction);
+                    path.peak = path.peak.max(peak);
                     path.growth = path.last * (ramp.work / work).abs() / path.peak;
                     let size = self.mesh.size();
                     let moved = &self.state.displacement[..self.mesh_dofs()];
@@ -504,6 +502,15 @@ impl<const D: usize> Driver<D> {
                 Err(error @ IncrementError::Model(_)) => return Err(error),
                 Err(error) if error.is_broken_off() => return Err(error),
                 Ok(None) => {}
+                Err(cause)
+                    if ramp.done < LEFT * path.peak
+                        && (cause.is_singular() || self.loose_tool(&ramp.end).is_some()) =>
+                {
+                    return Err(IncrementError::SnapsAway {
+                        step: ramp.step.clone(),
+                        limit: path.peak,
+                    });
+                }
                 Err(cause) => {
                     path.length *= 0.5;
                     ramp.path = Some(path);
