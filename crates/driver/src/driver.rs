@@ -303,6 +303,18 @@ impl<const D: usize> Driver<D> {
         all
     }
 
+    /// How much warmer every quadrature point is than when the body was free of stress \[K\], in the order of
+    /// [`Driver::points`]; `None` where nothing expands.
+    pub fn temperatures(&self) -> Option<PointField> {
+        let points: usize = self.blocks.iter().map(|b| points_of(b.as_ref())).sum();
+        let now = &self.state.loading.temperature;
+        (!self.expansion.is_empty()).then(|| PointField {
+            name: "temperature".into(),
+            components: 1,
+            values: (0..points).map(|k| now.at(k)).collect(),
+        })
+    }
+
     /// Sum of the reactions of the prescribed displacements of a group \[N\]: the force that the
     /// supports exert on the body.
     ///

@@ -493,7 +493,7 @@ pub enum IncrementError {
     SnapsAway {
         /// Name of the step.
         step: String,
-        /// The limit, in parts of the load of the step.
+        /// The largest load that was in balance, in parts of that of the step.
         limit: f64,
     },
     /// The tangent is not positive definite: a mechanism.

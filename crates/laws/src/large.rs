@@ -3,8 +3,8 @@
 
 use crate::bulk::{BulkLaw, Numbers};
 use moreau_mandel::{
-    GradientTangent, Spectrum, Sym2, Sym4, from_matrix, logarithmic_slope, of_gradients, rotation,
-    to_matrix, trace,
+    GradientTangent, Spectrum, Sym2, Sym4, from_matrix, logarithmic_slope, of_gradients, product,
+    rotation, to_matrix, trace, turned,
 };
 use nalgebra::{Matrix3, SVector};
 
@@ -29,7 +29,7 @@ impl<S> Turned<S> {
 
     /// A tensor of the frame, in space.
     pub fn in_space(&self, tensor: &Sym2) -> Sym2 {
-        from_matrix(&(self.frame * to_matrix(tensor) * self.frame.transpose()))
+        from_matrix(&turned(&self.frame, &to_matrix(tensor)))
     }
 }
 
@@ -75,8 +75,8 @@ impl<S> LargeResponse<S> {
     /// ėᵢⱼ = ½ (lᵢⱼ bⱼ + lⱼᵢ bᵢ) (ln bᵢ − ln bⱼ)/(bᵢ − bⱼ).
     fn isotropic_tangent(&self, of_law: &Sym4) -> GradientTangent {
         let q = &self.trial.directions;
-        let r = rotation(&(q.transpose() * self.state.frame));
-        let mut own = of_gradients(&(r * of_law * r.transpose()));
+        let r = rotation(&product(&q.transpose(), &self.state.frame));
+        let mut own = of_gradients(&turned(&r, of_law));
         let b = self.trial.values.map(|b| 1.0 + b);
         for (k, m) in [(0, 1), (0, 2), (1, 2)] {
             let slope = logarithmic_slope(b[k], b[m]);
@@ -88,12 +88,12 @@ impl<S> LargeResponse<S> {
 
     fn turning_tangent(&self, of_law: &Sym4) -> GradientTangent {
         let q = rotation(&self.state.frame);
-        let c = q * of_law * q.transpose();
+        let c = turned(&q, of_law);
         let mut tangent = GradientTangent::zeros();
         for (k, m) in (0..3).flat_map(|k| (0..3).map(move |m| (k, m))) {
             // As the frame turns by Ω, what the law sees of the strain turns back, and the stress with the frame.
             let spin = self.turn.spin(k, m);
-            let commutator = |a: &Matrix3<f64>| spin * a - a * spin;
+            let commutator = |a: &Matrix3<f64>| product(&spin, a) - product(a, &spin);
             let strain_rate = logarithmic_rate(&self.trial, k, m) - commutator(&self.strain);
             let rate = to_matrix(&(c * from_matrix(&strain_rate))) + commutator(&self.stress);
             let column = SVector::<f64, 9>::from_fn(|ij, _| rate[(ij / 3, ij % 3)]);
@@ -138,17 +138,17 @@ pub fn respond_large<L: BulkLaw>(
     let elastic = law.elastic_strain(&old.material);
     let in_space = to_matrix(&old.in_space(&elastic));
     let stretched = Spectrum::new(&in_space).map(|e| (2.0 * e).exp_m1());
-    let stretch = h + h.transpose() + h * h.transpose();
-    let trial = Spectrum::new(&symmetric(&(stretch + f * stretched * f.transpose())));
+    let stretch = h + h.transpose() + product(h, &h.transpose());
+    let trial = Spectrum::new(&symmetric(&(stretch + turned(&f, &stretched))));
     let turn = Turn::new(&f, &symmetric(&stretch));
-    let frame = turn.rotation * old.frame;
+    let frame = product(&turn.rotation, &old.frame);
 
     let mut strain = trial.map(|b| 0.5 * b.ln_1p());
     if let Some(dilatation) = dilatation {
         let missing = (trace(&elastic) + dilatation - strain.trace()) / 3.0;
         (0..3).for_each(|i| strain[(i, i)] += missing);
     }
-    let own = frame.transpose() * strain * frame;
+    let own = turned(&frame.transpose(), &strain);
     let d_eps = from_matrix(&own) - elastic;
     let response = law.respond(&old.material, &d_eps);
     let state = Turned {
@@ -173,7 +173,7 @@ fn in_space(a: &GradientTangent, q: &Matrix3<f64>) -> GradientTangent {
     let mut inner = [[Matrix3::zeros(); 3]; 3];
     for (i, k) in (0..3).flat_map(|i| (0..3).map(move |k| (i, k))) {
         let block: Matrix3<f64> = a.fixed_view::<3, 3>(3 * i, 3 * k).into();
-        inner[i][k] = q * block * q.transpose();
+        inner[i][k] = turned(q, &block);
     }
     let mut out = GradientTangent::zeros();
     for i in 0..3 {
@@ -191,7 +191,7 @@ fn in_space(a: &GradientTangent, q: &Matrix3<f64>) -> GradientTangent {
 /// det(1 + h) − 1, without loss where h is small.
 pub fn volume_change(h: &Matrix3<f64>) -> f64 {
     let trace = h.trace();
-    let second = 0.5 * (trace * trace - (h * h).trace());
+    let second = 0.5 * (trace * trace - product(h, h).trace());
     trace + second + h.determinant()
 }
 
@@ -208,7 +208,7 @@ fn logarithmic_rate(trial: &Spectrum, k: usize, m: usize) -> Matrix3<f64> {
     let own = Matrix3::from_fn(|i, j| {
         0.5 * logarithmic_slope(b[i], b[j]) * (l(i, j) * b[j] + l(j, i) * b[i])
     });
-    q * own * q.transpose()
+    turned(q, &own)
 }
 
 /// The rotation of a step and how it changes.
@@ -226,7 +226,7 @@ impl Turn {
     fn new(f: &Matrix3<f64>, stretch: &Matrix3<f64>) -> Self {
         let spectrum = Spectrum::new(stretch);
         Self {
-            rotation: spectrum.map(|v| 1.0 / (1.0 + v).sqrt()) * f,
+            rotation: product(&spectrum.map(|v| 1.0 / (1.0 + v).sqrt()), f),
             stretches: spectrum.values.map(|v| (1.0 + v).sqrt()),
             directions: spectrum.directions,
         }
@@ -237,6 +237,6 @@ impl Turn {
         let (q, v) = (&self.directions, &self.stretches);
         let l = |i: usize, j: usize| q[(k, i)] * q[(m, j)];
         let own = Matrix3::from_fn(|i, j| (v[j] * l(i, j) - v[i] * l(j, i)) / (v[i] + v[j]));
-        q * own * q.transpose()
+        turned(q, &own)
     }
 }

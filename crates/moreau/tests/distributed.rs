@@ -260,18 +260,24 @@ fn a_process_that_dies_ends_all_and_leaves_the_last_checkpoint() {
     if !has_mpi("a process that dies ends all") {
         return;
     }
-    let place = Place::new("killed", &deck([7, 7, 4], 40, "", "block.front"));
-    let child = under_way(&place);
-    let at = fs::canonicalize(&place.0).expect("a folder");
-    let victim = process(&at, "2").expect("a process of rank 2");
-    call("kill", &["-9", &victim.to_string()]);
-    let (status, text) = end(&place, child);
-    assert_ne!(status, Some(0));
-    assert!(
-        text.contains("signal 9") || text.contains("Killed"),
-        "{text}"
-    );
-    goes_on(&place);
+    // The first one writes all files.
+    for rank in ["2", "0"] {
+        let place = Place::new(
+            &format!("killed-{rank}"),
+            &deck([7, 7, 4], 40, "", "block.front"),
+        );
+        let child = under_way(&place);
+        let at = fs::canonicalize(&place.0).expect("a folder");
+        let victim = process(&at, rank).expect("a process of the rank");
+        call("kill", &["-9", &victim.to_string()]);
+        let (status, text) = end(&place, child);
+        assert_ne!(status, Some(0), "rank {rank}");
+        assert!(
+            text.contains("signal 9") || text.contains("Killed"),
+            "rank {rank}: {text}"
+        );
+        goes_on(&place);
+    }
 }
 
 /// The first process writes all files: none of them may be longer than some kilobytes any more.

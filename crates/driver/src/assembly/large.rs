@@ -4,7 +4,7 @@
 use crate::assembly::cell_law::{CellLaw, CellOutput, Motion, Stiffness};
 use crate::assembly::cells::{Cells, MAX_POINTS};
 use moreau_laws::{BulkLaw, FlowPower, LargeResponse, Turned, respond_large, volume_change};
-use moreau_mandel::{GradientTangent, Spectrum, Sym2, from_matrix, of_gradients};
+use moreau_mandel::{GradientTangent, Spectrum, Sym2, from_matrix, of_gradients, product, turned};
 use nalgebra::{Matrix3, SMatrix, SVector};
 
 /// A law of small strains under large ones: [`respond_large`].
@@ -74,7 +74,7 @@ impl<S> Cell<S> {
     ) {
         let mut flux = [Matrix3::zeros(); MAX_POINTS];
         for (flux, point) in flux.iter_mut().zip(&self.points) {
-            *flux = tensor(point) * point.inverse.transpose();
+            *flux = product(&tensor(point), &point.inverse.transpose());
         }
         cells.gradient_force(k, &flux[..self.points.len()], force);
     }
@@ -108,7 +108,7 @@ impl<L: BulkLaw> Large<L> {
             let weight = cells.weight(k * count + g);
             before[g] += Matrix3::identity();
             let was = before[g].determinant();
-            step[g] *= before[g].try_inverse()?;
+            step[g] = product(&step[g], &before[g].try_inverse()?);
             volume += weight * was;
             change += weight * was * volume_change(&step[g]);
         }
@@ -124,7 +124,7 @@ impl<L: BulkLaw> Large<L> {
             let own = free.map_or(step[g], |free| without(free, &step[g]));
             let dilatation = dilatation.map(|d| d - 3.0 * free.unwrap_or(0.0));
             let response = respond_large(&self.0, &old[g], &own, dilatation)?;
-            let now = (Matrix3::identity() + step[g]) * before[g];
+            let now = product(&(Matrix3::identity() + step[g]), &before[g]);
             let weight = cells.weight(k * count + g);
             pressure += weight * response.stress.trace() / 3.0;
             cell.points.push(Point {
@@ -184,8 +184,8 @@ impl<L: BulkLaw> Large<L> {
                 let of_pressure = row_mean(&a);
                 let both = (by_dilatation[0] + by_dilatation[4] + by_dilatation[8]) / 3.0;
                 bulk += point.weight * both;
-                left[g] = deviator(&by_dilatation, both) * point.inverse.transpose();
-                right[g] = deviator(&of_pressure, both) * point.inverse.transpose();
+                left[g] = product(&deviator(&by_dilatation, both), &point.inverse.transpose());
+                right[g] = product(&deviator(&of_pressure, both), &point.inverse.transpose());
                 remove_means(&mut a);
                 for (i, k) in (0..3).flat_map(|i| (0..3).map(move |k| (i, k))) {
                     a[(4 * i, 4 * k)] += part * point.jacobian * mean.pressure;
@@ -411,7 +411,7 @@ fn pulled_back(a: &GradientTangent, inverse: &Matrix3<f64>) -> GradientTangent {
     for i in 0..3 {
         for k in 0..3 {
             let block: SMatrix<f64, 3, 3> = a.fixed_view::<3, 3>(3 * i, 3 * k).into();
-            let own = inverse * block * inverse.transpose();
+            let own = turned(inverse, &block);
             out.fixed_view_mut::<3, 3>(3 * i, 3 * k).copy_from(&own);
         }
     }

@@ -54,17 +54,18 @@ impl<const D: usize> Driver<D> {
         (self.settings.tolerance * scale).max(rounding)
     }
 
-    /// Whether nothing has gone so far that forces are rounding: what slides away is in balance with
-    /// anything there. What falls may go as far as to what stops it.
+    /// Whether nothing has gone so far that forces are rounding, in all of the increment or in its last step: what
+    /// slides away is in balance with anything there. What falls may go as far as to what stops it.
     pub(crate) fn is_near(
         &self,
         system: &System,
-        d_u: &[f64],
+        (d_u, solution): (&[f64], Option<&ContactSolution<D>>),
         (start, end): (&Loading<D>, &Loading<D>),
     ) -> bool {
         let mesh = d_u[..self.mesh_dofs()].iter().copied();
         let turns = (0..self.tools.len()).map(|tool| d_u[self.turn_dof(tool)]);
-        let moved = largest(mesh.chain(turns));
+        let step = solution.iter().flat_map(|s| &s.motion).map(|u| u.amax());
+        let moved = largest(mesh.chain(turns).chain(step));
         let prescribed = end.displacement.iter();
         let told = largest(prescribed.map(|(dof, u)| u - start.displacement.get(dof).unwrap_or(u)));
         let reach = self.mesh.size() + told;

@@ -392,7 +392,11 @@ impl<const D: usize> Driver<D> {
         let balanced = iterate.part >= 1.0
             && balance.largest <= balance.accepted
             && rounded
-            && self.is_near(system, &iterate.d_u, (increment.start, &increment.end));
+            && self.is_near(
+                system,
+                (&iterate.d_u, increment.solution.as_ref()),
+                (increment.start, &increment.end),
+            );
         let holds = |s: &mut ContactSolution<D>| {
             balanced && self.law_holds(system, &balance.kinematics, s, balance.scale)
         };

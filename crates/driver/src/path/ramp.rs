@@ -483,8 +483,7 @@ impl<const D: usize> Driver<D> {
                         }
                     }
                     path.last = report.fraction - before;
-                    let peak = report.limit.unwrap_or(0.0).max(report.fraction);
-                    path.peak = path.peak.max(peak);
+                    path.peak = path.peak.max(report.fraction);
                     path.growth = path.last * (ramp.work / work).abs() / path.peak;
                     let size = self.mesh.size();
                     let moved = &self.state.displacement[..self.mesh_dofs()];

@@ -91,6 +91,12 @@ fn parameters(root: &Table<'_>, given: &BTreeMap<String, f64>) -> Vec<At<String>
             findings.error(&name.span, message, "no name for formulas");
             continue;
         }
+        if formula::reserved().any(|known| known == name.value) {
+            let message = format!("\"{}\" is what formulas have already", name.value);
+            let mut findings = log.borrow_mut();
+            findings.error(&name.span, message, "call the parameter something else");
+            continue;
+        }
         let other = given.get(&name.value).copied();
         let value = reader::number(value, &name.value, log).map(|v| v.value);
         if let Some(value) = other.or(value) {

@@ -123,16 +123,32 @@ impl Log {
                 format!("{what} is the formula \"={text}\", whose value is {value}"),
                 "expected a finite number",
             ),
+            Err(Mistake::Unknown(name)) if formula::reserved().any(|known| known == name) => (
+                format!("the function \"{name}\" stands without its argument"),
+                "as in sqrt(2)",
+            ),
             Err(Mistake::Unknown(name)) => {
-                let near = did_you_mean(&name, parameters.keys().map(String::as_str));
+                let names = parameters.keys().map(String::as_str);
+                let near = did_you_mean(&name, names.chain(["pi"]));
                 (
                     format!("no parameter is called \"{name}\"{near}"),
                     "not in [parameters]",
                 )
             }
+            Err(Mistake::NoFunction(name)) => {
+                let near = did_you_mean(&name, formula::reserved());
+                (
+                    format!("no function is called \"{name}\"{near}"),
+                    "sqrt, exp, log, log10, sin, cos, tan, asin, acos, atan, tanh, abs, min, max",
+                )
+            }
+            Err(Mistake::Arguments(name, found, expected)) => (
+                format!("{name} is given {found} numbers, expected {expected}"),
+                "with commas between them",
+            ),
             Err(Mistake::Expected(expected, found)) => (
                 format!("{what} is a formula with {found}, where {expected} was expected"),
-                "numbers, parameters, + - * / and ( )",
+                "numbers, parameters, + - * / ^, functions and ( )",
             ),
         };
         let mut findings = self.findings.borrow_mut();

@@ -134,6 +134,7 @@ pub(crate) fn unit(name: &str, units: Units) -> Option<&'static str> {
         n if of_stress(n) || n.starts_with("pressure") => Some(units.stress()),
         n if n.starts_with("displacement") => Some(units.length()),
         "gap" | "slip" => Some(units.length()),
+        "temperature" => Some("K"),
         n if n.contains("force") || n == "out_of_balance" => Some(units.force()),
         _ => None,
     }

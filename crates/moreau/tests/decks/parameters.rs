@@ -83,6 +83,26 @@ fn what_is_wrong_with_formulas_is_told() {
             "with the end, where a closing parenthesis was expected",
         ),
         (
+            "travel = 1\nmu = \"= sqr(0.01)\"\nn = 2\n",
+            &[],
+            "no function is called \"sqr\"; did you mean \"sqrt\"?",
+        ),
+        (
+            "travel = 1\nmu = \"= min(0.1)\"\nn = 2\n",
+            &[],
+            "min is given 1 numbers, expected 2",
+        ),
+        (
+            "travel = 1\nmu = \"= sqrt(-1)\"\nn = 2\n",
+            &[],
+            "whose value is NaN",
+        ),
+        (
+            "travel = 1\nmu = 0.1\nn = 2\nmax = 3\n",
+            &[],
+            "\"max\" is what formulas have already",
+        ),
+        (
             "travel = 1\nmu = 0.1\nn = 2\nspare = 3\n",
             &[],
             "no formula uses the parameter \"spare\"",

@@ -8,7 +8,7 @@ mod saved;
 
 use moreau::deck::{Given, Meshes};
 use moreau::driver::IncrementError;
-use moreau::simulation::{RunStatus, Simulation, StepError};
+use moreau::simulation::{Grid, RunStatus, Simulation, StepError};
 use moreau::table::Values;
 use std::fs;
 use std::ops::ControlFlow;
@@ -60,6 +60,34 @@ fn bits(simulation: &Simulation) -> (Vec<u64>, String) {
     let mut lines: Vec<String> = (0..history.rows()).map(|r| history.line(r)).collect();
     lines.extend((0..contacts.rows()).map(|r| contacts.line(r)));
     (all, lines.join("\n"))
+}
+
+/// Linear between the quadrature points, and so at the nodes.
+#[test]
+fn what_is_heated_shows_its_temperature() {
+    let with = DECK.replace("yield-stress = 300.0", "expansion = 1.2e-5");
+    let moved = "move = [{ on = \"punch\", u = { y = -0.2 } }]";
+    let load = "load = [{ on = \"block\", temperature = \"= 80 * (1 - x / 50)\" }]";
+    let with = with.replace(moved, &format!("{moved}\n{load}"));
+    let with = with.split("[expect]").next().expect("a deck");
+    let mut simulation = simulation(with);
+    let off = |grid: Grid, part: f64| {
+        let field = grid.point_data.iter().find(|a| a.name == "temperature");
+        let pairs = grid.points.iter().zip(&field.expect("a field").values);
+        pairs.fold(0.0, |off: f64, (x, t)| {
+            off.max((t - 80.0 * part * (1.0 - x[0] / 50.0)).abs())
+        })
+    };
+    // On the boundary of the body a value stays between those of the points around it.
+    let points_from_boundary = 80.0 * 1.06 / 50.0;
+    let check = |simulation: &Simulation, part: f64| {
+        assert!(off(simulation.points(), part) < 1e-10);
+        assert!(off(simulation.body(), part) <= points_from_boundary * part);
+    };
+    check(&simulation, 0.0);
+    assert!(advance(&mut simulation));
+    check(&simulation, 0.05);
+    check(&finish(simulation), 1.0);
 }
 
 #[test]

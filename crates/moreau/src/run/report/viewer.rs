@@ -35,7 +35,8 @@ pub(super) fn viewer<const D: usize>(
     let all = bodies(directory);
     let mesh = driver.mesh();
     let (points, cells) = points_by_material(mesh, driver.materials());
-    let of_laws: usize = driver.fields().iter().map(|f| f.components).sum();
+    let of_laws = driver.fields().into_iter().chain(driver.temperatures());
+    let of_laws: usize = of_laws.map(|f| f.components).sum();
     let per_frame = points.len() * (D + 9 + of_laws);
     let stride = (all.len() * per_frame).div_ceil(MOST_VALUES).max(1);
     let mut frames = Vec::new();

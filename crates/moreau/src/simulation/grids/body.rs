@@ -81,7 +81,8 @@ pub(super) fn place<const D: usize>(driver: &Driver<D>, node: usize) -> [f64; D]
 pub(in crate::simulation) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usize>) {
     let mesh = driver.mesh();
     let points = driver.points();
-    let of_laws = driver.fields();
+    let mut of_laws = driver.fields();
+    of_laws.extend(driver.temperatures());
     let recovered = recover(mesh, driver.materials(), &points, &of_laws);
     let values: Vec<_> = recovered
         .stress

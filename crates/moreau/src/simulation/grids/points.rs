@@ -20,6 +20,7 @@ pub(in crate::simulation) fn points<const D: usize>(driver: &Driver<D>) -> Grid 
     let states: Vec<_> = order.iter().map(|&k| all[k]).collect();
     drop(all);
     let mut of_laws = driver.fields();
+    of_laws.extend(driver.temperatures());
     for field in &mut of_laws {
         let n = field.components;
         field.values = order
