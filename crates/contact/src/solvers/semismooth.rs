@@ -109,9 +109,6 @@ struct Iterate<const D: usize> {
     merit: f64,
 }
 
-/// Another start, from the displacements of the first.
-type Start<const D: usize> = fn(&CondensedProblem<D>, &[Local<D>]) -> Option<Vec<Local<D>>>;
-
 /// Newton on the natural map at u + C (t − t₀*), with a diagonal compliance C \[mm/N\] of every contact
 /// (zero: the exact law) and t₀* = (0, t₀ₜ), the penalty of \[81\]–\[82\] as a spring in series. Ties have none.
 pub(super) fn newton<const D: usize>(
@@ -135,10 +132,9 @@ pub(super) fn newton<const D: usize>(
     let mut iterations = 0;
     let mut part = 0;
     // A body that only contact holds has no stiffness against contacts that are open at the start: then start again with
-    // all of them closed, and with the nearest held.
+    // all of them closed, and where that leads nowhere with the nearest held.
     let begun = start.clone();
-    let others: [Start<D>; 2] = [all_closed, nearest_held];
-    let mut others = others.iter().filter_map(|other| other(problem, &begun));
+    let (mut may_close, mut may_hold) = (true, true);
     loop {
         let newton = Newton {
             problem,
@@ -169,10 +165,8 @@ pub(super) fn newton<const D: usize>(
             };
             now = next;
         }
-        if newton.step(&now).is_none()
-            && let Some(other) = others.next()
-        {
-            start = other;
+        if newton.step(&now).is_none() && std::mem::take(&mut may_close) {
+            start = all_closed(problem, &begun);
             continue;
         }
         part += 1;
@@ -191,7 +185,8 @@ pub(super) fn newton<const D: usize>(
             match newton.sweep(&from) {
                 Ok(u) => start = problem.relative(&u),
                 Err(ContactError::Floating { .. }) => {
-                    start = others.next().ok_or(ContactError::Singular)?;
+                    let held = std::mem::take(&mut may_hold).then(|| nearest_held(problem, &begun));
+                    start = held.flatten().ok_or(ContactError::Singular)?;
                 }
                 Err(_) => {}
             }
@@ -334,13 +329,10 @@ impl<const D: usize> Newton<'_, D> {
 }
 
 /// The same slips at closed gaps.
-fn all_closed<const D: usize>(
-    problem: &CondensedProblem<D>,
-    x: &[Local<D>],
-) -> Option<Vec<Local<D>>> {
+fn all_closed<const D: usize>(problem: &CondensedProblem<D>, x: &[Local<D>]) -> Vec<Local<D>> {
     let closed =
         |(x, g): (&Local<D>, &Local<D>)| Local::from_fn(|k, _| if k == 0 { -g[0] } else { x[k] });
-    Some(x.iter().zip(problem.origin()).map(closed).collect())
+    x.iter().zip(problem.origin()).map(closed).collect()
 }
 
 /// Where the contacts with next to the smallest gap stick and the others are without force; `None` if that does not hold
