@@ -209,8 +209,13 @@ impl<const D: usize> Newton<'_, D> {
     }
 
     fn iterate(&self, x: Vec<Local<D>>) -> Iterate<D> {
+        let t = self.problem.force_of(&x);
+        self.at(x, t)
+    }
+
+    /// The iterate at displacements with their forces.
+    fn at(&self, x: Vec<Local<D>>, t: Vec<Local<D>>) -> Iterate<D> {
         let p = self.problem;
-        let t = p.force_of(&x);
         let u: Vec<Local<D>> = x.iter().zip(p.origin()).map(|(x, g)| x + g).collect();
         let irreversible: Vec<Local<D>> = (0..u.len())
             .map(|i| {
@@ -277,10 +282,18 @@ impl<const D: usize> Newton<'_, D> {
     /// if the matrix is singular.
     fn advance(&self, now: &Iterate<D>) -> Option<Iterate<D>> {
         let step = self.step(now)?;
-        let mut s = 1.0;
+        let whole = self.iterate(add(&now.x, &step, 1.0));
+        let descends = |next: &Iterate<D>, s: f64| next.merit < (1.0 - 1e-4 * s) * now.merit;
+        if descends(&whole, 1.0) {
+            return Some(whole);
+        }
+        let mut s = 0.5;
         while s > 1e-4 {
-            let next = self.iterate(add(&now.x, &step, s));
-            if next.merit < (1.0 - 1e-4 * s) * now.merit {
+            // Forces are linear in displacements.
+            let between = |(t, after): (&Local<D>, &Local<D>)| t + (after - t) * s;
+            let forces = now.t.iter().zip(&whole.t).map(between).collect();
+            let next = self.at(add(&now.x, &step, s), forces);
+            if descends(&next, s) {
                 return Some(next);
             }
             s *= 0.5;

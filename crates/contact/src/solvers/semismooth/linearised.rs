@@ -36,11 +36,10 @@ pub(super) fn solve<const D: usize>(
     let own: Vec<Own<D>> = rows.into_iter().map(Own::new).collect::<Option<_>>()?;
     let fixed = DVector::from_iterator(n, own.iter().flat_map(|o| (0..D).map(|k| o.fixed[k])));
     // What the rows see of the components that are known.
-    let known = if fixed.iter().any(|&u| u != 0.0) {
-        s * &fixed
-    } else {
-        DVector::zeros(n)
-    };
+    let mut known = DVector::zeros(n);
+    for (column, &u) in s.column_iter().zip(&fixed).filter(|(_, u)| **u != 0.0) {
+        known.axpy(u, &column, 1.0);
+    }
     // Contacts whose rows are those of S along their own directions first: their block is symmetric.
     let (symmetric, others): (Vec<usize>, Vec<usize>) =
         (0..own.len()).partition(|&i| own[i].is_symmetric());
