@@ -123,7 +123,7 @@ impl InFrames {
                 let row = row(given, k, j, |dof| system.interface_index(dof));
                 let own = (0..D).filter_map(|i| system.interface_index(D * points[c].node + i));
                 let own: Vec<usize> = own.collect();
-                if j == 0 {
+                if j == 0 && k.known_slip.is_some() {
                     normal.clone_from(&row);
                 }
                 let is_known = j > 0 && k.known_slip.is_some();

@@ -91,30 +91,44 @@ impl Equations {
         own: &[Own<D>],
         (order, first): (&[usize], usize),
     ) -> Self {
-        // E of every row, and where its contact is.
-        let row = |i: usize| (0..own[i].left).map(move |r| (D * i, own[i].elastic.row(r)));
-        let rows = order.iter().flat_map(|&i| row(i));
-        let rows: Vec<(usize, [f64; D])> = rows
-            .map(|(at, e)| (at, std::array::from_fn(|k| e[k])))
-            .collect();
+        // E of every row and where its contact is, or where the one component of which it is.
+        let row = |i: usize| {
+            (0..own[i].left).map(move |r| {
+                let e: [f64; D] = std::array::from_fn(|k| own[i].elastic[(r, k)]);
+                match only(&e) {
+                    Some(k) => (D * i + k, None),
+                    None => (D * i, Some(e)),
+                }
+            })
+        };
+        let rows: Vec<_> = order.iter().flat_map(|&i| row(i)).collect();
         let mut new = Self {
             block: DMatrix::zeros(first, first),
             down: DMatrix::zeros(first, rows.len() - first),
             others: DMatrix::zeros(rows.len(), rows.len() - first),
         };
-        let mut answer = DVector::zeros(s.nrows());
+        let mut combined = DVector::zeros(s.nrows());
+        let entries = |k: usize| &s.as_slice()[k * s.nrows()..][..s.nrows()];
         let mut column = 0;
         for &j in order {
             let (o, begin) = (&own[j], column);
             for direction in o.free.column_iter().take(o.left) {
-                answer.copy_from(&s.column(D * j));
-                answer *= direction[0];
-                for k in (1..D).filter(|&k| direction[k] != 0.0) {
-                    answer.axpy(direction[k], &s.column(D * j + k), 1.0);
-                }
-                let seen = |(at, e): &(usize, [f64; D])| -> f64 {
-                    let own = &answer.as_slice()[*at..][..D];
-                    e.iter().zip(own).map(|(e, s)| e * s).sum()
+                let answer = match only(direction.as_slice()) {
+                    Some(k) => entries(D * j + k),
+                    None => {
+                        combined.copy_from(&s.column(D * j));
+                        combined *= direction[0];
+                        for k in (1..D).filter(|&k| direction[k] != 0.0) {
+                            combined.axpy(direction[k], &s.column(D * j + k), 1.0);
+                        }
+                        combined.as_slice()
+                    }
+                };
+                let seen = |(at, e): &(usize, Option<[f64; D]>)| -> f64 {
+                    match e {
+                        None => answer[*at],
+                        Some(e) => e.iter().zip(&answer[*at..]).map(|(e, s)| e * s).sum(),
+                    }
                 };
                 if column < first {
                     let mut block = new.block.column_mut(column);
@@ -177,6 +191,13 @@ impl Equations {
         let all = x.iter().chain(y.iter()).copied();
         Some(DVector::from_iterator(first + rest, all))
     }
+}
+
+/// The component that a vector is the unit vector of, if it is one.
+fn only(vector: &[f64]) -> Option<usize> {
+    let mut others = vector.iter().enumerate().filter(|(_, x)| **x != 0.0);
+    let (k, x) = others.next()?;
+    (*x == 1.0 && others.next().is_none()).then_some(k)
 }
 
 /// Components of a contact at most, in the plane and in space.
