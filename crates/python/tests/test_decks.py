@@ -212,6 +212,11 @@ def test_a_function_of_friction_is_sampled():
     limited = load({"coulomb": 0.1, "tau-max": 20.0})
     assert load(lambda p: min(0.1 * p, 20.0)) == pytest.approx(limited, rel=1e-3)
     assert load(0.1) != pytest.approx(limited, rel=1e-3)
+    # Whatever a modulus is written as, and in whatever unit.
+    keys["parameters"] = {"modulus": keys["material"][0]["young"]}
+    keys["material"][0]["young"] = "= modulus"
+    assert load(lambda p: 0.1 * p) == pytest.approx(load(0.1), rel=1e-9)
+    assert len(mc.Deck({**keys, "contact": [{**keys["contact"][0], "friction": lambda p: 0.1 * p}]}).text) < 3000
     for curve, words in [
         (lambda p: 0.1 * p if p < 100.0 else 5.0, "falls at the pressure"),
         (lambda p: 0.1 * p + 1e-5 * p * p, "expected a concave function"),
