@@ -10,7 +10,18 @@ pub(crate) mod prelude {
 /// What makes parts of a slice, in either way: the names are those of the parallel one.
 #[cfg(not(feature = "parallel"))]
 pub(crate) mod prelude {
-    use std::slice::ChunksMut;
+    use std::slice::{Chunks, ChunksMut};
+
+    pub(crate) trait ParallelSlice<T> {
+        /// Parts of so many entries, the last of what is left.
+        fn par_chunks(&self, size: usize) -> Chunks<'_, T>;
+    }
+
+    impl<T> ParallelSlice<T> for [T] {
+        fn par_chunks(&self, size: usize) -> Chunks<'_, T> {
+            self.chunks(size)
+        }
+    }
 
     pub(crate) trait ParallelSliceMut<T> {
         /// Parts of so many entries, the last of what is left.

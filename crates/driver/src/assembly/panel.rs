@@ -7,10 +7,10 @@ use crate::assembly::block::{
 use crate::assembly::cell_law::{Motion, Stiffness};
 use crate::assembly::cells::Cells;
 use crate::error::{LawFault, Place};
+use crate::threads::prelude::*;
 use moreau_laws::{FlowPower, Panel, PanelLaw};
 use moreau_mandel::{Sym2, Sym4, equivalent_strain};
 use nalgebra::Matrix3;
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
