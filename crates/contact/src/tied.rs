@@ -42,6 +42,36 @@ pub struct Springs<const D: usize> {
     pub force: Local<D>,
 }
 
+impl<const D: usize> Springs<D> {
+    /// Those of the penalty of \[81\]–\[82\]: what presses stretches them from rest, what slips from the force t₀ at the start
+    /// of the step. A tie has none.
+    pub fn of_penalty(compliance: Local<D>, mut previous: Local<D>, law: &Friction) -> Self {
+        previous[0] = 0.0;
+        match law.is_tie() {
+            true => Self::default(),
+            false => Self {
+                compliance,
+                force: previous,
+            },
+        }
+    }
+
+    /// C (t − t*) under a force t \[mm\].
+    pub fn elongation(&self, force: &Local<D>) -> Local<D> {
+        self.compliance.component_mul(&(force - self.force))
+    }
+
+    /// These and others in series with them: elongations add up.
+    pub fn and(&self, others: &Self) -> Self {
+        let compliance = self.compliance + others.compliance;
+        let at_rest = -(self.elongation(&Local::zeros()) + others.elongation(&Local::zeros()));
+        Self {
+            compliance,
+            force: at_rest.zip_map(&compliance, |rest, c| if c > 0.0 { rest / c } else { 0.0 }),
+        }
+    }
+}
+
 impl<const D: usize> Default for Springs<D> {
     /// None: the law itself.
     fn default() -> Self {

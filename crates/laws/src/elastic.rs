@@ -4,6 +4,10 @@ use crate::bulk::{BulkLaw, FlowPower, Response};
 use crate::error::{LawError, Parameter, positive};
 use moreau_mandel::{Sym2, Sym4, deviator, identity, isotropic, trace};
 
+/// How near Poisson's ratio may come to −1 and ½: of 1 − 2ν and 1 + ν rounding takes 10⁻⁷ there, and all of what it takes
+/// goes into the stresses.
+const NEAREST: f64 = 1e-9;
+
 /// Isotropic linear elasticity, σ = K_c tr(ε) δ + 2G e with the deviator e of ε.
 ///
 /// The trace of the strain is conjugate to the mean stress ⅓ tr σ = K_c tr ε.
@@ -19,10 +23,10 @@ impl Elastic {
     /// From Young's modulus E \[MPa\] and Poisson's ratio ν.
     ///
     /// # Errors
-    /// `NotPositive` unless E > 0 is finite; `PoissonOutOfRange` unless −1 < ν < ½.
+    /// `NotPositive` unless E > 0 is finite; `PoissonOutOfRange` unless −1 < ν < ½, and neither nearer than 10⁻⁹.
     pub fn new(young: f64, poisson: f64) -> Result<Self, LawError> {
         let young = positive(Parameter::YoungsModulus, young)?;
-        if !(poisson > -1.0 && poisson < 0.5) {
+        if !(NEAREST - 1.0..=0.5 - NEAREST).contains(&poisson) {
             return Err(LawError::PoissonOutOfRange { poisson });
         }
         Ok(Self {

@@ -98,8 +98,10 @@ pub enum LawError {
         /// Its value.
         value: f64,
     },
-    /// Poisson's ratio outside the open interval ]−1, ½[ of isotropic stability.
-    #[error("Poisson's ratio must lie in ]-1, 0.5[, got {poisson}")]
+    /// Poisson's ratio outside the open interval ]−1, ½[ of isotropic stability, or within 10⁻⁹ of its ends.
+    #[error(
+        "Poisson's ratio must lie in ]-1, 0.5[, no nearer to its ends than 1e-9, got {poisson}"
+    )]
     PoissonOutOfRange {
         /// The ratio ν.
         poisson: f64,

@@ -118,14 +118,7 @@ pub(super) fn newton<const D: usize>(
     (tolerance, enough): (Tolerance, f64),
 ) -> Result<ContactSolution<D>, ContactError> {
     let springs: Vec<Springs<D>> = (problem.previous().iter().zip(problem.laws()))
-        .map(|(previous, law)| {
-            let mut force = *previous;
-            force[0] = 0.0;
-            match law.is_tie() {
-                true => Springs::default(),
-                false => Springs { compliance, force },
-            }
-        })
+        .map(|(previous, law)| Springs::of_penalty(compliance, *previous, law))
         .collect();
     let zero = vec![Local::zeros(); problem.contacts()];
     let mut start = guess.map_or(zero, |g| problem.relative(&g.displacement));
@@ -218,10 +211,7 @@ impl<const D: usize> Newton<'_, D> {
         let p = self.problem;
         let u: Vec<Local<D>> = x.iter().zip(p.origin()).map(|(x, g)| x + g).collect();
         let irreversible: Vec<Local<D>> = (0..u.len())
-            .map(|i| {
-                let Springs { compliance, force } = &self.springs[i];
-                u[i] + compliance.component_mul(&(t[i] - force))
-            })
+            .map(|i| u[i] + self.springs[i].elongation(&t[i]))
             .collect();
         let map: Vec<Local<D>> = (0..u.len())
             .map(|i| p.laws()[i].natural_map(&irreversible[i], &t[i], self.alpha(i)))
@@ -268,13 +258,7 @@ impl<const D: usize> Newton<'_, D> {
                 (found.force, found.displacement)
             }
         };
-        let own = |(i, v): (usize, &Local<D>)| {
-            let Springs {
-                compliance,
-                force: rest,
-            } = &self.springs[i];
-            v - compliance.component_mul(&(force[i] - rest))
-        };
+        let own = |(i, v): (usize, &Local<D>)| v - self.springs[i].elongation(&force[i]);
         Ok(displacement.iter().enumerate().map(own).collect())
     }
 

@@ -28,7 +28,8 @@ pub(crate) struct Condensation<const D: usize> {
 
 impl<const D: usize> Condensation<D> {
     /// Turns stiffness and load of the condensed system into the local frames of the contacts;
-    /// `previous` are the contact forces at the start of the step, `force` the last that were found.
+    /// `previous` are the contact forces at the start of the step, `force` the last that were found, `springs` those of
+    /// a penalty in series with the contacts \[mm/N\].
     ///
     /// # Errors
     /// [`ContactError::Singular`] if a body is not held even with all its contacts stuck;
@@ -38,14 +39,20 @@ impl<const D: usize> Condensation<D> {
         (stiffness, load): (DMatrix<f64>, &DVector<f64>),
         (points, motion_rows): (&[ContactPoint<D>], &[RelativeMotionRow<D>]),
         kinematics: &[Kinematics<D>],
-        (previous, force): (Vec<Local<D>>, &[Local<D>]),
+        (previous, force, springs): (Vec<Local<D>>, &[Local<D>], &[Local<D>]),
     ) -> Result<Self, ContactError> {
         let contacts = (points, motion_rows);
         let InFrames {
             transformation,
             stiffness,
             load,
-        } = InFrames::new(system, (stiffness, load), contacts, kinematics, force)?;
+        } = InFrames::new(
+            system,
+            (stiffness, load),
+            contacts,
+            kinematics,
+            (force, springs),
+        )?;
         let (mut stiffness, load, rest) =
             InternalUnknowns::condense(stiffness, load, D * points.len())?;
         // Components switched off: alone on their diagonal, of the size of their neighbours.
@@ -103,7 +110,8 @@ pub(crate) struct InFrames {
 }
 
 impl InFrames {
-    /// Of a stiffness and a load of the interface unknowns; `force` are the last contact forces that were found.
+    /// Of a stiffness and a load of the interface unknowns; `force` are the last contact forces that were found,
+    /// `springs` those of a penalty in series with the contacts \[mm/N\].
     ///
     /// # Errors
     /// [`ContactError::Overconstrained`] where displacement conditions leave contacts no freedom.
@@ -112,7 +120,7 @@ impl InFrames {
         (stiffness, load): (DMatrix<f64>, &DVector<f64>),
         (points, motion_rows): (&[ContactPoint<D>], &[RelativeMotionRow<D>]),
         kinematics: &[Kinematics<D>],
-        force: &[Local<D>],
+        (force, springs): (&[Local<D>], &[Local<D>]),
     ) -> Result<Self, ContactError> {
         let mut rows = Elimination::new(load.len());
         let mut suspended = Vec::new();
@@ -137,7 +145,7 @@ impl InFrames {
                         row,
                         force: force[c][j],
                         measure,
-                        steepness: steepness(k, &force[c]),
+                        steepness: steepness(k, &force[c], springs[c][j]),
                     });
                 }
             }

@@ -12,7 +12,7 @@ use crate::model::points::{ContactPoint, Kinematics};
 use crate::settings::{Nesting, Seam};
 use crate::vector::SparseVector;
 use crate::vector::largest;
-use moreau_contact::{Structure, TiedFactor};
+use moreau_contact::{Springs, Structure, TiedFactor};
 use moreau_laws::{Local, Status};
 use nalgebra::{DMatrix, DVector, Dyn, LU, SMatrix};
 use std::collections::BTreeMap;
@@ -211,16 +211,21 @@ impl<'a, const D: usize> Tied<'a, D> {
         }
     }
 
-    /// Compliances of the springs of components that follow from others, as where a node touches several
-    /// tools or conditions prescribe a slip; zero of the others \[mm/N\]. `force` are the last contact forces that were
-    /// found. See [`Suspended`](crate::linear::suspension::Suspended).
-    pub(crate) fn suspended(
+    /// Springs of components that follow from others, as where a node touches several tools or conditions prescribe a slip,
+    /// from the last contact forces that were found; none of the others. See
+    /// [`Suspended`](crate::linear::suspension::Suspended).
+    pub(crate) fn suspension(
         &self,
         driver: &Driver<D>,
         kinematics: &[Kinematics<D>],
         force: &[Local<D>],
-    ) -> Vec<Local<D>> {
-        let mut compliance = vec![Local::zeros(); kinematics.len()];
+    ) -> Vec<Springs<D>> {
+        let penalty = driver.compliances(kinematics);
+        let of = |&force| Springs {
+            compliance: Local::zeros(),
+            force,
+        };
+        let mut springs: Vec<Springs<D>> = force.iter().map(of).collect();
         let mut at: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (c, point) in driver.points.iter().enumerate() {
             at.entry(point.node).or_default().push(c);
@@ -234,13 +239,13 @@ impl<'a, const D: usize> Tied<'a, D> {
                     let row = self.rows[D * c + j].iter();
                     let row: BTreeMap<usize, f64> = row.map(|&(p, v)| (p as usize, v)).collect();
                     if !rows.solve(D * c + j, &row, &[]) {
-                        let steepness = steepness(&kinematics[c], &force[c]);
-                        compliance[c][j] = 1.0 / spring(self.stiffness[c], steepness);
+                        let steepness = steepness(&kinematics[c], &force[c], penalty[c][j]);
+                        springs[c].compliance[j] = 1.0 / spring(self.stiffness[c], steepness);
                     }
                 }
             }
         }
-        compliance
+        springs
     }
 
     /// Factorises with what touches held to its surface, and what sticks in its place, by springs of a compliance

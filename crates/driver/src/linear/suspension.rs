@@ -37,7 +37,7 @@ pub(crate) struct Suspended {
 /// rounding of forces grows with it.
 const STIFFER: f64 = 30.0;
 
-/// The same at most, where the slip is so short that friction turns steeply with it.
+/// The same at most, where contacts answer steeply.
 const STIFFEST: f64 = 1e6;
 
 /// k \[N/mm\] for a stiffness of the unknowns and the [`steepness`] of friction.
@@ -45,11 +45,20 @@ pub(crate) fn spring(stiffness: f64, steepness: f64) -> f64 {
     STIFFER * steepness.clamp(stiffness, STIFFEST / STIFFER * stiffness)
 }
 
-/// How much friction turns with a known slip, g / ‖u_t‖: what an elongation of the spring changes of its direction vanishes
-/// as fast as the spring is stiffer \[N/mm\].
-pub(crate) fn steepness<const D: usize>(kinematics: &Kinematics<D>, force: &Local<D>) -> f64 {
+/// How steeply a contact answers an elongation of the spring, which vanishes as fast as the spring is stiffer than that: as
+/// the stiffness 1/C of a penalty of compliance C in series with it, and as g / ‖u_t‖, by which friction turns with a known
+/// slip \[N/mm\].
+pub(crate) fn steepness<const D: usize>(
+    kinematics: &Kinematics<D>,
+    force: &Local<D>,
+    compliance: f64,
+) -> f64 {
     let known = kinematics.known_slip.filter(|&slip| slip > 0.0);
-    known.map_or(0.0, |slip| kinematics.law.bound(force[0].max(0.0)) / slip)
+    let turns = known.map_or(0.0, |slip| kinematics.law.bound(force[0].max(0.0)) / slip);
+    match compliance > 0.0 {
+        true => turns.max(compliance.recip()),
+        false => turns,
+    }
 }
 
 impl Suspended {

@@ -86,9 +86,18 @@ impl<const D: usize> Driver<D> {
         solution: &ContactSolution<D>,
         scale: f64,
     ) -> bool {
-        let rounding = self.law_rounding(system);
-        let tolerance = self.settings.tolerance * scale + slack(solution) + rounding;
+        let tolerance = self.law_tolerance(system, solution, scale);
         solution.exact && self.law_residual(system, kinematics, solution) <= tolerance
+    }
+
+    /// The largest [`Driver::law_residual`] with which an increment is accepted \[N\].
+    pub(crate) fn law_tolerance(
+        &self,
+        system: &System,
+        solution: &ContactSolution<D>,
+        scale: f64,
+    ) -> f64 {
+        self.settings.tolerance * scale + slack(solution) + self.law_rounding(system)
     }
 
     /// What rounding of positions makes of [`Driver::law_residual`] \[N\].

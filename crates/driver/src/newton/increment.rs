@@ -302,7 +302,7 @@ impl<const D: usize> Driver<D> {
                     counts: increment.counts,
                 });
             }
-            self.check_progress(&increment, &balance)?;
+            self.check_progress(system, &increment, &balance)?;
             let step = self.newton_step(system, &mut increment, balance)?;
             self.go_along(system, &mut increment, &step);
         }
@@ -407,6 +407,7 @@ impl<const D: usize> Driver<D> {
     /// After too many iterations, or where forces are no numbers.
     fn check_progress(
         &self,
+        system: &System,
         increment: &Increment<'_, '_, D>,
         balance: &Balance<D>,
     ) -> Result<(), IncrementError> {
@@ -415,6 +416,20 @@ impl<const D: usize> Driver<D> {
         if ends && increment.counts.undetermined {
             // The motion that the statuses left free has no end.
             let source = ContactError::Singular;
+            return Err(IncrementError::Contact { iteration, source });
+        }
+        if ends
+            && balance.largest <= balance.accepted
+            && let Some(solution) = &increment.solution
+            && !self.law_holds(system, &balance.kinematics, solution, balance.scale)
+        {
+            // What lacks is not in the forces.
+            let source = ContactError::NotConverged {
+                solver: "Newton's method on the bodies, which are in balance, and the law of contact",
+                iterations: iteration,
+                residual: self.law_residual(system, &balance.kinematics, solution),
+                tolerance: self.law_tolerance(system, solution, balance.scale),
+            };
             return Err(IncrementError::Contact { iteration, source });
         }
         if ends || !balance.largest.is_finite() {

@@ -93,8 +93,12 @@ impl<const D: usize> Driver<D> {
             Some(s) if counts.newton > 1 => &s.force,
             _ => &previous,
         };
-        let suspended = tied.suspended(self, kinematics, last);
-        let springs = springs(&compliance, &suspended, (last, &previous), kinematics);
+        let suspension = tied.suspension(self, kinematics, last);
+        let penalty: Vec<Springs<D>> = (kinematics.iter().zip(&previous))
+            .map(|(k, previous)| Springs::of_penalty(compliance, *previous, &k.law))
+            .collect();
+        let both = penalty.iter().zip(&suspension);
+        let springs: Vec<Springs<D>> = both.map(|(own, other)| own.and(other)).collect();
         let largest_load = tied.largest_load();
         let largest_of =
             |forces: &[Local<D>], other: f64| forces.iter().map(|t| t.norm()).fold(other, f64::max);
@@ -130,10 +134,10 @@ impl<const D: usize> Driver<D> {
                 })
             })
             .map_err(contact)?;
-        // The law holds where the springs of what is suspended end, not where the bodies are.
-        let own = solution.displacement.iter_mut().zip(&solution.irreversible);
-        for ((u, obeys), c) in own.zip(&suspended) {
-            (0..D).filter(|&j| c[j] > 0.0).for_each(|j| u[j] = obeys[j]);
+        // The contact is where the springs of what is suspended end, not where the bodies are.
+        let contacts = solution.displacement.iter_mut().zip(&solution.force);
+        for ((u, t), springs) in contacts.zip(&suspension) {
+            *u += springs.elongation(t);
         }
         counts.contact_solves += tied.solves;
         if tied.soft > 0.0 {
@@ -176,9 +180,15 @@ impl<const D: usize> Driver<D> {
             Some(s) if counts.newton > 1 => s.force.clone(),
             _ => previous.clone(),
         };
-        let mut condensation =
-            Condensation::new(system, seam, points, kinematics, (previous, &force))
-                .map_err(contact)?;
+        let springs = self.compliances(kinematics);
+        let mut condensation = Condensation::new(
+            system,
+            seam,
+            points,
+            kinematics,
+            (previous, &force, &springs),
+        )
+        .map_err(contact)?;
         let problem = &mut condensation.problem;
         let method = &self.settings.contact;
         let solution = method
@@ -227,28 +237,6 @@ impl<const D: usize> Driver<D> {
             growth,
         })
     }
-}
-
-/// Springs in series with every contact: those of the method, which ties have not, of which a slip stretches those along it from the
-/// forces t₀ at the start of the step, and those of what is suspended, from the last forces.
-fn springs<const D: usize>(
-    compliance: &Local<D>,
-    suspended: &[Local<D>],
-    (last, previous): (&[Local<D>], &[Local<D>]),
-    kinematics: &[Kinematics<D>],
-) -> Vec<Springs<D>> {
-    let of = |i: usize| Springs {
-        compliance: match kinematics[i].law.is_tie() {
-            true => suspended[i],
-            false => compliance + suspended[i],
-        },
-        force: Local::from_fn(|j, _| match j {
-            _ if suspended[i][j] > 0.0 => last[i][j],
-            0 => 0.0,
-            _ => previous[i][j],
-        }),
-    };
-    (0..previous.len()).map(of).collect()
 }
 
 /// A contact problem that is singular, as where all that touches slips or nothing is left to press: of its

@@ -158,7 +158,8 @@ impl<const D: usize> Driver<D> {
         let condensed = system.condense(vec![0.0; increment.iterate.d_u.len()]);
         let points = (self.points.as_slice(), self.footing.rows.as_slice());
         let seam = (system.schur(), &condensed.load);
-        let forces = (force.clone(), force.as_slice());
+        let springs = self.compliances(&kinematics);
+        let forces = (force.clone(), force.as_slice(), springs.as_slice());
         let condensation =
             Condensation::new(system, seam, points, &kinematics, forces).map_err(contact)?;
         let problem = &condensation.problem;

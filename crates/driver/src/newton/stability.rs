@@ -79,8 +79,9 @@ impl<const D: usize> Driver<D> {
         let load = DVector::zeros(stiffness.nrows());
         let contacts = (self.points.as_slice(), self.footing.rows.as_slice());
         let rest = vec![Local::zeros(); kinematics.len()];
-        let frames = InFrames::new(system, (stiffness, &load), contacts, kinematics, &rest).ok()?;
         let springs = self.compliances(kinematics);
+        let given = (rest.as_slice(), springs.as_slice());
+        let frames = InFrames::new(system, (stiffness, &load), contacts, kinematics, given).ok()?;
         let gives = |k: usize| {
             let (i, j) = (k / D, k % D);
             match kinematics[i].active[j] {

@@ -111,7 +111,8 @@ impl<const D: usize> Driver<D> {
         let points = (self.points.as_slice(), self.footing.rows.as_slice());
         let seam = (system.schur(), &condensed.load);
         let forces = self.previous_forces(&kinematics);
-        let forces = (forces.clone(), forces.as_slice());
+        let springs = self.compliances(&kinematics);
+        let forces = (forces.clone(), forces.as_slice(), springs.as_slice());
         let condensation = Condensation::new(system, seam, points, &kinematics, forces).ok()?;
         let interface = condensation.yielding(&status)?;
         self.instability(system, &mut |system, force| {

@@ -1,7 +1,7 @@
 //! Nodes between several tools, and at sharp corners of one.
 
-use moreau_contact::{Plane, Polyline};
-use moreau_driver::{Axis, Driver, Increments, Model, Settings, Step};
+use moreau_contact::{Penalty, Plane, Polyline};
+use moreau_driver::{Axis, Driver, Increments, Model, Seam, Settings, Step};
 use moreau_laws::{Coulomb, Elastic, Status, VonMises};
 use moreau_mesh::{CellKind, Integration, PlaneStrain, Solid, block2, block3, uniform};
 
@@ -11,6 +11,15 @@ fn coulomb(mu: f64) -> Coulomb {
 
 /// A square between a floor and a wall, under the same pressure from above and from the right.
 fn cornered(mu: f64, pressure: f64, kind: CellKind) -> (Driver<2>, Step<2>) {
+    cornered_with(Settings::default(), mu, pressure, kind)
+}
+
+fn cornered_with(
+    settings: Settings<2>,
+    mu: f64,
+    pressure: f64,
+    kind: CellKind,
+) -> (Driver<2>, Step<2>) {
     let lines = uniform(0.0, 10.0, 6);
     let rule = match kind {
         CellKind::Quad8 => Integration::Reduced,
@@ -28,10 +37,7 @@ fn cornered(mu: f64, pressure: f64, kind: CellKind) -> (Driver<2>, Step<2>) {
     let press = Step::new("press")
         .pressure("b.top", pressure)
         .pressure("b.right", pressure);
-    (
-        Driver::new(model, Settings::default()).expect("valid"),
-        press,
-    )
+    (Driver::new(model, settings).expect("valid"), press)
 }
 
 /// Without friction the stress is uniform, and each wall has the pressure on its nodes, the one in the
@@ -106,6 +112,57 @@ fn a_node_in_a_corner_obeys_the_law_on_both_tools() {
                 "{u} {v}"
             );
         }
+    }
+}
+
+/// The block of [`cornered`] with springs of a penalty.
+fn sprung(seam: Seam, stiffness: f64, iterations: usize) -> (Driver<2>, Step<2>) {
+    let penalty = || Penalty::new(stiffness, stiffness).expect("a stiffness");
+    let settings = Settings {
+        seam,
+        contact: Box::new(penalty()),
+        iterations,
+        ..Settings::default()
+    };
+    cornered_with(settings, 0.3, 50.0, CellKind::Quad8)
+}
+
+const SEAMS: [Seam; 2] = [Seam::Condensed, Seam::Tied];
+
+/// By the penalty method too, however stiff its springs: they carry the loads, and give by as much as they are soft.
+#[test]
+fn springs_in_a_corner_carry_what_presses() {
+    for (seam, stiffness) in SEAMS
+        .into_iter()
+        .flat_map(|seam| [1e4, 1e6, 1e8, 1e11, 1e15].map(|stiffness| (seam, stiffness)))
+    {
+        let case = format!("{seam:?}, {stiffness:e}");
+        let (mut driver, press) = sprung(seam, stiffness, 40);
+        let outcome = driver.run(&press, 2, |_, _| {});
+        let reports = outcome.unwrap_or_else(|error| panic!("{case}: {error}"));
+        let [floor, wall] = ["floor", "wall"].map(|t| driver.tool_force(t).expect("exists"));
+        let off = floor + wall - nalgebra::Vector2::repeat(500.0);
+        assert!(off.norm() < 1e-5, "{case}: {off}");
+        for c in driver.contacts() {
+            let given = -c.t[0] / stiffness;
+            assert!(
+                (c.u[0] - given).abs() < 1e-6 * given.abs() + 1e-12,
+                "{case}: {c:?}"
+            );
+        }
+        let newton = reports.iter().map(|r| r.newton_iterations).max();
+        assert!(newton <= Some(24), "{case}: {newton:?}");
+    }
+}
+
+/// Forces balance after an iteration, of what is elastic; the law on both tools takes more. What is told is that.
+#[test]
+fn a_law_that_is_not_met_in_a_corner_is_told_as_that() {
+    for seam in SEAMS {
+        let (mut driver, press) = sprung(seam, 1e6, 1);
+        let error = driver.run(&press, 1, |_, _| {}).expect_err("too few");
+        let message = error.to_string();
+        assert!(message.contains("the law of contact left"), "{message}");
     }
 }
 

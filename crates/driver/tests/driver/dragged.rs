@@ -245,7 +245,12 @@ fn what_is_dragged_creeps_across_under_a_force() {
                 .displace("block", Axis::X, to)
                 .body_force("block", [0.0, 0.0, pull / 8.0]);
             let outcome = driver.run(&step, 4, |_, _| ());
-            outcome.unwrap_or_else(|error| panic!("{law:?}, {seam:?}, to {to:e}: {error}"));
+            let reports =
+                outcome.unwrap_or_else(|error| panic!("{law:?}, {seam:?}, to {to:e}: {error}"));
+            // However short the way.
+            for newton in reports.iter().map(|r| r.newton_iterations) {
+                assert!(newton <= 24, "{law:?}, {seam:?}, to {to:e}: {newton}");
+            }
             let floor = driver.tool_force("floor").expect("a tool");
             assert!(
                 (floor[2] + pull).abs() < 1e-7,

@@ -1,5 +1,6 @@
 //! Surfaces that are tied: nothing passes from one body to the other but displacements that agree, and their forces.
 
+use crate::collapse::{collapse, limit};
 use moreau_contact::{ContactSolver, GaussSeidel, Penalty, Plane};
 use moreau_driver::{
     Analysis, Axis, Driver, IncrementReport, Model, ModelError, Numbers, Saved, Seam, Settings,
@@ -587,6 +588,38 @@ fn a_sleeve_is_tied_to_its_shaft() {
     driver.run(&step, 1, |_, _| {}).expect("linear");
     // σ_r = σ_θ = −80, σ_z = 50.
     assert!(off(&driver, [-80.0, 50.0, 0.0]) < 1e-8);
+}
+
+/// A tube that is tied to one around it, between meshes that do not match, collapses at the pressure of the whole.
+#[test]
+fn a_tube_in_a_tube_collapses_as_one() {
+    let kind = CellKind::Quad8;
+    let tube = |name: &str, [from, to]: [f64; 2], cells: usize| {
+        let (r, z) = (uniform(from, to, 4), uniform(0.0, 10.0, cells));
+        block2(name, kind, &r, &z).expect("valid")
+    };
+    let (inner, outer) = (
+        tube("inner", [100.0, 150.0], 1),
+        tube("outer", [150.0, 200.0], 2),
+    );
+    let mesh = inner.joined(outer).expect("valid");
+    let steel = VonMises::new(210e3, 0.3, 240.0).expect("valid");
+    for seam in [Seam::Condensed, Seam::Tied] {
+        let bodies = &["inner", "outer"];
+        let model = model(mesh.clone(), Axisymmetric, (kind, &steel, false), bodies);
+        let model = model.tie("outer.left", "inner.right").expect("valid");
+        let mut driver = Driver::new(model, settings(seam)).expect("valid");
+        let step = Step::new("press")
+            .fix("inner", &[Axis::Y])
+            .fix("outer", &[Axis::Y])
+            .pressure("inner.left", 1.25 * limit());
+        let (found, _) = collapse(&mut driver, &step, 10);
+        let off = (1.25 * found.load_factor - 1.0).abs();
+        assert!(off < 1e-4, "{seam:?}: {found:?}");
+        let bound = found.upper_bound.expect("von Mises");
+        let gap = bound.load_factor / found.load_factor - 1.0;
+        assert!(gap.abs() < 1e-4, "{seam:?}: {bound:?} of {found:?}");
+    }
 }
 
 /// Four blocks about a node: the corner of one is in two ties.

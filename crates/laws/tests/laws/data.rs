@@ -101,7 +101,15 @@ fn tables_and_terms() -> Result<(), LawError> {
 
 #[test]
 fn intervals() {
-    for poisson in [0.5, -1.0, 0.6, f64::NAN, f64::INFINITY] {
+    for poisson in [
+        0.5,
+        -1.0,
+        0.6,
+        0.5 - 1e-12,
+        1e-12 - 1.0,
+        f64::NAN,
+        f64::INFINITY,
+    ] {
         let refused = matches!(
             Elastic::new(1.0, poisson),
             Err(LawError::PoissonOutOfRange { poisson: p }) if p.to_bits() == poisson.to_bits()

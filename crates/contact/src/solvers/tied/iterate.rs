@@ -49,7 +49,7 @@ impl<const D: usize> Tied<'_, '_, D> {
             let t = local(&at.z, i) - self.factor.ties[i] * v;
             let u = p.origin[i] + v;
             let springs = &p.springs[i];
-            let irreversible = u + springs.compliance.component_mul(&(t - springs.force));
+            let irreversible = u + springs.elongation(&t);
             let map = p.friction[i].natural_map(&irreversible, &t, self.alpha(i));
             at.residual = at.residual.max(map.norm());
             at.merit += map.norm_squared() / self.alpha(i);
