@@ -15,6 +15,7 @@ mod locked;
 mod quiet;
 mod rooms;
 mod source;
+mod threads;
 mod tree;
 
 use std::error::Error;
@@ -96,6 +97,7 @@ fn violations(root: &Path) -> Result<(Tree, Vec<Violation>), Box<dyn Error>> {
     found.extend(headers::violations(&tree.sources));
     found.extend(elements::violations(&tree.sources));
     found.extend(rooms::violations(&tree.sources));
+    found.extend(threads::violations(&tree.sources));
     if let Some(text) = tree.text("Cargo.lock") {
         found.extend(locked::violations(text));
     }

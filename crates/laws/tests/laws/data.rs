@@ -137,7 +137,7 @@ fn messages_state_the_facts() {
     let message = |result: Result<VonMises, LawError>| result.unwrap_err().to_string();
     assert_eq!(
         message(VonMises::new(210e3, 0.5, 300.0)),
-        "Poisson's ratio must lie in ]-1, 0.5[, got 0.5"
+        "Poisson's ratio must lie in ]-1, 0.5[, no nearer to its ends than 1e-9, got 0.5"
     );
     assert_eq!(
         message(VonMises::new(210e3, 0.3, -300.0)),
