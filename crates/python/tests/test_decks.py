@@ -1,5 +1,6 @@
 """Decks as files, texts and keys; meshes as arrays and of other libraries; functions of hardening and friction."""
 
+import math
 import sys
 import tomllib
 import warnings
@@ -248,3 +249,30 @@ def test_arrays_are_copies_that_may_be_written():
 
 def test_the_wheel_is_typed():
     assert (Path(mc.__file__).parent / "py.typed").exists()
+
+
+class Bounded:
+    """Coulomb's friction up to a shear."""
+
+    def __init__(self, mu, most):
+        self.mu, self.most, self.calls = mu, most, 0
+
+    def __call__(self, pressure):
+        self.calls += 1
+        return np.minimum(self.mu * pressure, self.most)
+
+
+def test_functions_are_called_for_all_points_at_once_where_they_take_arrays():
+    keys = tomllib.loads((EXAMPLES / "punched-block.toml").read_text())
+
+    def text(friction, hardening):
+        contact = [{**keys["contact"][0], "friction": friction}]
+        material = [{**keys["material"][0], "yield-stress": 300.0, "hardening": hardening}]
+        return mc.Deck({**keys, "contact": contact, "material": material}).text
+
+    law = Bounded(0.1, 50.0)
+    together = text(law, lambda p: 250.0 * p)
+    assert law.calls == 1
+    # What has an `if` or a function of math in it takes no arrays.
+    one_by_one = text(lambda p: 0.1 * p if 0.1 * p < 50.0 else 50.0, lambda p: 250.0 * math.fabs(p))
+    assert tomllib.loads(together) == tomllib.loads(one_by_one)

@@ -1,53 +1,52 @@
 //! Runs with known answers: the examples, sums of forces, cylinders of metal and of soil.
 
 use super::{BALL, column, directory, examples, last, moreau, run, text};
+use rayon::prelude::*;
 use std::fs;
+use std::path::Path;
 
 /// Every example has expectations, and meets them.
 #[test]
 fn every_example_is_as_expected() {
-    let mut count = 0;
-    for entry in fs::read_dir(examples()).expect("examples") {
-        let path = entry.expect("an entry").path();
-        if path.extension().is_none_or(|e| e != "toml") {
-            continue;
-        }
-        let deck = fs::read_to_string(&path).expect("a deck");
-        assert!(deck.contains("[expect]"), "{}", path.display());
-        let name = path
-            .file_stem()
-            .expect("a name")
-            .to_string_lossy()
-            .into_owned();
-        let results = directory(&name);
-        let (from, to) = (path.to_string_lossy(), results.to_string_lossy());
-        let output = moreau(&["run", &from, "--out", &to, "--verify"]);
-        let (out, err) = (text(&output.stdout), text(&output.stderr));
-        let status = output.status.code().expect("a status");
-        assert_eq!(status, 0, "{}\n{out}{err}", path.display());
-        assert!(out.contains("met") && !out.contains("FAILED"), "{out}");
-        let touches = deck.contains("[[contact]]");
-        let files = [
-            "history.csv",
-            "contact.csv",
-            "run.json",
-            "deck.resolved.toml",
-            "result.pvd",
-            "history.svg",
-            "deformed.svg",
-            "report.html",
-            "log.jsonl",
-        ];
-        for file in files {
-            assert!(results.join(file).exists(), "{name}: {file}");
-        }
-        let drawn = results.join("contact.svg").exists();
-        assert_eq!(drawn, touches, "{name}: contact.svg");
-        let check = moreau(&["check", path.to_str().expect("a path")]);
-        assert_eq!(check.status.code(), Some(0), "{}", text(&check.stderr));
-        count += 1;
+    let entries = fs::read_dir(examples()).expect("examples");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let decks: Vec<_> = paths
+        .filter(|path| path.extension().is_some_and(|e| e == "toml"))
+        .collect();
+    assert!(decks.len() >= 6);
+    decks.par_iter().for_each(|deck| is_as_expected(deck));
+}
+
+fn is_as_expected(path: &Path) {
+    let deck = fs::read_to_string(path).expect("a deck");
+    assert!(deck.contains("[expect]"), "{}", path.display());
+    let name = path.file_stem().expect("a name").to_string_lossy();
+    let results = directory(&name);
+    let (from, to) = (path.to_string_lossy(), results.to_string_lossy());
+    let output = moreau(&["run", &from, "--out", &to, "--verify"]);
+    let (out, err) = (text(&output.stdout), text(&output.stderr));
+    let status = output.status.code().expect("a status");
+    assert_eq!(status, 0, "{}\n{out}{err}", path.display());
+    assert!(out.contains("met") && !out.contains("FAILED"), "{out}");
+    let touches = deck.contains("[[contact]]");
+    let files = [
+        "history.csv",
+        "contact.csv",
+        "run.json",
+        "deck.resolved.toml",
+        "result.pvd",
+        "history.svg",
+        "deformed.svg",
+        "report.html",
+        "log.jsonl",
+    ];
+    for file in files {
+        assert!(results.join(file).exists(), "{name}: {file}");
     }
-    assert!(count >= 6);
+    let drawn = results.join("contact.svg").exists();
+    assert_eq!(drawn, touches, "{name}: contact.svg");
+    let check = moreau(&["check", &from]);
+    assert_eq!(check.status.code(), Some(0), "{}", text(&check.stderr));
 }
 
 /// On a mesh of Gmsh, forces balance: punch and foundation, friction and symmetry plane.

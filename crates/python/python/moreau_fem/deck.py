@@ -36,7 +36,8 @@ class Deck:
     In keys, ``mesh`` may also be a :class:`Mesh`, a mesh of meshio or of pyvista, or a list of what
     :func:`moreau_fem.block` returns; ``hardening`` of a material may be a function of the equivalent plastic strain:
     the stress that it adds to ``yield_stress``, sampled at 501 strains from 0 to 3; ``friction`` of a contact a function
-    of the pressure: the bound of the shear, sampled at 1201 pressures from 0 to 1e15, each 4 % above the one before.
+    of the pressure: the bound of the shear, sampled at 1201 pressures from 0 to 1e15, each 4 % above the one before. Both
+    may be objects of a class with ``__call__``, and are called for all points at once where they take arrays.
 
     Raises
     ------
@@ -227,7 +228,7 @@ def _sampled(material: Mapping[str, Any]) -> dict[str, Any]:
     if not callable(hardening):
         return given
     start = float(given.get("yield-stress", 0.0))
-    stress = [start + float(hardening(p)) for p in _SAMPLES.tolist()]
+    stress = (start + _values(hardening, _SAMPLES)).tolist()
     on = given.get("on")
     if not np.isfinite(stress).all() or abs(stress[0] - start) > 1e-9 * abs(start):
         message = f"hardening of {on!r} adds {stress[0] - start} at the strain 0, expected 0 there and finite numbers"
@@ -244,6 +245,18 @@ def _sampled(material: Mapping[str, Any]) -> dict[str, Any]:
     return given
 
 
+def _values(function: Callable[[Any], Any], at: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
+    """Its values at an array of arguments, by one call where it takes arrays."""
+    try:
+        values = np.asarray(function(at), dtype=float)
+    except (TypeError, ValueError):
+        # As of an `if` on the argument, or of the functions of math.
+        values = np.empty(0)
+    if values.shape == at.shape:
+        return values
+    return np.array([float(function(argument)) for argument in at.tolist()])
+
+
 def _softening(message: str) -> Finding:
     return Finding("error", "values", message, "hardening", None, 0, 0)
 
@@ -255,7 +268,7 @@ def _bounded(contact: Mapping[str, Any]) -> dict[str, Any]:
     if not callable(friction):
         return given
     pressures = _PRESSURES
-    shear = np.array([float(friction(p)) for p in pressures.tolist()])
+    shear = _values(friction, pressures)
     on = given.get("surface")
     slopes = np.diff(shear) / np.diff(pressures)
     if not np.isfinite(shear).all() or shear[0] < 0.0:
