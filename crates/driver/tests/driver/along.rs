@@ -4,11 +4,13 @@ use moreau_contact::Plane;
 use moreau_driver::{
     Analysis, Axis, Driver, IncrementReport, Model, ModelError, Numbers, Settings, Step,
 };
-use moreau_laws::{BulkLaw, Coulomb, Elastic, Isotropic, VonMises};
+use moreau_laws::{
+    BulkLaw, Coulomb, Elastic, Hill, HillCoefficients, Isotropic, Orthotropic, VonMises,
+};
 use moreau_mesh::{
     Axisymmetric, CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform,
 };
-use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, Rotation3, SMatrix, SVector, Vector3};
 
 fn steel() -> VonMises {
     let steel = VonMises::new(210e3, 0.3, 300.0).expect("valid");
@@ -58,6 +60,8 @@ impl Blocks<3> for Mesh<3> {
 /// What is pressed, and how.
 struct Case<L> {
     law: L,
+    /// The law of the turned body: where it has axes they are turned along.
+    turned: L,
     large: bool,
     friction: Option<f64>,
     depth: f64,
@@ -92,9 +96,8 @@ where
         true => Model::with_large_strains(mesh, hypothesis),
         false => Model::new(mesh, hypothesis),
     };
-    model = model
-        .material("body", case.law.clone(), rule)
-        .expect("valid");
+    let law = if turned { &case.turned } else { &case.law };
+    model = model.material("body", law.clone(), rule).expect("valid");
     let up = q * unit::<D>(D - 1);
     if let Some(friction) = case.friction {
         model = model
@@ -176,12 +179,16 @@ fn same<L, const D: usize>(
     assert!((work - b.energies.external_work).abs() <= 10.0 * tolerance * work);
     assert!((a.energies.stored - b.energies.stored).abs() <= 10.0 * tolerance * work);
     assert!((a.plastic_fraction - b.plastic_fraction).abs() < 1e-12);
-    let counts = |r: &[IncrementReport]| r.iter().map(|r| r.newton_iterations).collect::<Vec<_>>();
-    assert_eq!(counts(reports), counts(others));
+    // One at the tolerance may take another iteration for its rounding.
+    for (a, b) in reports.iter().zip(others) {
+        let counts = [a, b].map(|r| r.newton_iterations);
+        assert!(counts[0].abs_diff(counts[1]) <= 1, "{counts:?}");
+    }
 }
 
-fn case<L>(law: L) -> Case<L> {
+fn case<L: Clone>(law: L) -> Case<L> {
     Case {
+        turned: law.clone(),
         law,
         large: false,
         friction: None,
@@ -227,6 +234,50 @@ fn a_turned_block_strains_as_much() {
         ..case(steel())
     };
     compare(&squeezed, PlaneStrain::default());
+}
+
+/// A rolled sheet with its axes at an angle, and the body turned with them: under small and large strains.
+#[test]
+fn axes_turn_with_what_has_them() {
+    let rolled = |axes: &Matrix3<f64>| {
+        let elastic = Orthotropic::new([210e3, 150e3, 90e3], [0.3, 0.25, 0.2], [80e3, 60e3, 50e3]);
+        let criterion = HillCoefficients::lankford(1.8, 1.2, 2.3).expect("a sheet");
+        let law = Hill::new(
+            elastic.expect("a crystal").along(axes),
+            criterion.along(axes),
+            300.0,
+        );
+        let hardening = Isotropic::linear(500.0).expect("valid");
+        law.expect("valid").with_hardening(hardening)
+    };
+    let axes = |about: Vector3<f64>| Rotation3::new(about).into_inner();
+    let flat = axes(20.0f64.to_radians() * Vector3::z());
+    let about = |q: SMatrix<f64, 2, 2>| {
+        Matrix3::from_fn(|i, j| match (i, j) {
+            (0..2, 0..2) => q[(i, j)],
+            _ => f64::from(u8::from(i == j)),
+        })
+    };
+    let sheet = |large, depth| Case {
+        turned: rolled(&(about(rotation::<2>()) * flat)),
+        large,
+        depth,
+        increments: 6,
+        ..case(rolled(&flat))
+    };
+    compare(&sheet(false, 0.06), PlaneStrain::default());
+    compare(&sheet(true, 0.8), PlaneStrain::default());
+    let skew = axes(Vector3::new(0.4, 0.9, -0.3));
+    let block = |large, depth| Case {
+        turned: rolled(&(rotation::<3>() * skew)),
+        large,
+        depth,
+        cells: 2,
+        increments: 12,
+        ..case(rolled(&skew))
+    };
+    compare(&block(false, 0.06), Solid);
+    compare(&block(true, 0.6), Solid);
 }
 
 /// Conjugate gradients with a coarse space, and ties in the factor.

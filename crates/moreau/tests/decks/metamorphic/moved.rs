@@ -247,6 +247,11 @@ fn axes_in_space_are_alike() {
                     axes_exchanged(value, to);
                 }
             }
+            for material in other["material"].as_array_mut().expect("materials") {
+                if let Some(axes) = material.get_mut("axes") {
+                    axes_exchanged(axes, to);
+                }
+            }
             let mut found = history(&other, &at, &format!("{name}-{what}"), false);
             // What was along x is along another axis: columns stand where they stood.
             let place = |column: &String| {

@@ -29,7 +29,12 @@ fn powers(keys: &str) -> (i32, i32) {
         _ if is(&["temperature", "expansion", "p"]) => (0, 0),
         _ if is(&["stress"]) => (0, 1),
         _ if keys.ends_with("voce.1") => (0, 0),
-        _ if is(&["normal", "axis", "friction", "poisson", "turn"]) => (0, 0),
+        _ if is(&[
+            "normal", "axis", "axes", "hill", "friction", "poisson", "turn",
+        ]) =>
+        {
+            (0, 0)
+        }
         _ if keys.ends_with("swift.1") || keys.ends_with("swift.2") => (0, 0),
         _ if is(&["young", "yield-stress", "hardening", "pressure", "traction"]) => (0, 1),
         _ if is(&["body-force"]) => (-1, 1),
