@@ -269,8 +269,15 @@ pub(super) fn conclude<const D: usize>(
     };
     let never = |(k, closed): (usize, &bool)| {
         let (surface, tool) = driver.contact_name(k);
+        let offset = deck.contacts.get(k).and_then(|c| c.gap_offset.as_ref());
+        let why = match offset.is_some_and(|offset| offset.value < 0.0) {
+            true => {
+                ": its gap-offset is negative, which leaves room; that of an interference is positive"
+            }
+            false => "",
+        };
         (!closed && driver.increments() > 0)
-            .then(|| format!("the contact of \"{surface}\" with \"{tool}\" never closed"))
+            .then(|| format!("the contact of \"{surface}\" with \"{tool}\" never closed{why}"))
     };
     let critical = |(point, ratio, increment): (usize, f64, usize)| {
         let c = driver.contacts().get(point).filter(|_| ratio >= 1.0)?;

@@ -427,3 +427,16 @@ load = [{ on = "b.top", pressure = 3.0 }]
         &["1 rigid motions are free", "translation along x"],
     );
 }
+
+/// The sign of an interference is easily mistaken: what leaves room instead is told.
+#[test]
+fn an_offset_that_leaves_room_is_told_where_nothing_touches() {
+    let tool = "plane = { point = [0, 10], normal = [0, -1] }";
+    let deck = block("quad8", [0.0, 10.0], [4, 2], tool, -0.01);
+    let fit = deck.replace("friction = 0.2", "friction = 0.2, gap-offset = -0.02");
+    let words = [
+        "\"b.top\" with \"t\" never closed",
+        "gap-offset is negative",
+    ];
+    tells_once("apart", &fit, &words);
+}
