@@ -29,6 +29,9 @@ pub(crate) struct State<const D: usize> {
     pub(crate) displacement: Vec<f64>,
     /// Displacement increment of the last increment, and the loading that it answered.
     pub(crate) last: Option<(Vec<f64>, Loading<D>)>,
+    /// By how much that differs from the increment before it, at the same rate, and the length of its loading over the one
+    /// before: see [`Driver::predictor`].
+    pub(crate) bend: Option<(Vec<f64>, f64)>,
     /// [`Assembly::internal`].
     pub(crate) internal: Vec<f64>,
     pub(crate) loading: Loading<D>,
@@ -99,6 +102,7 @@ impl<const D: usize> Driver<D> {
             increment: 0,
             displacement: vec![0.0; dofs],
             last: None,
+            bend: None,
             internal: vec![0.0; dofs],
             loading: Loading::default(),
             energies: Energies::default(),

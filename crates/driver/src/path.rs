@@ -6,4 +6,5 @@ pub(crate) mod buckling;
 pub(crate) mod increments;
 pub(crate) mod loading;
 pub(crate) mod mechanism;
+mod predictor;
 pub(crate) mod ramp;

@@ -232,6 +232,11 @@ impl<const D: usize> Saved for State<D> {
             numbers.known(DOFS, d_u)?;
             loading.visit(numbers)
         })?;
+        let straight = || (vec![0.0; dofs], 1.0);
+        numbers.option(&mut self.bend, straight, |(bend, ratio), numbers| {
+            numbers.known(DOFS, bend)?;
+            numbers.value(ratio)
+        })?;
         let energies = &mut self.energies;
         for energy in [
             &mut energies.external_work,

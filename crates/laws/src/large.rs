@@ -57,7 +57,8 @@ pub struct LargeResponse<S> {
     strain: Matrix3<f64>,
     /// Of b − 1 of the trial.
     trial: Spectrum,
-    turn: Turn,
+    /// V² − 1 of the step, f = V R.
+    stretch: Matrix3<f64>,
     is_isotropic: bool,
 }
 
@@ -89,10 +90,11 @@ impl<S> LargeResponse<S> {
     fn turning_tangent(&self, of_law: &Sym4) -> GradientTangent {
         let q = rotation(&self.state.frame);
         let c = turned(&q, of_law);
+        let turning = Turning::new(&self.stretch);
         let mut tangent = GradientTangent::zeros();
         for (k, m) in (0..3).flat_map(|k| (0..3).map(move |m| (k, m))) {
             // As the frame turns by Ω, what the law sees of the strain turns back, and the stress with the frame.
-            let spin = self.turn.spin(k, m);
+            let spin = turning.spin(k, m);
             let commutator = |a: &Matrix3<f64>| product(&spin, a) - product(a, &spin);
             let strain_rate = logarithmic_rate(&self.trial, k, m) - commutator(&self.strain);
             let rate = to_matrix(&(c * from_matrix(&strain_rate))) + commutator(&self.stress);
@@ -138,10 +140,9 @@ pub fn respond_large<L: BulkLaw>(
     let elastic = law.elastic_strain(&old.material);
     let in_space = to_matrix(&old.in_space(&elastic));
     let stretched = Spectrum::new(&in_space).map(|e| (2.0 * e).exp_m1());
-    let stretch = h + h.transpose() + product(h, &h.transpose());
+    let stretch = symmetric(&(h + h.transpose() + product(h, &h.transpose())));
     let trial = Spectrum::new(&symmetric(&(stretch + turned(&f, &stretched))));
-    let turn = Turn::new(&f, &symmetric(&stretch));
-    let frame = product(&turn.rotation, &old.frame);
+    let frame = product(&rotation_of(&f, &stretch), &old.frame);
 
     let mut strain = trial.map(|b| 0.5 * b.ln_1p());
     if let Some(dilatation) = dilatation {
@@ -163,7 +164,7 @@ pub fn respond_large<L: BulkLaw>(
         state,
         strain,
         trial,
-        turn,
+        stretch,
         is_isotropic: law.is_isotropic(),
     })
 }
@@ -211,22 +212,32 @@ fn logarithmic_rate(trial: &Spectrum, k: usize, m: usize) -> Matrix3<f64> {
     turned(q, &own)
 }
 
-/// The rotation of a step and how it changes.
+/// R of f = V R, from V² − 1. In a plane it needs no V: R turns by the angle of (f₁₁ + f₂₂, f₂₁ − f₁₂).
+fn rotation_of(f: &Matrix3<f64>, stretch: &Matrix3<f64>) -> Matrix3<f64> {
+    let across = [f[(0, 2)], f[(1, 2)], f[(2, 0)], f[(2, 1)]];
+    if across == [0.0; 4] && f[(2, 2)] > 0.0 {
+        let (x, y) = (f[(0, 0)] + f[(1, 1)], f[(1, 0)] - f[(0, 1)]);
+        let length = (x * x + y * y).sqrt();
+        let (c, s) = (x / length, y / length);
+        return Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0);
+    }
+    let inverse = Spectrum::new(stretch).map(|v| 1.0 / (1.0 + v).sqrt());
+    product(&inverse, f)
+}
+
+/// How the rotation of a step changes.
 #[derive(Debug, Clone)]
-struct Turn {
-    /// R of f = V R.
-    rotation: Matrix3<f64>,
+struct Turning {
     /// Principal values and directions of V.
     stretches: [f64; 3],
     directions: Matrix3<f64>,
 }
 
-impl Turn {
-    /// Of f, from V² − 1.
-    fn new(f: &Matrix3<f64>, stretch: &Matrix3<f64>) -> Self {
+impl Turning {
+    /// From V² − 1.
+    fn new(stretch: &Matrix3<f64>) -> Self {
         let spectrum = Spectrum::new(stretch);
         Self {
-            rotation: product(&spectrum.map(|v| 1.0 / (1.0 + v).sqrt()), f),
             stretches: spectrum.values.map(|v| (1.0 + v).sqrt()),
             directions: spectrum.directions,
         }

@@ -526,6 +526,12 @@ impl<const D: usize> Loading<D> {
         Ok(())
     }
 
+    /// Whether the same displacements are prescribed, along the same directions.
+    pub(crate) fn moves_the_same_as(&self, other: &Self) -> bool {
+        self.displacement.keys().eq(other.displacement.keys())
+            && self.directions == other.directions
+    }
+
     /// Part of `previous` that this increment repeats: (this, previous) / (previous, previous),
     /// taken over the prescribed motions, over the forces if nothing is moved, or over the temperatures if nothing is
     /// loaded.

@@ -69,10 +69,13 @@ impl<const D: usize> Driver<D> {
         let moved = largest(displacement[..self.mesh_dofs()].iter().copied());
         let loading = self.loading_after(&d_u, end);
         let last = self.repeatable(d_u, end);
+        let answered = end.increment_from(start);
+        let bend = self.bend(&last, &answered);
         self.state = State {
             increment: self.state.increment + 1,
             displacement,
-            last: Some((last, end.increment_from(start))),
+            last: Some((last, answered)),
+            bend,
             internal,
             loading,
             energies,

@@ -624,23 +624,6 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// First guess of the displacement increments: the last increment again, as far as the load
-    /// goes on in the same direction, else nothing.
-    pub(crate) fn predictor(&self, start: &Loading<D>, end: &Loading<D>) -> Vec<f64> {
-        let zero = || vec![0.0; self.state.displacement.len()];
-        let Some((last, before)) = &self.state.last else {
-            return zero();
-        };
-        let ratio = end.increment_from(start).ratio(before);
-        let same = end.displacement.keys().eq(before.displacement.keys())
-            && end.directions == before.directions;
-        if same && ratio > 0.0 && ratio <= 4.0 {
-            last.iter().map(|u| ratio * u).collect()
-        } else {
-            zero()
-        }
-    }
-
     /// Prescribed displacement increments that `d_u` does not have yet \[mm\].
     pub(crate) fn missing(
         &self,

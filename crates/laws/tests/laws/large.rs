@@ -210,6 +210,29 @@ proptest! {
         prop_assert!((at_once[1].0 - q * plain[1].0 * q.transpose()).amax() <= 1e-10 * size);
     }
 
+    /// What stays in a plane, which turns by itself, is what is not seen to: in a body that lies askew.
+    #[test]
+    fn a_plane_is_no_special_case(
+        kind in 0..4usize,
+        first in gradient(0.05),
+        second in gradient(0.6),
+        q in turn(),
+    ) {
+        let flat = |h: Matrix3<f64>| Matrix3::from_fn(|i, j| match (i == 2, j == 2) {
+            (true, true) => 0.3 * h[(i, j)],
+            (false, false) => h[(i, j)],
+            _ => 0.0,
+        });
+        let steps = [flat(first), flat(second)];
+        prop_assume!((Matrix3::identity() + steps[1]).determinant() > 0.1);
+        let plain = response_of(kind, &steps);
+        let askew = response_of(kind, &steps.map(|h| q * h * q.transpose()));
+        for (a, b) in plain.iter().zip(&askew) {
+            let size = 1.0 + a.0.amax();
+            prop_assert!((b.0 - q * a.0 * q.transpose()).amax() <= 1e-9 * size);
+        }
+    }
+
     /// Of strains that are small only their first power counts.
     #[test]
     fn small_steps_are_those_of_the_law(h in gradient(1.0), power in 5..13i32) {
