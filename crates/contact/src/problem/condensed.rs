@@ -3,8 +3,12 @@
 use super::{BlockMatrix, LocalProblem, criticality, split, stack, statuses};
 use crate::ContactError;
 use crate::error::{expect_finite, expect_sizes};
+use moreau_algebra::DenseCholesky;
 use moreau_laws::{Friction, Local, Status};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+
+/// Eigenvalue of S, over its largest diagonal, below which it is rounding.
+const FAINT: f64 = 1e-9;
 
 /// The contact problem of one linearised increment, in the contacts' local frames:
 ///
@@ -97,6 +101,15 @@ impl<const D: usize> CondensedProblem<D> {
     /// Whether only a proximal term makes S regular: its inverse is then too large to iterate on.
     pub(crate) fn is_held(&self) -> bool {
         self.held
+    }
+
+    /// Whether S has an eigenvalue that is negative and no rounding of a rigid motion, as where stresses make the structure
+    /// unstable with all its contacts free: it has no inverse that is one of a body, and there may be no solution.
+    pub(crate) fn is_unstable(&self) -> bool {
+        let mut stiffness = self.stiffness.clone();
+        let faint = FAINT * stiffness.diagonal().amax();
+        (0..stiffness.nrows()).for_each(|k| stiffness[(k, k)] += faint);
+        DenseCholesky::new(stiffness).is_none()
     }
 
     /// Number of contacts.
@@ -310,10 +323,23 @@ mod tests {
                 ..
             })
         ));
-        let singular = new(DMatrix::zeros(2, 2), f, zero.clone(), one, zero).expect("valid");
+        let singular = new(
+            DMatrix::zeros(2, 2),
+            f.clone(),
+            zero.clone(),
+            one.clone(),
+            zero.clone(),
+        );
+        let singular = singular.expect("valid");
         assert!(matches!(
             singular.delassus(),
             Err(ContactError::Floating { .. })
         ));
+        // What floats is not unstable, though rounding may make its pivots negative.
+        for (x, unstable) in [(1.0, false), (1.0 + 1e-13, false), (1.0 + 1e-6, true)] {
+            let s = DMatrix::from_row_slice(2, 2, &[1.0, x, x, 1.0]);
+            let problem = new(s, f.clone(), zero.clone(), one.clone(), zero.clone());
+            assert_eq!(problem.expect("valid").is_unstable(), unstable, "{x}");
+        }
     }
 }

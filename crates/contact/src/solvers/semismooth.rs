@@ -165,7 +165,7 @@ pub(super) fn newton<const D: usize>(
         part += 1;
         // When all have stalled, sweeps find the statuses; where no inverse exists there are none.
         if part % PARTS.len() == 0 {
-            if problem.is_held() {
+            if problem.is_held() || problem.is_unstable() {
                 return Err(ContactError::Singular);
             }
             // From where Newton got to, and the next time from nothing.
