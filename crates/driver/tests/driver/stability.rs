@@ -204,3 +204,54 @@ fn a_column_that_a_contact_pins_has_the_load_of_its_next_mode() {
         assert_eq!(closed, 1);
     }
 }
+
+/// Two columns side by side, lightly pressed together, without friction: they buckle as each alone, and from four times that
+/// load on they would if they were one, so that what no contact force acts on is unstable itself.
+#[test]
+fn columns_that_lean_on_each_other_buckle_as_each_alone() {
+    for seam in BOTH {
+        let x = uniform(0.0, LENGTH, 20);
+        let bodies = [("strip", 0.0), ("other", HEIGHT)].map(|(name, y)| {
+            let y = uniform(y, y + HEIGHT, 1);
+            block2(name, CellKind::Quad8, &x, &y).expect("valid")
+        });
+        let [strip, other] = bodies;
+        let mesh = other.joined(strip).expect("two bodies");
+        let elastic = || Elastic::new(YOUNG, 0.0).expect("valid");
+        let model = Model::with_large_strains(mesh, PlaneStrain::default())
+            .material("strip", elastic(), Integration::Reduced)
+            .and_then(|m| m.material("other", elastic(), Integration::Reduced))
+            .and_then(|m| {
+                m.pair(
+                    "other.bottom",
+                    "strip.top",
+                    frictionless(),
+                    Pairing::default(),
+                )
+            })
+            .expect("valid");
+        let settings = Settings {
+            seam,
+            ..Settings::default()
+        };
+        let mut driver = Driver::new(model, settings).expect("valid");
+        let step = |part: f64| {
+            let push = [-part * euler() / HEIGHT, 0.0];
+            Step::new("compress")
+                .fix("strip.left", &[Axis::X, Axis::Y])
+                .fix("other.left", &[Axis::X, Axis::Y])
+                .pressure("strip.bottom", 1e-6 * YOUNG)
+                .pressure("other.top", 1e-6 * YOUNG)
+                .traction("strip.right", push)
+                .traction("other.right", push)
+        };
+        for (part, negative) in [(0.0, 0), (0.8, 0), (0.97, 0), (1.03, 1), (1.2, 1), (4.4, 1)] {
+            let case = format!("{seam:?}, {part}");
+            let reports = driver.run(&step(part), 1, |_, _| {});
+            let reports = reports.unwrap_or_else(|error| panic!("{case}: {error}"));
+            // But for the node that both supports hold.
+            assert_eq!(reports[0].open, 1, "{case}");
+            assert_eq!(reports[0].negative_eigenvalues, negative, "{case}");
+        }
+    }
+}
