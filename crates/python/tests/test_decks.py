@@ -276,3 +276,11 @@ def test_functions_are_called_for_all_points_at_once_where_they_take_arrays():
     # What has an `if` or a function of math in it takes no arrays.
     one_by_one = text(lambda p: 0.1 * p if 0.1 * p < 50.0 else 50.0, lambda p: 250.0 * math.fabs(p))
     assert tomllib.loads(together) == tomllib.loads(one_by_one)
+
+    def in_place(pressure):
+        pressure *= 0.1
+        return np.minimum(pressure, 50.0)
+
+    # The points are the same the next time.
+    assert tomllib.loads(text(in_place, lambda p: 250.0 * p)) == tomllib.loads(together)
+    assert tomllib.loads(text(law, lambda p: 250.0 * p)) == tomllib.loads(together)

@@ -236,7 +236,7 @@ fn a_turned_block_strains_as_much() {
     compare(&squeezed, PlaneStrain::default());
 }
 
-/// A rolled sheet with its axes at an angle, and the body turned with them: under small and large strains.
+/// A rolled sheet with its axes at an angle, and the body turned with them, under small and large strains.
 #[test]
 fn axes_turn_with_what_has_them() {
     let rolled = |axes: &Matrix3<f64>| {

@@ -248,7 +248,8 @@ def _sampled(material: Mapping[str, Any]) -> dict[str, Any]:
 def _values(function: Callable[[Any], Any], at: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     """Its values at an array of arguments, by one call where it takes arrays."""
     try:
-        values = np.asarray(function(at), dtype=float)
+        # What changes its argument in place must not change the points.
+        values = np.asarray(function(at.copy()), dtype=float)
     except (TypeError, ValueError):
         # As of an `if` on the argument, or of the functions of math.
         values = np.empty(0)
