@@ -10,7 +10,6 @@ mod collapse;
 mod corners;
 mod doubts;
 mod dragged;
-mod examples;
 mod increments;
 mod interrupted;
 mod klarbring;

@@ -2,8 +2,8 @@
 
 use moreau_contact::{Ball, Plane, Polyline};
 use moreau_driver::{
-    Analysis, Axis, Driver, IncrementError, IncrementReport, Model, ModelError, Numbers, Saved,
-    Seam, Settings, Step,
+    Analysis, Axis, Driver, IncrementError, IncrementReport, Increments, Model, ModelError,
+    Numbers, Saved, Seam, Settings, Step,
 };
 use moreau_laws::{Coulomb, Elastic, Isotropic, VonMises};
 use moreau_mesh::{
@@ -289,8 +289,15 @@ fn a_roll_is_handed_over_from_turn_to_moment() {
 #[test]
 fn moments_that_nothing_stands_up_to_are_told_by_name() {
     let press = |name: &str| held(name, 0.0).push("roll", Axis::Y, -600.0);
-    let refused =
-        |driver: &mut Driver<2>, step: &Step<2>| driver.run(step, 2, |_, _| {}).expect_err("spins");
+    // Not halved over and over.
+    let increments = Increments {
+        start: 0.5,
+        min: Some(0.25),
+        max: 0.5,
+    };
+    let refused = |driver: &mut Driver<2>, step: &Step<2>| {
+        driver.run(step, increments, |_, _| {}).expect_err("spins")
+    };
     // More than friction carries, 0.3 · 600 N · 20 mm: followed to what it carries, and where something moves, refused.
     let most = 0.3 * 600.0 * RADIUS;
     let spin = press("spin").moment("roll", Z, 1.2 * most);

@@ -3,6 +3,7 @@
 mod interrupted;
 mod keys;
 mod laws;
+mod outside;
 mod replaced;
 mod saved;
 
