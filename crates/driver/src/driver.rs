@@ -60,6 +60,8 @@ pub struct Driver<const D: usize> {
     pub(crate) settings: Settings<D>,
     pub(crate) state: State<D>,
     pub(crate) system: Option<System>,
+    /// [`Driver::guess`].
+    pub(crate) guessed: Option<Vec<f64>>,
     /// Whether the last equilibrium was unstable.
     pub(crate) unstable: bool,
     pub(crate) measure: Box<dyn Measure<D>>,
@@ -127,6 +129,7 @@ impl<const D: usize> Driver<D> {
             settings,
             state,
             system: None,
+            guessed: None,
             unstable: false,
         };
         driver.start();
@@ -429,6 +432,36 @@ impl<const D: usize> Driver<D> {
         SVector::from(self.state.contact.at_node::<D>(node))
     }
 
+    /// Takes these displacement increments of the nodes for the first guess of the next increment that is tried, D components
+    /// each \[mm\], in place of what the path so far lets expect. Where there are several equilibria that decides which is found:
+    /// with a part of [`IncrementReport::mode`] the branch that leaves the path there.
+    ///
+    /// # Errors
+    /// [`ModelError::OutOfRange`] for another number of them, or if one is not finite.
+    pub fn guess(&mut self, d_u: &[f64]) -> Result<(), ModelError> {
+        let dofs = self.mesh_dofs();
+        let refused = |what: &str, value: f64, expected: &'static str| ModelError::OutOfRange {
+            what: what.into(),
+            value,
+            expected,
+        };
+        if d_u.len() != dofs {
+            let expected = "one for every component at every node";
+            return Err(refused(
+                "number of displacement increments",
+                d_u.len() as f64,
+                expected,
+            ));
+        }
+        if let Some(&value) = d_u.iter().find(|u| !u.is_finite()) {
+            return Err(refused("displacement increment", value, "a finite number"));
+        }
+        let mut all = d_u.to_vec();
+        all.resize(self.state.displacement.len(), 0.0);
+        self.guessed = Some(all);
+        Ok(())
+    }
+
     /// Applies one increment, up to the loading `end`: commits it, or fails and changes nothing.
     ///
     /// # Errors
@@ -455,6 +488,7 @@ impl<const D: usize> Driver<D> {
                 iterations,
             } => self.nested_increment(&mut system, &start, end, (tolerance, iterations), watch),
         };
+        self.guessed = None;
         let small = system.is_tied() && D * self.points.len() <= CONDENSABLE;
         self.system = Some(system);
         match outcome.map_err(|error| self.or_fault(error)) {

@@ -6,7 +6,7 @@ use crate::linear::suspension::{Suspended, steepness};
 use crate::linear::system::System;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Kinematics};
-use moreau_algebra::{DenseCholesky, less_gram};
+use moreau_algebra::{DenseCholesky, DenseLdlt, less_gram, mirror, transposed_product};
 use moreau_contact::{CondensedProblem, ContactError};
 use moreau_laws::{Local, Status};
 use nalgebra::{DMatrix, DVector};
@@ -210,15 +210,47 @@ impl<const D: usize> Yielding<'_, D> {
 
 /// The unknowns y that no contact force acts on: y = S_yy⁻¹ (f_y − S_yu u).
 struct InternalUnknowns {
-    factor: Option<DenseCholesky>,
-    /// L⁻¹ S_yu.
+    factor: Factor,
+    /// L⁻¹ S_yu of a definite factor, else S_yy⁻¹ S_yu.
     coupling: DMatrix<f64>,
-    /// L⁻¹ f_y.
+    /// L⁻¹ f_y of a definite factor, else S_yy⁻¹ f_y.
     load: DVector<f64>,
+}
+
+/// Of S_yy.
+enum Factor {
+    /// There are no such unknowns.
+    None,
+    Definite(DenseCholesky),
+    /// Where bodies are unstable, however their contacts are held.
+    Indefinite(DenseLdlt),
+}
+
+/// Eigenvalue of S_yy, over its largest diagonal, below which it is rounding of a rigid motion, if others are negative.
+const FAINT: f64 = 1e-9;
+
+impl Factor {
+    /// # Errors
+    /// [`ContactError::Singular`].
+    fn new(block: impl Fn() -> DMatrix<f64>) -> Result<Self, ContactError> {
+        let own = block();
+        let stiffest = own.diagonal().amax();
+        let definite = DenseCholesky::new(own).filter(|f| f.holds(stiffest));
+        if let Some(factor) = definite {
+            return Ok(Self::Definite(factor));
+        }
+        DenseLdlt::new(block())
+            .filter(|factor| factor.inertia(FAINT * stiffest).zero == 0)
+            .map(Self::Indefinite)
+            .ok_or(ContactError::Singular)
+    }
 }
 
 impl InternalUnknowns {
     /// Schur complement and load on the first `kept` unknowns, and the way back to the others.
+    ///
+    /// # Errors
+    /// [`ContactError::Singular`].
     fn condense(
         s: DMatrix<f64>,
         f: DVector<f64>,
@@ -226,38 +258,60 @@ impl InternalUnknowns {
     ) -> Result<(DMatrix<f64>, DVector<f64>, Self), ContactError> {
         let others = s.nrows() - kept;
         let mut rest = Self {
-            factor: None,
+            factor: Factor::None,
             coupling: s.view((kept, 0), (others, kept)).into_owned(),
             load: DVector::zeros(0),
         };
         if others == 0 {
             return Ok((s, f, rest));
         }
-        let block = s.view((kept, kept), (others, others)).into_owned();
-        let stiffest = block.diagonal().amax();
-        let factor = DenseCholesky::new(block).filter(|f| f.holds(stiffest));
-        let factor = factor.ok_or(ContactError::Singular)?;
-        factor.forward(&mut rest.coupling);
-        rest.factor = Some(factor);
-        let own = less_gram(s, &rest.coupling);
+        rest.factor = Factor::new(|| s.view((kept, kept), (others, others)).into_owned())?;
+        let own = match &rest.factor {
+            Factor::None => s,
+            Factor::Definite(factor) => {
+                factor.forward(&mut rest.coupling);
+                less_gram(s, &rest.coupling)
+            }
+            Factor::Indefinite(factor) => {
+                let coupling = rest.coupling.clone();
+                for mut column in rest.coupling.column_iter_mut() {
+                    let mut answer = column.clone_owned();
+                    factor.solve(&mut answer);
+                    column.copy_from(&answer);
+                }
+                let mut own = s.view((0, 0), (kept, kept)).into_owned();
+                own -= transposed_product(&coupling, &rest.coupling);
+                mirror(&mut own);
+                own
+            }
+        };
         let (load, y) = rest.reduce(&f, kept);
         rest.load = y;
         Ok((own, load, rest))
     }
 
-    /// A load reduced to the first `kept` unknowns, and L⁻¹ f_y.
+    /// A load reduced to the first `kept` unknowns, and [`Self::load`] of it.
     fn reduce(&self, f: &DVector<f64>, kept: usize) -> (DVector<f64>, DVector<f64>) {
-        let mut y = f.rows(kept, f.len() - kept).into_owned();
-        if let Some(factor) = &self.factor {
-            factor.forward_one(&mut y);
-        }
-        (f.rows(0, kept) - self.coupling.tr_mul(&y), y)
+        let given = f.rows(kept, f.len() - kept).into_owned();
+        let mut y = given.clone();
+        let on_y = match &self.factor {
+            Factor::None => &y,
+            Factor::Definite(factor) => {
+                factor.forward_one(&mut y);
+                &y
+            }
+            Factor::Indefinite(factor) => {
+                factor.solve(&mut y);
+                &given
+            }
+        };
+        (f.rows(0, kept) - self.coupling.tr_mul(on_y), y)
     }
 
-    /// y for u and L⁻¹ f_y.
+    /// y for u and [`Self::load`] of a load.
     fn expand(&self, u: &DVector<f64>, load: DVector<f64>) -> DVector<f64> {
         let mut y = load - &self.coupling * u;
-        if let Some(factor) = &self.factor {
+        if let Factor::Definite(factor) = &self.factor {
             factor.backward_one(&mut y);
         }
         y
@@ -268,7 +322,7 @@ impl InternalUnknowns {
 mod tests {
     use super::*;
 
-    /// The Schur complement is what the whole system answers on what is kept.
+    /// The Schur complement is what the whole system answers on what is kept, of a stable structure and of one that is not.
     #[test]
     fn condensing_keeps_the_solution() {
         let l = DMatrix::from_fn(5, 5, |i, j| {
@@ -278,16 +332,27 @@ mod tests {
                 0.0
             }
         });
-        let s = &l * l.transpose();
         let f = DVector::from_fn(5, |i, _| (i as f64).cos());
-        let (own, load, rest) =
-            InternalUnknowns::condense(s.clone(), f.clone(), 2).expect("definite");
-        let x = s.lu().solve(&f).expect("regular");
-        let u = own.lu().solve(&load).expect("regular");
-        assert!((&u - x.rows(0, 2)).norm() < 1e-10);
-        let y = rest.expand(&u, rest.load.clone());
-        assert!((y - x.rows(2, 3)).norm() < 1e-10);
+        for signs in [
+            [1.0; 5],
+            [1.0, 1.0, 1.0, -1.0, 1.0],
+            [-1.0, 1.0, -2.0, 1.0, -1.0],
+        ] {
+            let s = &l * DMatrix::from_diagonal(&DVector::from(signs.to_vec())) * l.transpose();
+            let (own, load, rest) =
+                InternalUnknowns::condense(s.clone(), f.clone(), 2).expect("regular");
+            assert_eq!(own, own.transpose());
+            let x = s.lu().solve(&f).expect("regular");
+            let u = own.lu().solve(&load).expect("regular");
+            assert!((&u - x.rows(0, 2)).norm() < 1e-10 * x.norm().max(1.0));
+            let y = rest.expand(&u, rest.load.clone());
+            assert!((y - x.rows(2, 3)).norm() < 1e-10 * x.norm().max(1.0));
+        }
         let floating = DMatrix::from_element(3, 3, 1.0);
         assert!(InternalUnknowns::condense(floating, DVector::zeros(3), 1).is_err());
+        // Rounding makes it no unstable one.
+        let mut nearly = DMatrix::from_element(3, 3, 1.0);
+        nearly[(2, 2)] -= 1e-13;
+        assert!(InternalUnknowns::condense(nearly, DVector::zeros(3), 1).is_err());
     }
 }

@@ -11,12 +11,15 @@ const FARTHER: f64 = 4.0;
 const SMOOTH: f64 = 0.1;
 
 impl<const D: usize> Driver<D> {
-    /// First guess of the displacement increments: the last increment again, as far as the load goes on in the same
+    /// First guess of the displacement increments: that of [`Driver::guess`], or the last increment again, as far as the load goes on in the same
     /// direction, and by as much more as the path bends; else nothing.
     ///
     /// Through the last three equilibria goes a parabola. With increments Δu₋ and Δu under loadings of the lengths 1 and r,
     /// the next under q r is q (Δu + (1 + q)/(1 + 1/r) (Δu − r Δu₋)).
     pub(crate) fn predictor(&self, start: &Loading<D>, end: &Loading<D>) -> Vec<f64> {
+        if let Some(guess) = &self.guessed {
+            return guess.clone();
+        }
         let zero = || vec![0.0; self.state.displacement.len()];
         let Some((last, before)) = &self.state.last else {
             return zero();

@@ -204,3 +204,111 @@ fn a_column_that_a_contact_pins_has_the_load_of_its_next_mode() {
         assert_eq!(closed, 1);
     }
 }
+
+/// Two columns side by side, lightly pressed together, without friction: they buckle as each alone, and from four times that
+/// load on they would if they were one, so that what no contact force acts on is unstable itself.
+#[test]
+fn columns_that_lean_on_each_other_buckle_as_each_alone() {
+    for seam in BOTH {
+        let x = uniform(0.0, LENGTH, 20);
+        let bodies = [("strip", 0.0), ("other", HEIGHT)].map(|(name, y)| {
+            let y = uniform(y, y + HEIGHT, 1);
+            block2(name, CellKind::Quad8, &x, &y).expect("valid")
+        });
+        let [strip, other] = bodies;
+        let mesh = other.joined(strip).expect("two bodies");
+        let elastic = || Elastic::new(YOUNG, 0.0).expect("valid");
+        let model = Model::with_large_strains(mesh, PlaneStrain::default())
+            .material("strip", elastic(), Integration::Reduced)
+            .and_then(|m| m.material("other", elastic(), Integration::Reduced))
+            .and_then(|m| {
+                m.pair(
+                    "other.bottom",
+                    "strip.top",
+                    frictionless(),
+                    Pairing::default(),
+                )
+            })
+            .expect("valid");
+        let settings = Settings {
+            seam,
+            ..Settings::default()
+        };
+        let mut driver = Driver::new(model, settings).expect("valid");
+        let step = |part: f64| {
+            let push = [-part * euler() / HEIGHT, 0.0];
+            Step::new("compress")
+                .fix("strip.left", &[Axis::X, Axis::Y])
+                .fix("other.left", &[Axis::X, Axis::Y])
+                .pressure("strip.bottom", 1e-6 * YOUNG)
+                .pressure("other.top", 1e-6 * YOUNG)
+                .traction("strip.right", push)
+                .traction("other.right", push)
+        };
+        for (part, negative) in [(0.0, 0), (0.8, 0), (0.97, 0), (1.03, 1), (1.2, 1), (4.4, 1)] {
+            let case = format!("{seam:?}, {part}");
+            let reports = driver.run(&step(part), 1, |_, _| {});
+            let reports = reports.unwrap_or_else(|error| panic!("{case}: {error}"));
+            // But for the node that both supports hold.
+            assert_eq!(reports[0].open, 1, "{case}");
+            assert_eq!(reports[0].negative_eigenvalues, negative, "{case}");
+        }
+    }
+}
+
+/// Beyond its load a column stays straight, or buckles to the side that a guess along its mode leads to, as the elastica does:
+/// its load is (2 K/π)² of Euler's, and its free end is 2 k L/K aside, with K the complete elliptic integral of the modulus k.
+#[test]
+fn a_guess_along_the_mode_leads_to_its_branch() {
+    let over: f64 = 0.02;
+    let bent = [1.0, -1.0].map(|side| {
+        let mut driver = column(|model| model, (Seam::Cheaper, exact()));
+        let step = |part: f64| {
+            Step::new("compress")
+                .fix("strip.left", &[Axis::X, Axis::Y])
+                .fix("floor.bottom", &[Axis::X, Axis::Y])
+                .traction("strip.right", [-part * euler() / HEIGHT, 0.0])
+        };
+        let mut mode = None;
+        for part in [0.0, 0.9, 1.0 + over] {
+            let reports = driver.run(&step(part), 1, |_, _| {}).expect("in balance");
+            mode = reports[0].mode.clone();
+        }
+        let mode = mode.expect("unstable");
+        let end = driver.applied().clone();
+        let straight = driver.advance(&end).expect("in balance");
+        assert_eq!(straight.negative_eigenvalues, 1);
+        let guess: Vec<f64> = mode.iter().map(|u| side * 20.0 * u).collect();
+        driver.guess(&guess).expect("valid");
+        let buckled = driver.advance(&end).expect("in balance");
+        assert_eq!(buckled.negative_eigenvalues, 0);
+        let nodes = driver.mesh().nodes();
+        let is_tip = |x: &[f64; 2]| (x[0] - LENGTH).hypot(x[1] - 0.5 * HEIGHT) < 1e-9;
+        let tip = driver.displacement(nodes.iter().position(is_tip).expect("a node"));
+        // Nothing is guessed twice.
+        let again = driver.advance(&end).expect("in balance");
+        assert!(again.newton_iterations <= 1, "{again:?}");
+        tip
+    });
+    assert!((bent[0].y + bent[1].y).abs() < 1e-8, "{bent:?}");
+    let integral = 0.5 * PI * (1.0 + over).sqrt();
+    // K = π/2 (1 + m/4 + 9 m²/64 + …), m = k².
+    let m = (0..50).fold(0.0, |m: f64, _| {
+        4.0 * (integral / (0.5 * PI) - 1.0 - 9.0 / 64.0 * m * m - 25.0 / 256.0 * m.powi(3))
+    });
+    let aside = 2.0 * m.sqrt() * LENGTH / integral;
+    assert!(
+        (bent[0].y.abs() / aside - 1.0).abs() < 0.01,
+        "{bent:?}, {aside}"
+    );
+    let mut driver = column(|model| model, (Seam::Cheaper, exact()));
+    let nodes = driver.mesh().nodes().len();
+    let few = driver.guess(&[0.0; 3]).expect_err("too few").to_string();
+    assert!(
+        few.contains("number of displacement increments is 3"),
+        "{few}"
+    );
+    let mut guess = vec![0.0; 2 * nodes];
+    guess[1] = f64::NAN;
+    assert!(driver.guess(&guess).is_err());
+}

@@ -58,7 +58,12 @@ fn state<const D: usize>(driver: &Driver<D>, turn: &SMatrix<f64, D, D>, what: &s
 /// Squeezes a stack, then turns both of its ends by a right angle.
 fn turned<H: Blocks<D>, const D: usize>(stack: &Stack<H, D>) -> Fallible {
     let what = stack.what();
-    let mut driver = stack.driver(stack.mesh()?, Settings::default())?;
+    let settings = Settings {
+        // Pressures are asked for more exactly than forces are by default.
+        tolerance: 1e-12,
+        ..Settings::default()
+    };
+    let mut driver = stack.driver(stack.mesh()?, settings)?;
     let squeeze = stack
         .held("squeeze")
         .displace("upper.top", Axis::Y, -CLOSED);
