@@ -77,7 +77,7 @@ fn a_block_is_upset_with_friction() -> Fallible {
 #[test]
 fn a_block_without_hardening_is_upset_with_friction() -> Fallible {
     let plane = PlaneStrain::default();
-    for mu in [0.0, 0.3] {
+    for mu in [0.0, 0.1, 0.3] {
         let name = format!("F2_Q8_8x8_mu{mu}_H0");
         squeezed(SQUARE, plane, (0.0, mu), (4.0, 40), &name)?;
     }
