@@ -432,9 +432,10 @@ impl<const D: usize> Driver<D> {
         SVector::from(self.state.contact.at_node::<D>(node))
     }
 
-    /// Takes these displacement increments of the nodes for the first guess of the next increment that is tried, D components
-    /// each \[mm\], in place of what the path so far lets expect. Where there are several equilibria that decides which is found:
-    /// with a part of [`IncrementReport::mode`] the branch that leaves the path there.
+    /// Takes displacement increments of the nodes, D components each \[mm\], for the first guess of the next increment that is
+    /// tried, in place of what the path so far lets expect; one whose load factor is unknown takes none. Where there are
+    /// several equilibria the guess decides which is found: a part of [`IncrementReport::mode`] leads to the branch that leaves the
+    /// path there.
     ///
     /// # Errors
     /// [`ModelError::OutOfRange`] for another number of them, or if one is not finite.
@@ -476,6 +477,16 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
         watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<IncrementReport, IncrementError> {
+        let outcome = self.attempt(end, watch);
+        self.guessed = None;
+        outcome
+    }
+
+    fn attempt(
+        &mut self,
+        end: &Loading<D>,
+        watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
+    ) -> Result<IncrementReport, IncrementError> {
         self.check_loading(end)?;
         self.pair(end)?;
         self.check_pushes(end)?;
@@ -488,7 +499,6 @@ impl<const D: usize> Driver<D> {
                 iterations,
             } => self.nested_increment(&mut system, &start, end, (tolerance, iterations), watch),
         };
-        self.guessed = None;
         let small = system.is_tied() && D * self.points.len() <= CONDENSABLE;
         self.system = Some(system);
         match outcome.map_err(|error| self.or_fault(error)) {

@@ -328,6 +328,7 @@ impl<const D: usize> Driver<D> {
     /// [`ModelError::Saved`] and [`ModelError::OutOfRange`] for numbers of another model; the
     /// driver is then of no use.
     pub fn read(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
+        self.guessed = None;
         self.state.read(numbers)?;
         let dofs = self.state.displacement.len();
         let contact = Loading::<D> {

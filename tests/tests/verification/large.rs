@@ -85,14 +85,14 @@ fn a_block_without_hardening_is_upset_with_friction() -> Fallible {
 }
 
 /// With μ = 1 there are several equilibria from increment 31 on, and rounding may decide which is found. That of the reference
-/// is among those to which parts of the last increment lead, in every increment; the whole leads there in all but increment 33.
+/// is among those to which parts of the last increment lead, in every increment.
 #[test]
 fn a_block_without_hardening_that_sticks_has_several_equilibria() -> Fallible {
     let name = "F2_Q8_8x8_mu1_H0";
     let tables = Tables::read(name)?;
     let block = || SQUARE.driver(PlaneStrain::default(), 0.0, 1.0);
     let (mut driver, mut trial) = (block()?, block()?);
-    let (mut off, mut last) = (Difference::default(), Vec::new());
+    let mut last = Vec::new();
     for k in 1..=40 {
         let step = SQUARE
             .held("upset")
@@ -115,6 +115,10 @@ fn a_block_without_hardening_that_sticks_has_several_equilibria() -> Fallible {
             now.compare((&trial, &report), (force[1], "tool0_Fy"), &tables);
             trial.write(&mut after);
             let exact = now.load < EXACT;
+            if k > 30 && !(exact && tenths.is_none()) {
+                let start = tenths.map_or("the path".into(), |n| format!("{n} tenths"));
+                println!("increment {k}, from {start}: {:.4} N", force[1]);
+            }
             let d_u = trial.displacements().iter().zip(driver.displacements());
             let d_u: Vec<f64> = d_u.map(|(u, before)| u - before).collect();
             if nearest
@@ -129,11 +133,9 @@ fn a_block_without_hardening_that_sticks_has_several_equilibria() -> Fallible {
         }
         let (now, after, d_u) = nearest.ok_or("no equilibrium")?;
         check(&now, &format!("{name}, increment {k}"));
-        off = now;
         last = d_u;
         driver.read(&mut Numbers::Read(&after))?;
     }
-    check(&off, name);
     Ok(())
 }
 

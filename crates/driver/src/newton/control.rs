@@ -81,6 +81,7 @@ impl<const D: usize> Driver<D> {
         control: &mut Control<'_, D>,
         watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<Option<IncrementReport>, IncrementError> {
+        self.guessed = None;
         let start = self.state.loading.clone();
         let last = self.state.last.as_ref();
         let guess: Vec<f64> = last.map_or_else(Vec::new, |(last, _)| {

@@ -11,8 +11,8 @@ const FARTHER: f64 = 4.0;
 const SMOOTH: f64 = 0.1;
 
 impl<const D: usize> Driver<D> {
-    /// First guess of the displacement increments: that of [`Driver::guess`], or the last increment again, as far as the load goes on in the same
-    /// direction, and by as much more as the path bends; else nothing.
+    /// First guess of the displacement increments: that of [`Driver::guess`], or the last increment again, as far as the load
+    /// goes on in the same direction, and by as much more as the path bends; else nothing.
     ///
     /// Through the last three equilibria goes a parabola. With increments Δu₋ and Δu under loadings of the lengths 1 and r,
     /// the next under q r is q (Δu + (1 + q)/(1 + 1/r) (Δu − r Δu₋)).

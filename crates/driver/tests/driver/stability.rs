@@ -1,7 +1,7 @@
 //! Loads from which on columns are unstable whose sides may touch: negative eigenvalues on what contacts leave free.
 
 use moreau_contact::{Ball, ContactSolver, Penalty, Plane, SemismoothNewton};
-use moreau_driver::{Axis, Driver, IncrementReport, Model, Seam, Settings, Step};
+use moreau_driver::{Axis, Driver, IncrementReport, Model, Numbers, Seam, Settings, Step};
 use moreau_laws::{Coulomb, Elastic, Friction};
 use moreau_mesh::{CellKind, Integration, Pairing, PlaneStrain, block2, uniform};
 use std::f64::consts::PI;
@@ -279,12 +279,30 @@ fn a_guess_along_the_mode_leads_to_its_branch() {
         let straight = driver.advance(&end).expect("in balance");
         assert_eq!(straight.negative_eigenvalues, 1);
         let guess: Vec<f64> = mode.iter().map(|u| side * 20.0 * u).collect();
+        // What cannot be tried, or another state, forgets the guess.
+        driver.guess(&guess).expect("valid");
+        let mut nonsense = end.clone();
+        nonsense.displacement.insert(0, f64::NAN);
+        assert!(driver.advance(&nonsense).is_err());
+        let mut saved = Vec::new();
+        driver.write(&mut saved);
+        for _ in 0..2 {
+            let straight = driver.advance(&end).expect("in balance");
+            assert_eq!(straight.negative_eigenvalues, 1);
+            driver.guess(&guess).expect("valid");
+            driver.read(&mut Numbers::Read(&saved)).expect("its own");
+        }
         driver.guess(&guess).expect("valid");
         let buckled = driver.advance(&end).expect("in balance");
         assert_eq!(buckled.negative_eigenvalues, 0);
         let nodes = driver.mesh().nodes();
         let is_tip = |x: &[f64; 2]| (x[0] - LENGTH).hypot(x[1] - 0.5 * HEIGHT) < 1e-9;
-        let tip = driver.displacement(nodes.iter().position(is_tip).expect("a node"));
+        let node = nodes.iter().position(is_tip).expect("a node");
+        let tip = driver.displacement(node);
+        assert!(
+            tip.y * guess[2 * node + 1] > 0.0,
+            "to the side of the guess"
+        );
         // Nothing is guessed twice.
         let again = driver.advance(&end).expect("in balance");
         assert!(again.newton_iterations <= 1, "{again:?}");
