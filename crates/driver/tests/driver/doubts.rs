@@ -303,6 +303,47 @@ fn the_bow_of_a_round_tool_is_no_tool_between_nodes() {
     assert_eq!(held.between_nodes(), None);
 }
 
+/// A side that meets a die at less than a right angle has nothing of the die behind it, however near to the corner: what is
+/// there is behind the top, which touches.
+#[test]
+fn a_side_that_leans_over_has_no_die_behind_it() {
+    let lean = |x: f64, y: f64| x * (1.0 + 0.02 * y);
+    for kind in [CellKind::Quad4, CellKind::Quad8] {
+        let mesh = grid(kind, [20.0, 10.0], [4, 2]);
+        let mut mesh = mesh.map(|[x, y]| [lean(x, y), y]).expect("valid");
+        let all = ["b.top", "b.right"].map(|side| mesh.facet_group(side).expect("a side").to_vec());
+        mesh.add_facet_group("all", all.concat()).expect("new");
+        let die = Plane::new([0.0, 10.0], [0.0, -1.0]).expect("valid");
+        let die = driver(mesh, PlaneStrain::default(), |m| {
+            m.tool("t", die)
+                .and_then(|m| m.contact("all", "t", coulomb(0.2)))
+                .expect("valid")
+        });
+        let driver = pressed(die, 0.1, 1);
+        assert!(driver.tool_force("t").expect("a tool")[1] < -1.0);
+        assert_eq!(driver.between_nodes(), None, "{kind:?}");
+    }
+    let side = uniform(0.0, 4.0, 2);
+    let mesh = block3("b", CellKind::Hex20, &side, &side, &side).expect("valid");
+    let mut mesh = mesh
+        .map(|[x, y, z]| [lean(x, y), y, lean(z, y)])
+        .expect("valid");
+    let all =
+        ["b.top", "b.right", "b.front"].map(|s| mesh.facet_group(s).expect("a side").to_vec());
+    mesh.add_facet_group("all", all.concat()).expect("new");
+    let die = Plane::new([0.0, 4.0, 0.0], [0.0, -1.0, 0.0]).expect("valid");
+    let mut driver = driver(mesh, Solid, |m| {
+        m.tool("t", die)
+            .and_then(|m| m.contact("all", "t", coulomb(0.2)))
+            .expect("valid")
+    });
+    let step = Step::new("press")
+        .fix("b.bottom", &[Axis::X, Axis::Y, Axis::Z])
+        .tool("t", [0.0, -0.05, 0.0]);
+    driver.run(&step, 1, |_, _| {}).expect("converges");
+    assert_eq!(driver.between_nodes(), None);
+}
+
 /// In space: a ball between the nodes of a face, and one that presses on it.
 #[test]
 fn a_ball_between_the_nodes_of_a_face_is_seen() {

@@ -170,7 +170,9 @@ pub enum ReadError {
     },
 
     /// An element of a named surface is no side of a cell that is read.
-    #[error("element {element} of \"{group}\", with the nodes {nodes:?}, is no side of any cell")]
+    #[error(
+        "element {element} of \"{group}\", with the nodes {nodes:?}, is no side of any cell; one that lies beside the cells is to be left out of the group"
+    )]
     FacetWithoutCell {
         /// Name of the group.
         group: String,

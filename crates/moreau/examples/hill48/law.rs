@@ -1,7 +1,7 @@
-//! Hill's orthotropic plasticity of sheets, as a law from outside; not `moreau_laws::Hill`, which decks have.
+//! Hill's orthotropic plasticity of sheets, as a law from outside; not `moreau::laws::Hill`, which decks have.
 
-use moreau_laws::{BulkLaw, Elastic, LawError, ON_SURFACE, Response, positive};
-use moreau_mandel::{Sym2, Sym4, equivalent_strain};
+use moreau::laws::{BulkLaw, Elastic, LawError, ON_SURFACE, Response, positive};
+use moreau::mandel::{Sym2, Sym4, equivalent_strain};
 
 /// σ_eq = √(σ·P·σ) ≤ σ_y + H α, Δεᵖ = Δα P σ/σ_eq: elasticity, P, σ_y and H.
 #[derive(Debug, Clone)]

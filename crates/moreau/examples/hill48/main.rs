@@ -4,10 +4,10 @@
 mod law;
 
 use law::Hill48;
-use moreau_driver::{Axis, Driver, Model, Settings, Step};
-use moreau_laws::{BulkLaw, Elastic, VonMises, contract};
-use moreau_mandel::Sym2;
-use moreau_mesh::{CellKind, Integration, Solid, block3};
+use moreau::driver::{Axis, Driver, Model, Settings, Step};
+use moreau::laws::{BulkLaw, Elastic, VonMises, contract};
+use moreau::mandel::Sym2;
+use moreau::mesh::{CellKind, Integration, Solid, block3};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
 

@@ -21,7 +21,7 @@ const FIXED: [Described; 20] = [
     Described::new(
         "newton_iterations",
         Unit::Count,
-        "Newton iterations of the increment.",
+        "Newton iterations of the increment, those on ways that led to no balance among them; not those before a cut.",
     ),
     Described::new(
         "contact_iterations",
@@ -57,7 +57,7 @@ const FIXED: [Described; 20] = [
     Described::new(
         "elastic_energy",
         Unit::Energy,
-        "Energy stored in the bodies.",
+        "Energy stored in the bodies: elastic, and what hardening stores.",
     ),
     Described::new(
         "plastic_dissipation",
@@ -106,7 +106,8 @@ const FORCE: Described = Described::new(
     "force.NAME.AXIS",
     Unit::Force,
     "Force on the body: of a group along the directions in which the step holds or moves it, of a tool, and of a surface by \
-     contact, by ties and by what holds it.",
+     contact, by ties and by what holds it. Loads are no part of it. Groups that share nodes with one that is held share \
+     its reactions. Under axial symmetry x is the sum of radial forces, all around.",
 )
 .when(NAMED);
 const DISPLACEMENT: Described = Described::new(

@@ -183,7 +183,7 @@ impl<'a> Run<'a> {
         let (simulation, out) = (&self.simulation, &mut self.out);
         let deck = simulation.deck();
         if let Some(grid) = simulation.failed() {
-            write_file(&self.directory.join("failed.vtu"), &grid.bytes())?;
+            write_file(&self.directory.join("failed.vtu"), &grid.vtu())?;
         }
         if simulation.increments() > 0 {
             let parts = (deck.vtu == Vtu::Last, deck.points == Vtu::Last);
@@ -207,7 +207,7 @@ impl<'a> Run<'a> {
     }
 
     fn steps(&mut self, watch: &mut dyn Watch) -> Result<(), RunError> {
-        let first = self.simulation.done();
+        let first = self.simulation.part();
         self.reached(watch);
         loop {
             if watch.stops() && !self.simulation.is_done() {
@@ -246,10 +246,8 @@ impl<'a> Run<'a> {
         first: f64,
         watch: &mut dyn Watch,
     ) -> Result<(), RunError> {
-        let all = increment.stages as f64;
-        let done = all * increment.done;
-        let rate = self.started.elapsed().as_secs_f64() / (done - first);
-        watch.converged(increment, rate * (all - done));
+        let rate = self.started.elapsed().as_secs_f64() / (increment.done - first);
+        watch.converged(increment, rate * (1.0 - increment.done));
         let every = self.simulation.deck().checkpoint;
         if every > 0 && increment.report.increment.is_multiple_of(every) {
             self.save()?;

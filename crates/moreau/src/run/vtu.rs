@@ -123,7 +123,7 @@ impl Collection {
         let parts = simulation.processes().and_then(|of| pieces(grid, of));
         let Some(mut parts) = parts.filter(|parts| parts.len() > 1) else {
             let file = format!("{name}.vtu");
-            write_file(&self.directory.join(&file), &grid.bytes())?;
+            write_file(&self.directory.join(&file), &grid.vtu())?;
             return Ok(file);
         };
         let files: Vec<String> = (0..parts.len())
@@ -132,7 +132,7 @@ impl Collection {
         let listed = parts.next().map(|first| (whole(&first, &files), first));
         let (listed, first) = listed.unzip();
         for (piece, file) in first.into_iter().chain(parts).zip(&files) {
-            write_file(&self.directory.join(file), &piece.bytes())?;
+            write_file(&self.directory.join(file), &piece.vtu())?;
         }
         let file = format!("{name}.pvtu");
         write_file(&self.directory.join(&file), &listed.unwrap_or_default())?;

@@ -1,9 +1,9 @@
 //! The contact points of a converged increment as a table: a row for each; no sums.
 
 use super::status_name;
-use super::touch::{Touch, touches};
 use crate::deck::{Described, Unit, Units};
 use crate::driver::{ContactRecord, Driver};
+use crate::grids::{Touch, touches};
 use crate::mesh::NodeKind;
 use crate::table::{Column, Table, Values};
 

@@ -4,11 +4,12 @@
 use super::history::{History, Place};
 use super::outcome::{self, Outcome, RunStatus, Tally};
 use super::trace::Trace;
-use super::{Converged, Diagnosis, StepError, contact, grids};
+use super::{Converged, Diagnosis, StepError, contact};
 use crate::deck::{Deck, Setup, Stage};
 use crate::driver::{
     Clock, Driver, IncrementError, IncrementReport, Iteration, ModelError, Numbers, Ramp, Saved,
 };
+use crate::grids;
 use crate::table::Table;
 use crate::vtu::Grid;
 use std::ops::ControlFlow;
@@ -69,6 +70,18 @@ impl<const D: usize> Course<D> {
     /// Steps done, with the part of the one under way.
     pub(super) fn done(&self) -> f64 {
         self.stage as f64 + self.ramp.as_ref().map_or(0.0, Ramp::done)
+    }
+
+    /// Part of the run that is done, by the increments that steps plan.
+    pub(super) fn part(&self) -> f64 {
+        let planned = |stages: &[Stage<D>]| -> f64 {
+            let counts = stages.iter().map(|stage| stage.increments.count());
+            counts.sum::<usize>() as f64
+        };
+        let stages = &self.setup.stages;
+        let under_way = stages.get(self.stage..=self.stage).unwrap_or_default();
+        let part = self.ramp.as_ref().map_or(0.0, Ramp::done);
+        (planned(&stages[..self.stage]) + part * planned(under_way)) / planned(stages).max(1.0)
     }
 
     /// Steps of which at least the first increment has been done.
@@ -146,7 +159,7 @@ impl<const D: usize> Course<D> {
             stage: place.stage,
             stages,
             increments: stage.increments.count(),
-            done: self.done() / stages as f64,
+            done: self.part(),
             report,
         };
         if !until_collapse && self.ramp.as_ref().is_some_and(Ramp::is_done) {

@@ -154,9 +154,9 @@ mod tests {
         let corner =
             |piece: &Grid, k: usize, at: usize| piece.points[piece.cells[k].0[at] as usize];
         assert_eq!(corner(&parts[0], 1, 2), [3.0, 1.0, 0.0]);
-        let bytes: Vec<Vec<u8>> = parts.iter().map(Grid::bytes).collect();
+        let bytes: Vec<Vec<u8>> = parts.iter().map(Grid::vtu).collect();
         assert_eq!(joined(&bytes), Some(grid.point_data.clone()));
-        assert_eq!(joined(&[grid.bytes()]), None);
+        assert_eq!(joined(&[grid.vtu()]), None);
         let text = String::from_utf8(whole(&parts[0], &["a_0.vtu".into(), "a_1.vtu".into()]));
         let text = text.expect("text");
         assert_eq!(text.matches("<Piece Source=\"a_").count(), 2);

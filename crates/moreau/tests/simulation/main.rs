@@ -4,6 +4,7 @@ mod interrupted;
 mod keys;
 mod laws;
 mod outside;
+mod points;
 mod replaced;
 mod saved;
 

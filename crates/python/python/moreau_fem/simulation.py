@@ -229,7 +229,7 @@ class Simulation:
         )
 
     def grid(self, which: str = "body") -> Any:
-        """The same as a ``pyvista.UnstructuredGrid``, without a file.
+        """The same as a ``pyvista.UnstructuredGrid``, without a file. Under large strains its points are where the body is.
 
         Raises
         ------

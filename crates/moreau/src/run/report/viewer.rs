@@ -3,13 +3,13 @@
 
 use crate::deck::Deck;
 use crate::driver::{Driver, points_by_material};
+use crate::grids;
 use crate::laws::Status;
 use crate::mesh::{Facet, Mesh};
 use crate::plot::{Chart, Series};
 use crate::run::RunError;
 use crate::run::files::contact_table;
 use crate::run::vtu::{bodies, read_point_data};
-use crate::simulation::grids;
 use crate::simulation::pictures::{
     ContactLine, TRACTIONS, contact_labels, contact_lines, field, fields, label, usual_field,
     usual_magnification,

@@ -2,10 +2,10 @@
 //! loads, contacts with their gaps; not the tools' outlines.
 
 use crate::deck::{Action, ConditionEntry, Deck, FieldEntry, Setup, StepEntry};
+use crate::grids::Sheet;
 use crate::mesh::Mesh;
 use crate::numbers::shown;
 use crate::plot::Mark;
-use crate::simulation::tools::Sheet;
 use crate::vtu::three;
 use nalgebra::{SVector, Vector3};
 use std::collections::BTreeMap;

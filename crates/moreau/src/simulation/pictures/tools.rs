@@ -1,8 +1,8 @@
 //! The surfaces of rigid tools where they are in an increment, outlines in the plane; not what they press.
 
 use crate::deck::Deck;
+use crate::grids::{Pose, Sheet};
 use crate::mesh::Mesh;
-use crate::simulation::tools::{Pose, Sheet};
 use crate::table::Table;
 use crate::vtu::three;
 use nalgebra::Vector3;

@@ -7,18 +7,18 @@ use std::collections::BTreeSet;
 
 /// A contact point as it is shown.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Touch<const D: usize> {
+pub(crate) struct Touch<const D: usize> {
     /// Gap and slip of the increment.
-    pub(super) u: Local<D>,
+    pub(crate) u: Local<D>,
     /// Pressure and shears.
-    pub(super) traction: Local<D>,
-    pub(super) status: Status,
+    pub(crate) traction: Local<D>,
+    pub(crate) status: Status,
 }
 
 /// All contact points. One whose multiplier went to its neighbours has what the multipliers are there:
 /// the mean of theirs, by the parts in which they took it over. Nothing would be a hole in a field that
 /// has none.
-pub(super) fn touches<const D: usize>(driver: &Driver<D>) -> Vec<Touch<D>> {
+pub(crate) fn touches<const D: usize>(driver: &Driver<D>) -> Vec<Touch<D>> {
     let records = driver.contacts();
     let own = |k: &usize| Touch {
         u: records[*k].u,

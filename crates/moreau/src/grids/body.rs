@@ -13,7 +13,7 @@ fn components(stress: &Sym2) -> [f64; 6] {
 }
 
 /// Stress, von Mises stress and equivalent plastic strain.
-pub(in crate::simulation) fn fields(values: &[(Sym2, f64, f64)]) -> Vec<Array> {
+pub(super) fn fields(values: &[(Sym2, f64, f64)]) -> Vec<Array> {
     let scalar = |name: &str, of: &dyn Fn(&(Sym2, f64, f64)) -> f64| Array {
         name: name.to_owned(),
         components: 1,
@@ -76,9 +76,14 @@ pub(super) fn place<const D: usize>(driver: &Driver<D>, node: usize) -> [f64; D]
     }
 }
 
-/// The grid of a body, and the node of each of its points: nodes where materials meet have a point
-/// for each material.
-pub(in crate::simulation) fn body<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usize>) {
+/// The body with its fields, recovered at points and as means of cells. Nodes where materials meet are a point for each
+/// material.
+pub fn body<const D: usize>(driver: &Driver<D>) -> Grid {
+    body_and_nodes(driver).0
+}
+
+/// The grid of a body, and the node of each of its points.
+pub(super) fn body_and_nodes<const D: usize>(driver: &Driver<D>) -> (Grid, Vec<usize>) {
     let mesh = driver.mesh();
     let points = driver.points();
     let mut of_laws = driver.fields();

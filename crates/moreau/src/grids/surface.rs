@@ -1,15 +1,15 @@
 //! The contact surfaces with gaps, slips, tractions and statuses as a grid.
 
 use super::body::place;
+use super::touch::{Touch, touches};
 use crate::driver::{ContactRecord, Driver};
 use crate::laws::{Local, Status};
 use crate::mesh::Facet;
-use crate::simulation::touch::{Touch, touches};
 use crate::vtu::{Array, Grid, facet_type, three};
 use std::collections::BTreeMap;
 
-/// All contact surfaces; none without contacts.
-pub(in crate::simulation) fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
+/// The contact surfaces with gaps, slips, tractions and statuses; `None` without contacts.
+pub fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
     let records = driver.contacts();
     let last = records.iter().map(|c| c.contact).max()?;
     let index: BTreeMap<usize, i64> = (0..).zip(records).map(|(k, c)| (c.node, k)).collect();

@@ -1,8 +1,8 @@
 //! The surfaces of rigid tools as a grid, beside that of the body they press; not what they press.
 
+use super::sheet::{Pose, Sheet};
 use crate::deck::Deck;
 use crate::driver::Driver;
-use crate::simulation::tools::{Pose, Sheet};
 use crate::vtu::{Array, Grid, three};
 use nalgebra::Vector3;
 
