@@ -113,7 +113,7 @@ fn what_is_pressed_and_turned_in_the_plane_is_as_if_it_were_not_turned() -> Fall
 #[test]
 fn what_is_pressed_and_turned_in_space_is_as_if_it_were_not_turned() -> Fallible {
     for (kinds, swapped) in [([Hex8, Hex8], true), ([Hex20, Hex8], false)] {
-        let stack = Stack::<Solid, 3>::new(kinds, [[3, 1, 2], [2, 1, 3]]);
+        let stack = Stack::<Solid, 3>::new(kinds, [[2, 1, 1], [1, 1, 2]]);
         let friction = 0.3;
         turned(&pressed(Stack {
             swapped,
