@@ -106,7 +106,7 @@ impl<const D: usize> Driver<D> {
     ) -> Result<IncrementReport, IncrementError> {
         let guess = self.predictor(start, end);
         let increment = self.begin_increment(system, (start, end), guess, None);
-        let candidate = match self.balance(system, increment, watch) {
+        let mut candidate = match self.balance(system, increment, watch) {
             Err(error)
                 if self.has_large_strains()
                     && !matches!(error, IncrementError::Model(_))
@@ -123,7 +123,6 @@ impl<const D: usize> Driver<D> {
         self.check_passage(&candidate.d_u, end)?;
         self.check_bodies(&candidate.d_u)?;
         self.check_snap(system, (start, end), &candidate, watch)?;
-        let mut candidate = candidate;
         candidate.counts = std::mem::take(&mut self.spent).with(candidate.counts);
         let unstable = candidate.counts.negative > 0;
         let mode = match unstable && !self.unstable {
