@@ -231,6 +231,16 @@ fn a_solid_is_drawn_by_what_is_seen_of_it() {
     }
 }
 
+/// Where a text is written.
+fn height(svg: &str, text: &str) -> f64 {
+    let before = svg.split(&format!(">{text}<")).next().expect("a text");
+    let y = before
+        .rsplit(" y=\"")
+        .next()
+        .and_then(|y| y.split('"').next());
+    y.and_then(|y| y.parse().ok()).expect("a place")
+}
+
 /// Labels at one place are beside each other.
 #[test]
 fn labels_do_not_cover_each_other() {
@@ -250,16 +260,40 @@ fn labels_do_not_cover_each_other() {
         .marks(marks)
         .to_svg()
         .expect("a picture");
-    let height = |text: &str| -> f64 {
-        let before = svg.split(&format!(">{text}<")).next().expect("a text");
-        let y = before
-            .rsplit(" y=\"")
-            .next()
-            .and_then(|y| y.split('"').next());
-        y.and_then(|y| y.parse().ok()).expect("a place")
-    };
+    let height = |text: &str| height(&svg, text);
     let at = ["one of them", "two of them", "three of them"].map(height);
     for (i, a) in at.iter().enumerate() {
         assert!(at[..i].iter().all(|b| (a - b).abs() > 12.0), "{at:?}");
     }
+}
+
+/// A label that would be on supports is beside them.
+#[test]
+fn labels_do_not_cover_supports() {
+    let mesh = block(CellKind::Quad4);
+    let label = Mark::Label {
+        at: [1.0, 1.0],
+        towards: [0.0, 1.0],
+        text: "a contact".into(),
+        colour: "#333333",
+    };
+    // The sheet is the same for all.
+    let highest = Mark::Dot {
+        at: [1.0, 2.0],
+        colour: "#333333",
+    };
+    let drawn = |support: Option<Mark>| {
+        let marks = [label.clone(), highest.clone()].into_iter();
+        let picture = MeshPicture::new(&mesh, "").marks(marks.chain(support).collect());
+        height(&picture.to_svg().expect("a picture"), "a contact")
+    };
+    let alone = drawn(None);
+    // Of supports up to there, some are where the text would be.
+    let support = |y: f64| Mark::Support {
+        at: [1.0, y],
+        from: [0.0, 1.0],
+    };
+    let heights = (0..20).map(|k| drawn(Some(support(1.0 + 0.05 * f64::from(k)))));
+    let moved = heights.filter(|y| (y - alone).abs() > 12.0).count();
+    assert!(moved > 0 && moved < 20, "{moved}");
 }

@@ -24,7 +24,7 @@ fn across([x, y]: [f64; 2]) -> [f64; 2] {
     [-y / length, x / length]
 }
 
-/// Draws marks, faint ones that are hidden, labels after all others.
+/// Draws marks, faint ones that are hidden, labels after all others and beside supports.
 pub(super) fn draw(svg: &mut String, sheet: &Sheet, marks: &[(&Mark<2>, bool)]) {
     for &(mark, hidden) in marks {
         if hidden && !matches!(mark, Mark::Label { .. }) {
@@ -35,10 +35,22 @@ pub(super) fn draw(svg: &mut String, sheet: &Sheet, marks: &[(&Mark<2>, bool)]) 
             symbol(svg, sheet, mark);
         }
     }
-    let mut taken = Vec::new();
+    let mut taken: Vec<_> = (marks.iter())
+        .filter_map(|(mark, _)| support(sheet, mark))
+        .collect();
     for (mark, _) in marks {
         label(svg, sheet, mark, &mut taken);
     }
+}
+
+/// The box of a support, which no label may hide.
+fn support(sheet: &Sheet, mark: &Mark<2>) -> Option<[f64; 4]> {
+    let Mark::Support { at, from } = mark else {
+        return None;
+    };
+    let [x, y] = off(sheet.place(*at), *from, 0.5 * SUPPORT);
+    let half = 0.5 * SUPPORT;
+    Some([x - half, y - half, x + half, y + half])
 }
 
 /// Draws a mark that is no label.
@@ -92,7 +104,7 @@ fn symbol(svg: &mut String, sheet: &Sheet, mark: &Mark<2>) {
     }
 }
 
-/// Draws a label where none of those before is.
+/// Draws a label where no support and none of those before is.
 fn label(svg: &mut String, sheet: &Sheet, mark: &Mark<2>, taken: &mut Vec<[f64; 4]>) {
     let Mark::Label {
         at,
