@@ -26,6 +26,7 @@ pub fn all() -> Vec<Case> {
         block::CASE,
         penalty::CASE,
         algorithms::CASE,
+        algorithms::TIMES,
         greco::CASE,
         cattaneo::CASE,
         rounded_punch::CASE,

@@ -211,6 +211,8 @@ pub struct Case {
     pub name: &'static str,
     /// Whether it takes too long for a quick run, unless it is asked for by name.
     pub long: bool,
+    /// Whether it compares times, so that nothing may run beside it.
+    pub alone: bool,
     /// Where it stands in the report; the cases of a chapter follow one another.
     pub chapter: Chapter,
     /// Title in the report.

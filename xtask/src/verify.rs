@@ -13,6 +13,7 @@ mod report;
 #[cfg(test)]
 mod samples;
 mod select;
+mod side_by_side;
 mod summary;
 mod svg;
 mod terminal;
@@ -21,6 +22,7 @@ mod verdict;
 use std::error::Error;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use clap::CommandFactory;
 use clap::error::ErrorKind;
@@ -28,7 +30,7 @@ use verification::Case;
 
 use execute::Run;
 use paint::Paint;
-use progress::Progress;
+use progress::Board;
 use verdict::Verdict;
 use verification::workspace;
 
@@ -77,7 +79,7 @@ pub fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     let docs = workspace::root().join("docs");
     let terminal = &mut io::stdout();
     let paint = Paint::of_stdout();
-    let (verdict, runs) = verify(&cases, setting, &out, paint, Progress::new, terminal)?;
+    let (verdict, runs) = verify(&cases, setting, &out, paint, &Board::of_stderr(), terminal)?;
     if args.pages {
         pages::write(&docs, &known, &runs, setting)?;
     }
@@ -95,13 +97,13 @@ fn refuse(unknown: &select::UnknownCase) -> ! {
         .exit()
 }
 
-/// Runs the cases one after the other, tells `terminal` about each, and writes the report to `out`.
+/// Runs the cases, tells `terminal` about each, and writes the report to `out`.
 fn verify<'a>(
     cases: &[&'a Case],
     setting: Setting,
     out: &Path,
     paint: Paint,
-    progress: fn(&str) -> Progress,
+    board: &Board,
     terminal: &mut dyn Write,
 ) -> Result<(Verdict, Vec<Run<'a>>), Box<dyn Error>> {
     // An unwritable folder is told before the computation, not after it.
@@ -111,13 +113,11 @@ fn verify<'a>(
         "{}\n",
         paint.faint(&terminal::preamble(cases.len(), setting))
     )?;
-    let mut runs: Vec<Run<'a>> = Vec::with_capacity(cases.len());
-    for &case in cases {
-        let run = execute::execute(case, setting.quick, progress(case.name));
-        writeln!(terminal, "{}", terminal::case(&run, paint))?;
-        runs.push(run);
-    }
-    let verdict = Verdict::of(&runs);
+    let start = Instant::now();
+    let runs = side_by_side::run(cases, setting, board, |run| {
+        writeln!(terminal, "{}", terminal::case(run, paint))
+    })?;
+    let verdict = Verdict::of(&runs, start.elapsed().as_secs_f64());
     let report = write(&runs, setting, &verdict, out)?;
     writeln!(
         terminal,
@@ -182,7 +182,7 @@ mod tests {
             setting,
             out,
             Paint::plain(),
-            |_| Progress::silent(),
+            &Board::Silent,
             &mut text,
         );
         (verdict.unwrap().0, String::from_utf8(text).unwrap())

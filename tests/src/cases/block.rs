@@ -18,6 +18,7 @@ use std::error::Error;
 pub(super) const CASE: Case = Case {
     name: "block",
     long: false,
+    alone: false,
     chapter: Chapter::Paper,
     title: "Punched block with Coulomb friction (paper 8.2, figures 9–11)",
     description: "Half of a steel block, 50 mm × 20 mm, on a rigid foundation with Coulomb \

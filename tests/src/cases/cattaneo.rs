@@ -14,6 +14,7 @@ use std::f64::consts::PI;
 pub(super) const CASE: Case = Case {
     name: "cattaneo",
     long: false,
+    alone: false,
     chapter: Chapter::Beyond,
     title: "Two elastic bodies pressed and dragged (Hertz, Cattaneo, Mindlin)",
     description: "A body with a round side is pressed on a flat one of the same steel, with a mesh \

@@ -15,6 +15,7 @@ use std::error::Error;
 pub(super) const CASE: Case = Case {
     name: "collapse",
     long: false,
+    alone: false,
     chapter: Chapter::Beyond,
     title: "Loads beyond collapse, and the elements that lock",
     description: "Five bodies of an elastic perfectly plastic material are given loads that they \

@@ -14,6 +14,7 @@ use std::error::Error;
 pub(super) const ROLLING: Case = Case {
     name: "rolling",
     long: true,
+    alone: false,
     chapter: Chapter::Large,
     title: "Rolling of a strip",
     description: "A strip of 2 mm is rolled to 1.6 mm by rolls of radius 60 mm with friction 0.15, which turn by 15°. \
@@ -27,6 +28,7 @@ pub(super) const ROLLING: Case = Case {
 pub(super) const DRAWING: Case = Case {
     name: "drawing",
     long: true,
+    alone: false,
     chapter: Chapter::Large,
     title: "Drawing of a strip through a smooth die",
     description: "A strip of perfectly plastic metal is drawn through a die of half angle α = 7.2° without friction, which \
@@ -40,6 +42,7 @@ pub(super) const DRAWING: Case = Case {
 pub(super) const HARDNESS: Case = Case {
     name: "hardness",
     long: true,
+    alone: false,
     chapter: Chapter::Large,
     title: "Brinell's ball and Tabor's rule",
     description: "A ball of 10 mm is pressed by 0.3 mm into a plate of steel that hardens by a power of 0.2. The mean \

@@ -17,6 +17,7 @@ use std::error::Error;
 pub(super) const CASE: Case = Case {
     name: "greco",
     long: false,
+    alone: false,
     chapter: Chapter::Beyond,
     title: "Block on a rigid floor, friction of one (GRECO)",
     description: "An elastic block is pressed on a rigid floor from above and, three times as hard, \

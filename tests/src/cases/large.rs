@@ -17,6 +17,7 @@ const SOURCE: &str = "independent implementation, tests/reference/finite";
 pub(super) const UPSETTING: Case = Case {
     name: "upsetting",
     long: false,
+    alone: false,
     chapter: Chapter::Large,
     title: "Upsetting between platens",
     description: "A square block of hardening steel, in plane strain, is pressed to 0.6 of its height, and a \
@@ -31,6 +32,7 @@ pub(super) const UPSETTING: Case = Case {
 pub(super) const RING: Case = Case {
     name: "ring-squeezed",
     long: false,
+    alone: false,
     chapter: Chapter::Large,
     title: "Ring compression to half of the height",
     description: "A ring of the proportions 6:3:2 is squeezed to half of its height between platens with \
@@ -43,6 +45,7 @@ pub(super) const RING: Case = Case {
 pub(super) const NECK: Case = Case {
     name: "neck",
     long: false,
+    alone: false,
     chapter: Chapter::Large,
     title: "Necking of a bar",
     description: "A bar of 53.3 mm with hardening that saturates, two hundredths thinner in its middle, is drawn \
@@ -55,6 +58,7 @@ pub(super) const NECK: Case = Case {
 pub(super) const INDENTATION: Case = Case {
     name: "indentation",
     long: false,
+    alone: false,
     chapter: Chapter::Large,
     title: "Indentation by a disc",
     description: "A disc of radius 10 mm is pressed by 3 mm into a block of 40 mm × 20 mm: contact spreads, and \
@@ -67,6 +71,7 @@ pub(super) const INDENTATION: Case = Case {
 pub(super) const TURNING: Case = Case {
     name: "turning",
     long: false,
+    alone: false,
     chapter: Chapter::Large,
     title: "A block squeezed between platens that turn by a right angle",
     description: "The block between two platens with friction 0.3, which come together by 6 mm, straight or \

@@ -13,6 +13,7 @@ use std::error::Error;
 pub(super) const CASE: Case = Case {
     name: "penalty",
     long: false,
+    alone: false,
     chapter: Chapter::Paper,
     title: "Convergence of the penalty method (paper 8.2.1, figures 12–14)",
     description: "The punched block with a friction of 0.05 under the penalty method, equal \

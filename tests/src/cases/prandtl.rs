@@ -21,6 +21,7 @@ use std::error::Error;
 pub(super) const CASE: Case = Case {
     name: "prandtl",
     long: false,
+    alone: false,
     chapter: Chapter::Paper,
     title: "Indentation of a half-space (paper 8.1, figures 6–8)",
     description: "A rigid, flat, smooth punch of 20 mm width is pressed 0.4 mm into an elastic \

@@ -14,6 +14,7 @@ use std::error::Error;
 pub(super) const CASE: Case = Case {
     name: "punch-in-space",
     long: false,
+    alone: false,
     chapter: Chapter::Beyond,
     title: "A square punch in space",
     description: "A rigid, flat and rough square punch, 20 mm wide, is pressed by 0.1 mm into an \

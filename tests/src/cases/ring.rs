@@ -14,6 +14,7 @@ use std::error::Error;
 pub(super) const CASE: Case = Case {
     name: "ring",
     long: false,
+    alone: false,
     chapter: Chapter::Beyond,
     title: "Ring compression, the calibration of friction (Male and Cockcroft)",
     description: "A ring of the proportions 6:3:2 (outer, inner diameter, height) is compressed \

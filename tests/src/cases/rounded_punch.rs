@@ -16,6 +16,7 @@ use std::f64::consts::PI;
 pub(super) const CASE: Case = Case {
     name: "rounded-punch",
     long: false,
+    alone: false,
     chapter: Chapter::Beyond,
     title: "Punch with a rounded edge on a foundation (NAFEMS contact benchmark 2)",
     description: "A steel punch of radius 50 mm and height 100 mm, its edge rounded by 10 mm, is \

@@ -109,7 +109,7 @@ mod tests {
     fn run_of(name: &str) -> (bool, Option<String>) {
         let cases = samples::cases();
         let case = cases.iter().find(|case| case.name == name).unwrap();
-        let run = execute(case, true, Progress::silent());
+        let run = execute(case, true, Progress::Silent);
         (run.pass(), run.error().map(str::to_owned))
     }
 

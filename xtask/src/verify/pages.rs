@@ -189,7 +189,7 @@ mod tests {
     fn written(name: &str) -> (Scratch, String) {
         let (cases, docs) = (samples::cases(), Scratch::new().unwrap());
         let case = cases.iter().find(|case| case.name == name).unwrap();
-        let run = execute(case, true, Progress::silent());
+        let run = execute(case, true, Progress::Silent);
         write(docs.path(), &cases, &[run], QUICK).unwrap();
         let page = docs.path().join(format!("validation/{name}.md"));
         let page = fs::read_to_string(page).unwrap();

@@ -227,7 +227,7 @@ mod tests {
         let cases = samples::cases();
         let runs: Vec<_> = cases
             .iter()
-            .map(|case| execute(case, true, Progress::silent()))
+            .map(|case| execute(case, true, Progress::Silent))
             .collect();
         html(
             &runs,
@@ -235,7 +235,7 @@ mod tests {
                 quick: true,
                 threads: 2,
             },
-            &Verdict::of(&runs),
+            &Verdict::of(&runs, 3.25),
         )
         .unwrap()
     }

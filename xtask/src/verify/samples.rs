@@ -9,6 +9,7 @@ use verification::{Case, Chapter, Check, Figure, Kind, Options, Outcome, Table};
 pub fn cases() -> Vec<Case> {
     let case = |name, run| Case {
         long: false,
+        alone: false,
         name,
         chapter: Chapter::Paper,
         title: "A made-up <case>",

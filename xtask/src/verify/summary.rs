@@ -48,7 +48,7 @@ mod tests {
         let cases = samples::cases();
         let runs: Vec<_> = cases
             .iter()
-            .map(|case| execute(case, true, Progress::silent()))
+            .map(|case| execute(case, true, Progress::Silent))
             .collect();
         let value: serde_json::Value = serde_json::from_str(&json(&runs).unwrap()).unwrap();
         let keys = |value: &serde_json::Value| -> Vec<String> {

@@ -119,7 +119,7 @@ mod tests {
     fn shown(name: &str) -> String {
         let cases = samples::cases();
         let sample = cases.iter().find(|case| case.name == name).unwrap();
-        case(&execute(sample, true, Progress::silent()), Paint::plain())
+        case(&execute(sample, true, Progress::Silent), Paint::plain())
     }
 
     #[test]

@@ -13,20 +13,20 @@ pub struct Verdict {
     pub failed: usize,
     /// Cases without an outcome.
     pub erred: usize,
-    /// Time of all cases together \[s\].
+    /// How long all of it took \[s\].
     pub seconds: f64,
 }
 
 impl Verdict {
-    /// Counts.
-    pub fn of(runs: &[Run<'_>]) -> Self {
+    /// Counts; the runs took so many seconds in all.
+    pub fn of(runs: &[Run<'_>], seconds: f64) -> Self {
         let passed = runs.iter().map(Run::passed).sum();
         let all: usize = runs.iter().map(|run| run.checks().len()).sum();
         Self {
             passed,
             failed: all - passed,
             erred: runs.iter().filter(|run| run.error().is_some()).count(),
-            seconds: runs.iter().fold(0.0, |sum, run| sum + run.seconds),
+            seconds,
         }
     }
 
