@@ -147,7 +147,13 @@ struct Goal<'a, const D: usize> {
     tolerance: Tolerance,
     /// Residual that is enough \[N\].
     enough: f64,
+    /// The least residual that counted as progress \[N\], and the iteration in which it was found.
+    least: (f64, usize),
 }
+
+/// Part of the iterations in which the residual must fall by as large a part: a method that is slower falls by a factor
+/// of e at most until it has used up all, and one that wanders or has left for good does not even that.
+const PATIENCE: f64 = 0.1;
 
 impl<'a, const D: usize> Goal<'a, D> {
     fn new(problem: &'a CondensedProblem<D>, tolerance: Tolerance, enough: f64) -> Self {
@@ -155,6 +161,7 @@ impl<'a, const D: usize> Goal<'a, D> {
             problem,
             tolerance,
             enough,
+            least: (f64::INFINITY, 0),
         }
     }
 
@@ -164,9 +171,9 @@ impl<'a, const D: usize> Goal<'a, D> {
         asked.max(self.problem.rounding(&self.problem.relative(u)))
     }
 
-    /// The solution at a point that is one, the failure where the iterations are used up.
+    /// The solution at a point that is one, the failure where the iterations are used up or lead nowhere.
     fn judge(
-        &self,
+        &mut self,
         solver: &'static str,
         iterations: usize,
         t: &[Local<D>],
@@ -186,7 +193,13 @@ impl<'a, const D: usize> Goal<'a, D> {
                 exact: residual <= target,
             }));
         }
-        (iterations >= self.tolerance.iterations).then_some(Err(ContactError::NotConverged {
+        if residual < (1.0 - PATIENCE) * self.least.0 {
+            self.least = (residual, iterations);
+        }
+        let idle = (iterations - self.least.1) as f64;
+        let limit = self.tolerance.iterations;
+        let ends = iterations >= limit || idle > PATIENCE * limit as f64;
+        ends.then_some(Err(ContactError::NotConverged {
             solver,
             iterations,
             residual,

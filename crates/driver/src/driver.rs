@@ -504,11 +504,10 @@ impl<const D: usize> Driver<D> {
                 iterations,
             } => self.nested_increment(&mut system, &start, end, (tolerance, iterations), watch),
         };
-        let small = system.is_tied() && D * self.points.len() <= CONDENSABLE;
+        let condenses = outcome.as_ref().is_err_and(|e| self.condenses(&system, e));
         self.system = Some(system);
         match outcome.map_err(|error| self.or_fault(error)) {
-            Err(IncrementError::Contact { .. }) if small && self.settings.seam == Seam::Cheaper => {
-                // A dense matrix costs more, and its methods find what this one does not.
+            Err(_) if condenses => {
                 let mut system = self.elastic_system(end, None, Seam::Condensed)?;
                 let watch = &mut |_: &Self, now: &Iteration<'_>| watch(now);
                 let outcome = self.increment(&mut system, &start, end, watch);
@@ -517,6 +516,14 @@ impl<const D: usize> Driver<D> {
             }
             outcome => outcome,
         }
+    }
+
+    /// Whether an increment that ends so with contacts tied in the factor is tried on a dense matrix, which costs more,
+    /// and whose methods find what that one does not.
+    pub(crate) fn condenses(&self, system: &System, error: &IncrementError) -> bool {
+        let small = D * self.points.len() <= CONDENSABLE;
+        let chosen = self.settings.seam == Seam::Cheaper && system.is_tied();
+        small && chosen && matches!(error, IncrementError::Contact { .. })
     }
 
     /// # Errors

@@ -43,7 +43,7 @@ impl<const D: usize, S: LocalSolver<D>> ContactSolver<D> for Dual<S> {
             relative: self.0.tolerance(),
             iterations: usize::MAX,
         };
-        let goal = Goal::new(problem, own, enough);
+        let mut goal = Goal::new(problem, own, enough);
         let mut start = forces(&form, guess);
         let mut asked = own
             .relative

@@ -35,7 +35,7 @@ impl<const D: usize> ContactSolver<D> for GaussSeidel {
     ) -> Result<ContactSolution<D>, ContactError> {
         let form = problem.delassus()?;
         let goal = Goal::new(problem, self.tolerance, enough);
-        Self::extrapolated(&form, forces(&form, guess), &goal)
+        Self::extrapolated(&form, forces(&form, guess), goal)
     }
 }
 
@@ -44,7 +44,7 @@ impl GaussSeidel {
     pub(super) fn extrapolated<const D: usize>(
         form: &LocalProblem<D>,
         start: Vec<Local<D>>,
-        goal: &Goal<D>,
+        mut goal: Goal<D>,
     ) -> Result<ContactSolution<D>, ContactError> {
         let swept = |mut t: Vec<Local<D>>| {
             sweep(form, &mut t);

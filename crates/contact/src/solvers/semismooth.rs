@@ -244,10 +244,11 @@ impl<const D: usize> Newton<'_, D> {
             relative: 1e-8,
             iterations: (ATTEMPT * size).max(quick).min(20_000),
         };
-        let goal = Goal::new(p, tolerance, 0.0);
+        let goal = || Goal::new(p, tolerance, 0.0);
         // Where sweeps cycle, which takes a large friction, corrections may not, and conversely; and
         // the methods for the local form arrive where neither does.
-        let swept = GaussSeidel::extrapolated(&form, t.to_vec(), &goal).or_else(|_| {
+        let swept = GaussSeidel::extrapolated(&form, t.to_vec(), goal()).or_else(|_| {
+            let mut goal = goal();
             let judge = |k, t: &[Local<D>], u: &[Local<D>]| goal.judge("Uzawa", k, t, u);
             Uzawa::corrections(&form, t.to_vec(), judge)
         });

@@ -38,7 +38,7 @@ impl<const D: usize> ContactSolver<D> for Uzawa {
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
         let form = problem.delassus()?;
-        let goal = Goal::new(problem, self.tolerance, enough);
+        let mut goal = Goal::new(problem, self.tolerance, enough);
         Self::corrections(&form, forces(&form, guess), |k, t, u| {
             goal.judge(NAME, k, t, u)
         })

@@ -16,6 +16,7 @@ use crate::newton::iterate::Iterate;
 use crate::newton::line_search::NewtonStep;
 use crate::newton::linearised::{Answer, Linearised};
 use crate::newton::tangent::STIFFENED;
+use crate::newton::tangent::Turning;
 use crate::report::counts::Counts;
 use crate::report::{IncrementReport, Iteration};
 use crate::vector::{SparseVector, largest};
@@ -110,7 +111,8 @@ impl<const D: usize> Driver<D> {
             Err(error)
                 if self.has_large_strains()
                     && !matches!(error, IncrementError::Model(_))
-                    && !error.is_broken_off() =>
+                    && !error.is_broken_off()
+                    && !self.condenses(system, &error) =>
             {
                 self.continued(system, (start, end), watch)
                     .map_err(|other| match other.is_broken_off() {
@@ -430,7 +432,7 @@ impl<const D: usize> Driver<D> {
     }
 
     /// # Errors
-    /// After too many iterations, or where forces are no numbers.
+    /// After too many iterations, or where they go round, or where forces are no numbers.
     fn check_progress(
         &self,
         system: &System,
@@ -438,7 +440,7 @@ impl<const D: usize> Driver<D> {
         balance: &Balance<D>,
     ) -> Result<(), IncrementError> {
         let iteration = increment.counts.newton;
-        let ends = iteration >= self.settings.iterations;
+        let ends = iteration >= self.settings.iterations || increment.counts.goes_round();
         if ends && increment.counts.undetermined {
             // The motion that the statuses left free has no end.
             let source = ContactError::Singular;
@@ -477,7 +479,12 @@ impl<const D: usize> Driver<D> {
             false => increment.iterate.once_arrived(&balance.residual),
         };
         increment.counts.newton += 1;
-        self.renew_tangent(system, increment, &balance)?;
+        let force = match &increment.solution {
+            Some(solution) => solution.force.clone(),
+            None => self.previous_forces(&balance.kinematics),
+        };
+        let turning = self.turning(&increment.end, &balance.kinematics, &force);
+        self.renew_tangent(system, increment, &balance, &turning)?;
         // What a tool has moved is missing in the first iterate as well.
         let moved = increment.moves_tools(self.mesh_dofs());
         let flows = increment.iterate.assembly.flows;
@@ -502,6 +509,7 @@ impl<const D: usize> Driver<D> {
             .may_serve(balance.accepted, system.steps_per_factorisation());
         let elastic = system.holds_elastic_factor() && !flows;
         Ok(NewtonStep {
+            turned: turning.change(&step),
             displacement: step,
             factor,
             growth: match &increment.control {
@@ -602,6 +610,7 @@ impl<const D: usize> Driver<D> {
         system: &mut System,
         increment: &mut Increment<'_, '_, D>,
         balance: &Balance<D>,
+        turning: &Turning,
     ) -> Result<(), IncrementError> {
         let (imbalance, accepted) = (balance.largest, balance.accepted);
         let worth = system.steps_per_factorisation();
@@ -610,14 +619,9 @@ impl<const D: usize> Driver<D> {
             && increment.has_arrived()
             && increment.chord.serves(imbalance, accepted, worth);
         if !serves {
-            let force = match &increment.solution {
-                Some(solution) => solution.force.clone(),
-                None => self.previous_forces(&balance.kinematics),
-            };
-            let contact = (balance.kinematics.as_slice(), force.as_slice());
             let far = imbalance > FAR * balance.scale;
             let given = (&*increment.end, &increment.missing);
-            self.linearise(system, &mut increment.iterate, given, contact, far)?;
+            self.linearise(system, &mut increment.iterate, given, turning, far)?;
         }
         increment.chord.begin(imbalance, !serves);
         Ok(())

@@ -22,8 +22,10 @@ pub(crate) struct NewtonStep {
     pub(crate) factor: f64,
     /// What that adds to the applied forces \[N\].
     pub(crate) growth: SparseVector,
-    /// Contact forces at its end \[N\].
+    /// Contact forces at its end, in the frames of its begin \[N\].
     pub(crate) contact: SparseVector,
+    /// How they change to its end as they turn with their tools \[N\].
+    pub(crate) turned: SparseVector,
     /// Whether the iterate has all prescribed displacements and the motions of tools already.
     pub(crate) complete: bool,
     /// Whether it makes up for prescribed displacements that are missing.
@@ -42,8 +44,8 @@ struct Line<'a, const D: usize> {
     end: &'a Loading<D>,
     from: &'a Iterate,
     step: &'a NewtonStep,
-    /// Whether the contact forces of the end act on the whole way: what is searched then has the slope −vᵀKv at
-    /// the start, wherever tools have moved.
+    /// Whether the contact forces of the end act on the whole way, turning with it: what is searched then has the
+    /// slope −vᵀKv at the start, wherever tools have moved, and none at the end of a step on which all is linear.
     under_last: bool,
 }
 
@@ -56,11 +58,12 @@ impl<const D: usize> Line<'_, D> {
     /// Contact forces between those of both ends.
     fn contact(&self, s: f64) -> SparseVector {
         if self.under_last {
-            return self.step.contact.clone();
+            let turned = |a, b| a + s * b;
+            return self.step.contact.with(&self.step.turned, turned);
         }
         self.from
             .contact
-            .with(&self.step.contact, |a, b| a + s * (b - a))
+            .with(&self.step.contact, |a, b| (1.0 - s) * a + s * b)
     }
 
     /// Out-of-balance force at the part s of the step under contact forces, at every degree of freedom;
@@ -124,7 +127,7 @@ impl<const D: usize> Driver<D> {
             0.0,
         );
         let (at_start, before) = (line.slope(&before), norm(&before));
-        let after = line.residual(system, &assembly.internal, &step.contact, 1.0);
+        let after = line.residual(system, &assembly.internal, &line.contact(1.0), 1.0);
         let (at_end, left) = (line.slope(&after), largest(after.iter().copied()));
         let overshoots = match step.allowed {
             Some(allowed) => left > allowed,
@@ -326,6 +329,7 @@ mod tests {
             factor: 0.0,
             growth: none.clone(),
             contact: none.clone(),
+            turned: none.clone(),
             complete: true,
             arrives: false,
             slack: 0.0,

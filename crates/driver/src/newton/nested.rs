@@ -245,6 +245,7 @@ impl<const D: usize> Driver<D> {
                 factor: 0.0,
                 growth: SparseVector::default(),
                 contact: contact.clone(),
+                turned: SparseVector::default(),
                 complete,
                 arrives: !complete,
                 slack: 0.0,

@@ -19,42 +19,47 @@ const BLENDS: [f64; 4] = [1.0 - 1e-4, 0.99, 0.8, 0.0];
 /// stiffness is more than they take.
 pub(crate) const STIFFENED: [f64; 3] = [0.95, 0.8, 0.0];
 
+/// The stiffness of contact forces that turn, as entries of a matrix that are to be summed \[N/mm\].
+#[derive(Default)]
+pub(crate) struct Turning(Vec<(usize, usize, f64)>);
+
 impl<const D: usize> Driver<D> {
     /// Makes the system that of the tangent at an iterate, under a loading with displacements that are missing
-    /// and contact forces in the frames of their points:
-    /// factorised, where contacts are not tied in its factor.
+    /// and contact forces that turn: factorised, where contacts are not tied in its factor.
     pub(crate) fn linearise(
         &mut self,
         system: &mut System,
         now: &mut Iterate,
         given: (&Loading<D>, &SparseVector),
-        contact: (&[Kinematics<D>], &[Local<D>]),
+        turning: &Turning,
         far: bool,
     ) -> Result<(), IncrementError> {
-        let turns = self.has_large_strains();
         let (end, missing) = given;
-        if !now.assembly.stiffness && (turns || system.is_tied()) {
+        if !now.assembly.stiffness && (self.has_large_strains() || system.is_tied()) {
             let tangent = Stiffness::Plastic(1.0);
             now.assembly = self.assemble(system, end, (&now.d_u, missing), tangent);
         }
-        if turns {
-            self.add_turning(system, end, contact);
-        }
+        system.add(turning.entries());
         match system.is_tied() {
             true => Ok(()),
             false => self.factorise(system, now, given, far),
         }
     }
 
-    /// Adds the stiffness of contact forces that turn with the normal of their tool, W = ∂n/∂x: the force n t_n + τ
+    /// The stiffness of contact forces that turn with the normal of their tool, W = ∂n/∂x: the force n t_n + τ
     /// changes by t_n W v − n (τ · W v) with the relative displacement v. Where n is held, as in contact, its symmetric
-    /// part is as good: −t_n W + n ⊗ W τ + W τ ⊗ n. With a tool that a moment turns, see [`add_spin`].
-    fn add_turning(
+    /// part is as good: −t_n W + n ⊗ W τ + W τ ⊗ n. With a tool that a moment turns, see [`Turning::add_spin`].
+    /// Under small strains nothing turns.
+    pub(crate) fn turning(
         &self,
-        system: &mut System,
         end: &Loading<D>,
-        (kinematics, force): (&[Kinematics<D>], &[Local<D>]),
-    ) {
+        kinematics: &[Kinematics<D>],
+        force: &[Local<D>],
+    ) -> Turning {
+        let mut turning = Turning::default();
+        if !self.has_large_strains() {
+            return turning;
+        }
         let rows = self.points.iter().zip(&self.footing.rows);
         for (((point, motion_row), k), t) in rows.zip(kinematics).zip(force) {
             if t.norm() == 0.0 || k.curvature.amax() == 0.0 && k.lever.is_none() {
@@ -70,15 +75,16 @@ impl<const D: usize> Driver<D> {
                         let (i, j) = (ij / D, ij % D);
                         (D * a + i, D * b + j, w * v * stiffness[(i, j)])
                     };
-                    system.add((0..D * D).map(entry));
+                    turning.0.extend((0..D * D).map(entry));
                 }
             }
             if let Some(axle) = point.tool.and_then(|tool| end.axle_of(tool)) {
                 let spin = axle.cross(&in_space(&k.force(t))) / self.mesh.size();
                 let spin = SVector::from_fn(|i, _| spin[i]);
-                add_spin(system, motion_row, k.lever.as_ref(), &stiffness, &spin);
+                turning.add_spin(motion_row, k.lever.as_ref(), &stiffness, &spin);
             }
         }
+        turning
     }
 
     /// Factorises a stiffness at an iterate with this part of what flow adds to it.
@@ -143,24 +149,42 @@ impl<const D: usize> Driver<D> {
     }
 }
 
-/// Adds what the turn w of a tool adds to the stiffness S of contact forces f that turn: the relative displacement is
-/// v − l w with the lever l, f turns with the tool by s w, s = e × f, and its moment changes by f · (e × v). All of
-/// that is −(v − l w) · s w and its transpose, of which the square of w is taken once.
-fn add_spin<const D: usize>(
-    system: &mut System,
-    motion_row: &RelativeMotionRow<D>,
-    lever: Option<&(usize, SVector<f64, D>)>,
-    stiffness: &SMatrix<f64, D, D>,
-    spin: &SVector<f64, D>,
-) {
-    let Some((turn, lever)) = lever else { return };
-    let along = stiffness * lever;
-    let across = -along - spin;
-    for (a, w) in motion_row.weights() {
-        let entry = |i: usize| (D * a + i, w * across[i]);
-        system.add((0..D).map(entry).map(|(dof, k)| (dof, *turn, k)));
-        system.add((0..D).map(entry).map(|(dof, k)| (*turn, dof, k)));
+impl Turning {
+    /// The entries, by rows and columns.
+    fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> {
+        self.0.iter().copied()
     }
-    let own = lever.dot(&along) + lever.dot(spin);
-    system.add(std::iter::once((*turn, *turn, own)));
+
+    /// How the forces change along a step \[N\].
+    pub(crate) fn change(&self, step: &[f64]) -> SparseVector {
+        let mut change = SparseVector::default();
+        for (i, j, k) in self.entries() {
+            change.add(i, -k * step[j]);
+        }
+        change
+    }
+
+    /// Adds what the turn w of a tool adds to the stiffness S of contact forces f that turn: the relative displacement is
+    /// v − l w with the lever l, f turns with the tool by s w, s = e × f, and its moment changes by f · (e × v). All of
+    /// that is −(v − l w) · s w and its transpose, of which the square of w is taken once.
+    fn add_spin<const D: usize>(
+        &mut self,
+        motion_row: &RelativeMotionRow<D>,
+        lever: Option<&(usize, SVector<f64, D>)>,
+        stiffness: &SMatrix<f64, D, D>,
+        spin: &SVector<f64, D>,
+    ) {
+        let Some((turn, lever)) = lever else { return };
+        let along = stiffness * lever;
+        let across = -along - spin;
+        for (a, w) in motion_row.weights() {
+            let entry = |i: usize| (D * a + i, w * across[i]);
+            self.0
+                .extend((0..D).map(entry).map(|(dof, k)| (dof, *turn, k)));
+            self.0
+                .extend((0..D).map(entry).map(|(dof, k)| (*turn, dof, k)));
+        }
+        let own = lever.dot(&along) + lever.dot(spin);
+        self.0.push((*turn, *turn, own));
+    }
 }

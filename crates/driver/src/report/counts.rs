@@ -1,5 +1,11 @@
 //! What an increment counts on its way; not what is told of it.
 
+/// How near residuals are to those of a period before where iterates go round, in parts.
+const SAME: f64 = 1e-6;
+
+/// The longest period that is looked for.
+const PERIOD: usize = 8;
+
 /// What an increment has counted.
 #[derive(Debug, Default)]
 pub(crate) struct Counts {
@@ -54,5 +60,39 @@ impl Counts {
             [.., before, now] => *now >= 0.25 * before,
             _ => false,
         }
+    }
+
+    /// Whether the iterates go round: the residuals of the last two periods are those of the two before.
+    pub(crate) fn goes_round(&self) -> bool {
+        let back: Vec<f64> = self.residuals.iter().rev().copied().collect();
+        let same = |a: f64, b: f64| (a - b).abs() <= SAME * b;
+        (1..=PERIOD).any(|period| {
+            let pairs = (2 * period).max(6);
+            back.len() >= pairs + period && (0..pairs).all(|k| same(back[k], back[k + period]))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(residuals: impl Iterator<Item = f64>) -> Counts {
+        Counts {
+            residuals: residuals.collect(),
+            ..Counts::default()
+        }
+    }
+
+    #[test]
+    fn a_way_that_goes_round_is_seen_and_one_that_is_slow_is_not() {
+        let cycle = [1.8, 1.2, 19.7, 15.9, 1.82];
+        let rounds = |n: usize| (0..n).map(|k| cycle[k % 5]);
+        assert!(of([300.0, 56.0].into_iter().chain(rounds(15))).goes_round());
+        assert!(!of([300.0, 56.0].into_iter().chain(rounds(13))).goes_round());
+        assert!(of(std::iter::repeat_n(3.0, 7)).goes_round());
+        assert!(!of(std::iter::repeat_n(3.0, 6)).goes_round());
+        assert!(!of((0..40).map(|k| 0.9f64.powi(k))).goes_round());
+        assert!(!of((0..40).map(|k| 2.0 + (f64::from(k)).sin())).goes_round());
     }
 }

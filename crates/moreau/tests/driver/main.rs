@@ -1,5 +1,7 @@
 //! Contracts of the driver's public items.
 
+use moreau as _;
+
 mod along;
 mod amplitudes;
 mod anisotropic;
