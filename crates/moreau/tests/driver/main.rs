@@ -14,6 +14,7 @@ mod doubts;
 mod dragged;
 mod increments;
 mod interrupted;
+mod iterates;
 mod klarbring;
 mod law;
 mod moments;
