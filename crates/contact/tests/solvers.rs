@@ -175,6 +175,30 @@ fn klarbring_below_the_critical_friction() {
     }
 }
 
+/// Four contacts at a friction far beyond the critical one, where there may be no solution: a method that finds none does
+/// not go on until its iterations are used up.
+#[test]
+fn what_leads_nowhere_ends_early() {
+    let mut failed = 0;
+    for seed in 0..12 {
+        let entry = |k: usize| (1.0 + 12.9898 * k as f64 + 78.233 * f64::from(seed)).sin();
+        let entries: Vec<f64> = (0..64).map(entry).collect();
+        let q = [0, 1, 2, 3].map(|i| Local::<2>::new(-1.0, 3.0 * entry(100 + i)));
+        let problem = problem(definite(8, &entries), &q, 20.0);
+        let (uzawa, seidel) = (Uzawa::default(), GaussSeidel::default());
+        for (limit, outcome) in [
+            (uzawa.tolerance.iterations, uzawa.solve(&problem, None)),
+            (seidel.tolerance.iterations, seidel.solve(&problem, None)),
+        ] {
+            if let Err(ContactError::NotConverged { iterations, .. }) = outcome {
+                failed += 1;
+                assert!(4 * iterations < limit, "{iterations} of {limit}");
+            }
+        }
+    }
+    assert!(failed > 0);
+}
+
 /// From S as from W, in the plane and in space.
 #[test]
 fn the_critical_friction_of_a_contact_is_that_of_its_compliance() {
