@@ -1,5 +1,6 @@
 //! Contracts of the driver's public items.
 
+// Its compiled driver for the plane and for space is shared, not compiled again.
 use moreau as _;
 
 mod along;
