@@ -66,6 +66,9 @@ struct At<const D: usize> {
     map: Vec<Local<D>>,
     residual: f64,
     merit: f64,
+    /// Size of the answers that v is a sum of beside the last that was solved for \[mm\]: where they nearly cancel, v
+    /// rounds off in proportion.
+    summed: f64,
 }
 
 /// Solves a tied problem to a tolerance, or to a residual that is `enough` \[N\] where that is larger. Returns with the
@@ -99,6 +102,10 @@ pub fn solve_tied<const D: usize>(
     for iterations in 0..=tolerance.iterations {
         let target = newton.target(&now, tolerance, progress.stalls(now.residual));
         if now.residual <= target.max(PARTS[0] * enough) {
+            if newton.part == 0 && newton.rounds_off(&now) > ROUNDED * target {
+                now = newton.answered(now.z);
+                continue;
+            }
             if newton.part == 0 {
                 let exact = now.residual <= target;
                 let found = newton.solution(now, iterations, exact);
@@ -173,7 +180,11 @@ impl<const D: usize> Tied<'_, '_, D> {
     /// Another α, at the same place.
     fn with_part(&mut self, part: usize, now: At<D>) -> At<D> {
         self.part = part;
-        self.at(now.z, now.v)
+        let summed = now.summed;
+        At {
+            summed,
+            ..self.at(now.z, now.v)
+        }
     }
 
     fn failure(&self, now: &At<D>, tolerance: Tolerance) -> ContactError {

@@ -174,8 +174,12 @@ impl<const D: usize> Tied<'_, '_, D> {
     fn follow(&mut self, t: &[Local<D>], v: &[Local<D>]) -> At<D> {
         let pairs = t.iter().zip(v).zip(&self.factor.ties);
         let z: Vec<Local<D>> = pairs.map(|((t, v), tie)| t + tie * v).collect();
+        self.answered(stack(&z))
+    }
+
+    /// The iterate at z, solved for.
+    pub(super) fn answered(&mut self, z: DVector<f64>) -> At<D> {
         self.factor.used += 1;
-        let z = stack(&z);
         let v = self.problem.structure.displacement(&z, true);
         self.at(z, v)
     }

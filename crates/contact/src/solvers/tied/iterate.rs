@@ -41,6 +41,7 @@ impl<const D: usize> Tied<'_, '_, D> {
             map: Vec::with_capacity(count),
             residual: 0.0,
             merit: 0.0,
+            summed: 0.0,
             z,
             v,
         };
@@ -134,6 +135,12 @@ impl<const D: usize> Tied<'_, '_, D> {
         let forces = at.t.iter().chain(&self.problem.previous);
         let load = self.problem.load.max(f64::MIN_POSITIVE);
         forces.map(|t| t.norm()).fold(load, f64::max)
+    }
+
+    /// By how much forces t = z − R v are out of balance where the answers that v is a sum of nearly cancel \[N\].
+    pub(super) fn rounds_off(&self, at: &At<D>) -> f64 {
+        let tightest = self.factor.ties.iter().map(|tie| tie.amax());
+        f64::EPSILON * tightest.fold(0.0, f64::max) * at.summed
     }
 
     /// Rounding of the map \[N\]: of displacements in the stiffness of a contact, and of what ties hold, which

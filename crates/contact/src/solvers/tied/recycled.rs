@@ -36,6 +36,12 @@ impl Recycled {
         }
         sum
     }
+
+    /// Σ |y| |W z|, of the largest component of each.
+    pub(super) fn size(&self, y: &[f64]) -> f64 {
+        let pairs = y.iter().zip(&self.pairs);
+        pairs.map(|(y, (_, answer))| y.abs() * answer.amax()).sum()
+    }
 }
 
 /// The least |b − Σ y m| over images m, one after the other.

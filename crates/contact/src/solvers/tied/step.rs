@@ -138,10 +138,16 @@ impl<const D: usize> Tied<'_, '_, D> {
 
     /// The iterate along a step at which the merit is smaller than allowed, and what part of it that is.
     fn search(&self, least: &LeastSquares, now: &At<D>, allowed: f64) -> Option<(At<D>, f64)> {
-        let (dz, dv) = (self.factor.pairs).combined(&least.solution(), now.z.len());
+        let y = least.solution();
+        let (dz, dv) = self.factor.pairs.combined(&y, now.z.len());
+        let summed = self.factor.pairs.size(&y);
         let parts = (0..HALVINGS as i32).map(|k| 0.5f64.powi(k));
+        let along = |part: f64| At {
+            summed: now.summed + part * summed,
+            ..self.at(&now.z + &dz * part, &now.v + &dv * part)
+        };
         parts
-            .map(|part| (self.at(&now.z + &dz * part, &now.v + &dv * part), part))
+            .map(|part| (along(part), part))
             .find(|(trial, part)| trial.merit < (1.0 - 1e-4 * part) * allowed)
     }
 }
