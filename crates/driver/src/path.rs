@@ -1,8 +1,9 @@
-//! The sequence of increments, and where it ends: collapse and buckling; not one increment.
+//! The sequence of increments, and where it ends: collapse and buckling; not the iteration of one.
 
 mod along;
 mod bifurcation;
 pub(crate) mod buckling;
+mod equilibrium;
 pub(crate) mod increments;
 pub(crate) mod loading;
 pub(crate) mod mechanism;

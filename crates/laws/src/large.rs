@@ -40,43 +40,59 @@ impl<S: Numbers> Numbers for Turned<S> {
     }
 }
 
-/// Outcome of a step at a point under large strains.
+/// A step at a point under large strains, whatever the law: what there is to strain, and how its frame turns.
 #[derive(Debug, Clone)]
-pub struct LargeResponse<S> {
-    /// Kirchhoff stress τ = J σ at the end of the step \[MPa\].
-    pub stress: Matrix3<f64>,
-    /// Strain increment that the law has seen, in the frame of the end of the step.
-    pub d_eps: Sym2,
-    /// Its tangent, in that frame \[MPa\].
-    pub law_tangent: Sym4,
-    /// Whether plastic strain grows.
-    pub flows: bool,
-    /// State at the end of the step.
-    pub state: Turned<S>,
+struct LargeStep {
+    /// The frame at the end of the step.
+    frame: Matrix3<f64>,
     /// Elastic strain of the trial, in space.
     strain: Matrix3<f64>,
     /// Of b − 1 of the trial.
     trial: Spectrum,
     /// V² − 1 of the step, f = V R.
     stretch: Matrix3<f64>,
-    is_isotropic: bool,
 }
 
-impl<S> LargeResponse<S> {
-    /// ∂τ/∂l at the end of the step \[MPa\], of the gradient l = ∂v/∂x there, with a tangent of the law in the
-    /// frame; where a dilatation was given, of a gradient whose trace is its rate.
-    pub fn tangent(&self, of_law: &Sym4) -> GradientTangent {
-        match self.is_isotropic {
-            true => self.isotropic_tangent(of_law),
-            false => self.turning_tangent(of_law),
+impl LargeStep {
+    /// Of the elastic strain before it, in the frame then, and of the displacement gradient h; see [`respond_large`].
+    fn new(
+        elastic: &Sym2,
+        frame: &Matrix3<f64>,
+        h: &Matrix3<f64>,
+        dilatation: Option<f64>,
+    ) -> Option<Self> {
+        let f = Matrix3::identity() + h;
+        let jacobian = 1.0 + volume_change(h);
+        if !(jacobian > 0.0 && jacobian.is_finite()) {
+            return None;
         }
+        let before = from_matrix(&turned(frame, &to_matrix(elastic)));
+        let stretched = Spectrum::new(&to_matrix(&before)).map(|e| (2.0 * e).exp_m1());
+        let stretch = symmetric(&(h + h.transpose() + product(h, &h.transpose())));
+        let trial = Spectrum::new(&symmetric(&(stretch + turned(&f, &stretched))));
+        let mut strain = trial.map(|b| 0.5 * b.ln_1p());
+        if let Some(dilatation) = dilatation {
+            let missing = (trace(elastic) + dilatation - strain.trace()) / 3.0;
+            (0..3).for_each(|i| strain[(i, i)] += missing);
+        }
+        Some(Self {
+            frame: product(&rotation_of(&f, &stretch), frame),
+            strain,
+            trial,
+            stretch,
+        })
     }
 
-    /// Where the frame does not matter: of the strain as space sees it. In its directions
-    /// ėᵢⱼ = ½ (lᵢⱼ bⱼ + lⱼᵢ bᵢ) (ln bᵢ − ln bⱼ)/(bᵢ − bⱼ).
+    /// The strain increment that a law sees, in the frame of the end of the step.
+    fn increment(&self, elastic: &Sym2) -> Sym2 {
+        from_matrix(&turned(&self.frame.transpose(), &self.strain)) - elastic
+    }
+
+    /// ∂τ/∂l at the end of the step \[MPa\] by an isotropic law, for which the frame does not matter: of the strain as
+    /// space sees it. In its directions ėᵢⱼ = ½ (lᵢⱼ bⱼ + lⱼᵢ bᵢ) (ln bᵢ − ln bⱼ)/(bᵢ − bⱼ).
     fn isotropic_tangent(&self, of_law: &Sym4) -> GradientTangent {
         let q = &self.trial.directions;
-        let r = rotation(&product(&q.transpose(), &self.state.frame));
+        let r = rotation(&product(&q.transpose(), &self.frame));
         let mut own = of_gradients(&turned(&r, of_law));
         let b = self.trial.values.map(|b| 1.0 + b);
         for (k, m) in [(0, 1), (0, 2), (1, 2)] {
@@ -87,8 +103,9 @@ impl<S> LargeResponse<S> {
         in_space(&own, q)
     }
 
-    fn turning_tangent(&self, of_law: &Sym4) -> GradientTangent {
-        let q = rotation(&self.state.frame);
+    /// The same by any law, under the stress τ.
+    fn turning_tangent(&self, of_law: &Sym4, stress: &Matrix3<f64>) -> GradientTangent {
+        let q = rotation(&self.frame);
         let c = turned(&q, of_law);
         let turning = Turning::new(&self.stretch);
         let mut tangent = GradientTangent::zeros();
@@ -97,7 +114,7 @@ impl<S> LargeResponse<S> {
             let spin = turning.spin(k, m);
             let commutator = |a: &Matrix3<f64>| product(&spin, a) - product(a, &spin);
             let strain_rate = logarithmic_rate(&self.trial, k, m) - commutator(&self.strain);
-            let rate = to_matrix(&(c * from_matrix(&strain_rate))) + commutator(&self.stress);
+            let rate = to_matrix(&(c * from_matrix(&strain_rate))) + commutator(stress);
             let column = SVector::<f64, 9>::from_fn(|ij, _| rate[(ij / 3, ij % 3)]);
             tangent.set_column(3 * k + m, &column);
         }
@@ -105,8 +122,34 @@ impl<S> LargeResponse<S> {
     }
 }
 
+/// Outcome of a step at a point under large strains.
+#[derive(Debug, Clone)]
+pub struct LargeResponse {
+    /// Kirchhoff stress τ = J σ at the end of the step \[MPa\].
+    pub stress: Matrix3<f64>,
+    /// Strain increment that the law has seen, in the frame of the end of the step.
+    pub d_eps: Sym2,
+    /// Its tangent, in that frame \[MPa\].
+    pub law_tangent: Sym4,
+    /// Whether plastic strain grows.
+    pub flows: bool,
+    step: LargeStep,
+    is_isotropic: bool,
+}
+
+impl LargeResponse {
+    /// ∂τ/∂l at the end of the step \[MPa\], of the gradient l = ∂v/∂x there, with a tangent of the law in the
+    /// frame; where a dilatation was given, of a gradient whose trace is its rate.
+    pub fn tangent(&self, of_law: &Sym4) -> GradientTangent {
+        match self.is_isotropic {
+            true => self.step.isotropic_tangent(of_law),
+            false => self.step.turning_tangent(of_law, &self.stress),
+        }
+    }
+}
+
 /// Response of a law of small strain to a step of large ones, from the displacement gradient h = f − 1 of the
-/// step with respect to the body at its start.
+/// step with respect to the body at its start, and the state at its end.
 ///
 /// The law sees logarithmic strains, and its stress is that of Kirchhoff. With the elastic strain e of the
 /// state,
@@ -131,42 +174,24 @@ pub fn respond_large<L: BulkLaw>(
     old: &Turned<L::State>,
     h: &Matrix3<f64>,
     dilatation: Option<f64>,
-) -> Option<LargeResponse<L::State>> {
-    let f = Matrix3::identity() + h;
-    let jacobian = 1.0 + volume_change(h);
-    if !(jacobian > 0.0 && jacobian.is_finite()) {
-        return None;
-    }
+) -> Option<(LargeResponse, Turned<L::State>)> {
     let elastic = law.elastic_strain(&old.material);
-    let in_space = to_matrix(&old.in_space(&elastic));
-    let stretched = Spectrum::new(&in_space).map(|e| (2.0 * e).exp_m1());
-    let stretch = symmetric(&(h + h.transpose() + product(h, &h.transpose())));
-    let trial = Spectrum::new(&symmetric(&(stretch + turned(&f, &stretched))));
-    let frame = product(&rotation_of(&f, &stretch), &old.frame);
-
-    let mut strain = trial.map(|b| 0.5 * b.ln_1p());
-    if let Some(dilatation) = dilatation {
-        let missing = (trace(&elastic) + dilatation - strain.trace()) / 3.0;
-        (0..3).for_each(|i| strain[(i, i)] += missing);
-    }
-    let own = turned(&frame.transpose(), &strain);
-    let d_eps = from_matrix(&own) - elastic;
+    let step = LargeStep::new(&elastic, &old.frame, h, dilatation)?;
+    let d_eps = step.increment(&elastic);
     let response = law.respond(&old.material, &d_eps);
     let state = Turned {
         material: response.state,
-        frame,
+        frame: step.frame,
     };
-    Some(LargeResponse {
+    let response = LargeResponse {
         stress: to_matrix(&state.in_space(&response.stress)),
         d_eps,
         law_tangent: response.tangent,
         flows: response.flows,
-        state,
-        strain,
-        trial,
-        stretch,
+        step,
         is_isotropic: law.is_isotropic(),
-    })
+    };
+    Some((response, state))
 }
 
 /// A tensor aᵢⱼₖₘ of the directions in the columns of q, in space.

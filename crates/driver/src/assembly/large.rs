@@ -17,8 +17,8 @@ const MOST: usize = 3 * MAX_POINTS;
 type Vector9 = SVector<f64, 9>;
 
 /// A point at the end of a step.
-struct Point<S> {
-    response: LargeResponse<S>,
+struct Point {
+    response: LargeResponse,
     /// F⁻¹.
     inverse: Matrix3<f64>,
     /// J = det F.
@@ -36,27 +36,60 @@ struct Mean {
     pressure: f64,
 }
 
-/// A cell at the end of a step.
-pub struct Cell<S> {
-    points: Vec<Point<S>>,
-    mean: Option<Mean>,
-    /// Tangents at the points.
-    tangents: Vec<GradientTangent>,
+/// How the points of a cell move.
+struct Course {
+    /// F before the step.
+    before: [Matrix3<f64>; MAX_POINTS],
+    /// h = f − 1 of the step.
+    step: [Matrix3<f64>; MAX_POINTS],
+    /// Σ w J before the step, and its change \[mm³\].
+    volume: f64,
+    change: f64,
 }
 
-impl<S> Default for Cell<S> {
-    fn default() -> Self {
-        Self {
-            points: Vec::new(),
-            mean: None,
-            tangents: Vec::new(),
+impl Course {
+    fn new<const D: usize>(
+        (cells, k): (&dyn Cells<D>, usize),
+        motion: Motion<'_>,
+        count: usize,
+    ) -> Option<Self> {
+        let mut course = Self {
+            before: [Matrix3::zeros(); MAX_POINTS],
+            step: [Matrix3::zeros(); MAX_POINTS],
+            volume: 0.0,
+            change: 0.0,
+        };
+        cells.gradient(k, motion.from, &mut course.before[..count]);
+        cells.gradient(k, motion.by, &mut course.step[..count]);
+        for g in 0..count {
+            let (before, step) = (&mut course.before[g], &mut course.step[g]);
+            *before += Matrix3::identity();
+            *step = product(step, &before.try_inverse()?);
+            let was = cells.weight(k * count + g) * before.determinant();
+            course.volume += was;
+            course.change += was * volume_change(step);
         }
+        Some(course)
+    }
+
+    /// ln(J₁/J₀) of the cell as a whole.
+    fn dilatation(&self) -> f64 {
+        (self.change / self.volume).ln_1p()
     }
 }
 
-impl<S> Cell<S> {
+/// A cell at the end of a step, whatever its law.
+#[derive(Default)]
+pub struct Cell {
+    points: Vec<Point>,
+    mean: Option<Mean>,
+    /// Tangents at the points: ∂τ/∂l, then ∂P/∂F.
+    tangents: Vec<GradientTangent>,
+}
+
+impl Cell {
     /// Stress in balance with the forces: τ, or dev τ + J P̄ 1.
-    fn stress(&self, point: &Point<S>) -> Matrix3<f64> {
+    fn stress(&self, point: &Point) -> Matrix3<f64> {
         let mut stress = point.response.stress;
         if let Some(mean) = self.mean {
             let missing = point.jacobian * mean.pressure - stress.trace() / 3.0;
@@ -69,7 +102,7 @@ impl<S> Cell<S> {
     fn force<const D: usize>(
         &self,
         (cells, k): (&dyn Cells<D>, usize),
-        tensor: impl Fn(&Point<S>) -> Matrix3<f64>,
+        tensor: impl Fn(&Point) -> Matrix3<f64>,
         force: &mut [f64],
     ) {
         let mut flux = [Matrix3::zeros(); MAX_POINTS];
@@ -77,6 +110,124 @@ impl<S> Cell<S> {
             *flux = product(&tensor(point), &point.inverse.transpose());
         }
         cells.gradient_force(k, &flux[..self.points.len()], force);
+    }
+
+    /// From ∂τ/∂l to ∂P/∂F at every point, and what the mean dilatation adds, of this part of stresses.
+    fn pull_back<const D: usize>(
+        &mut self,
+        (cells, k): (&dyn Cells<D>, usize),
+        part: f64,
+    ) -> Option<Coupling> {
+        let mut left = [Matrix3::zeros(); MAX_POINTS];
+        let mut right = [Matrix3::zeros(); MAX_POINTS];
+        let mut bulk = 0.0;
+        let mut tangents = std::mem::take(&mut self.tangents);
+        for (g, (a, point)) in tangents.iter_mut().zip(&self.points).enumerate() {
+            if let Some(mean) = self.mean {
+                let by_dilatation = column_mean(a);
+                let of_pressure = row_mean(a);
+                let both = (by_dilatation[0] + by_dilatation[4] + by_dilatation[8]) / 3.0;
+                bulk += point.weight * both;
+                left[g] = product(&deviator(&by_dilatation, both), &point.inverse.transpose());
+                right[g] = product(&deviator(&of_pressure, both), &point.inverse.transpose());
+                remove_means(a);
+                for (i, k) in (0..3).flat_map(|i| (0..3).map(move |k| (i, k))) {
+                    a[(4 * i, 4 * k)] += part * point.jacobian * mean.pressure;
+                }
+            }
+            let stress = part * self.stress(point);
+            for i in 0..3 {
+                for j in 0..3 {
+                    for m in 0..3 {
+                        a[(3 * i + j, 3 * j + m)] -= stress[(i, m)];
+                    }
+                }
+            }
+            *a = pulled_back(a, &point.inverse);
+        }
+        self.tangents = tangents;
+        let mean = self.mean?;
+        let mut coupling = Coupling {
+            volume: [0.0; MOST],
+            left: [0.0; MOST],
+            right: [0.0; MOST],
+            bulk: (bulk / mean.volume - part * mean.pressure) / mean.volume,
+        };
+        let (count, size) = (self.points.len(), D * cells.nodes(k).len());
+        cells.gradient_force(k, &left[..count], &mut coupling.left[..size]);
+        cells.gradient_force(k, &right[..count], &mut coupling.right[..size]);
+        let dilates = |p: &Point| Matrix3::identity() * p.jacobian;
+        self.force((cells, k), dilates, &mut coupling.volume[..size]);
+        for side in [&mut coupling.left, &mut coupling.right] {
+            side.iter_mut().for_each(|x| *x /= mean.volume);
+        }
+        Some(coupling)
+    }
+
+    /// The symmetric part of the stiffness, by rows of its upper half.
+    fn stiffness<const D: usize>(
+        &mut self,
+        (cells, k): (&dyn Cells<D>, usize),
+        coupling: Option<Coupling>,
+        stiffness: &mut [f64],
+    ) {
+        for a in &mut self.tangents {
+            *a = 0.5 * (*a + a.transpose());
+        }
+        cells.gradient_stiffness(k, &self.tangents, stiffness);
+        let Some(Coupling {
+            volume,
+            left,
+            right,
+            bulk,
+        }) = coupling
+        else {
+            return;
+        };
+        let size = D * cells.nodes(k).len();
+        let w = |i: usize| 0.5 * (left[i] + right[i]);
+        let mut entries = stiffness.iter_mut();
+        for i in 0..size {
+            for (j, entry) in (i..size).zip(entries.by_ref()) {
+                *entry += w(i) * volume[j] + volume[i] * w(j) + bulk * volume[i] * volume[j];
+            }
+        }
+    }
+
+    /// (A − ½ (K + Kᵀ)) v of the stiffness with `all`, A, and that of this cell, K.
+    fn lacks<const D: usize>(
+        &self,
+        (cells, k): (&dyn Cells<D>, usize),
+        all: (&[GradientTangent], Option<Coupling>),
+        coupling: Option<Coupling>,
+        (v, force): (&[f64], &mut [f64]),
+    ) {
+        let (count, size) = (self.points.len(), force.len());
+        let mut rate = [Matrix3::zeros(); MAX_POINTS];
+        cells.gradient(k, v, &mut rate[..count]);
+        for (rate, (all, given)) in rate[..count]
+            .iter_mut()
+            .zip(all.0.iter().zip(&self.tangents))
+        {
+            let symmetric = 0.5 * (given + given.transpose());
+            let own = Vector9::from_fn(|ij, _| rate[(ij / 3, ij % 3)]);
+            let lacks = (all - symmetric) * own;
+            *rate = Matrix3::from_fn(|i, j| lacks[3 * i + j]);
+        }
+        cells.gradient_force(k, &rate[..count], force);
+        let (Some(all), Some(given)) = (all.1, coupling) else {
+            return;
+        };
+        let nodes = cells.nodes(k);
+        let own = |i: usize| v[D * nodes[i / D] + i % D];
+        let along = |w: &[f64]| (0..size).map(|i| w[i] * own(i)).sum::<f64>();
+        let (dilates, volume) = (along(&all.volume), all.volume);
+        let of_right = along(&all.right) - 0.5 * (along(&given.left) + along(&given.right));
+        for i in 0..size {
+            let of_left = all.left[i] - 0.5 * (given.left[i] + given.right[i]);
+            let of_bulk = (all.bulk - given.bulk) * volume[i];
+            force[i] += (of_left + of_bulk) * dilates + volume[i] * of_right;
+        }
     }
 }
 
@@ -90,41 +241,30 @@ struct Coupling {
 }
 
 impl<L: BulkLaw> Large<L> {
-    /// The points of a cell at the end of a step; `None` where one is turned inside out.
+    /// The points of a cell at the end of a step, and their states; `None` where one is turned inside out.
     fn place<const D: usize>(
         &self,
         (cells, k): (&dyn Cells<D>, usize),
         old: &[Turned<L::State>],
         motion: Motion<'_>,
-        cell: &mut Cell<L::State>,
+        cell: &mut Cell,
+        mut keep: impl FnMut(usize, Turned<L::State>),
     ) -> Option<()> {
         let count = old.len();
-        let mut before = [Matrix3::zeros(); MAX_POINTS];
-        let mut step = [Matrix3::zeros(); MAX_POINTS];
-        cells.gradient(k, motion.from, &mut before[..count]);
-        cells.gradient(k, motion.by, &mut step[..count]);
-        let (mut volume, mut change) = (0.0, 0.0);
-        for g in 0..count {
-            let weight = cells.weight(k * count + g);
-            before[g] += Matrix3::identity();
-            let was = before[g].determinant();
-            step[g] = product(&step[g], &before[g].try_inverse()?);
-            volume += weight * was;
-            change += weight * was * volume_change(&step[g]);
-        }
-        let dilatation = (change / volume).ln_1p();
-        let dilatation = cells.averages_dilatation().then_some(dilatation);
+        let course = Course::new((cells, k), motion, count)?;
+        let dilatation = cells.averages_dilatation().then(|| course.dilatation());
         cell.points.clear();
         let mut pressure = 0.0;
-        for g in 0..count {
+        for (g, (old, step)) in old.iter().zip(&course.step).enumerate() {
             let free = match motion.free.is_empty() {
                 true => None,
                 false => Some(motion.free_at((cells, k), g)),
             };
-            let own = free.map_or(step[g], |free| without(free, &step[g]));
+            let own = free.map_or(*step, |free| without(free, step));
             let dilatation = dilatation.map(|d| d - 3.0 * free.unwrap_or(0.0));
-            let response = respond_large(&self.0, &old[g], &own, dilatation)?;
-            let now = product(&(Matrix3::identity() + step[g]), &before[g]);
+            let (response, state) = respond_large(&self.0, old, &own, dilatation)?;
+            keep(g, state);
+            let now = product(&(Matrix3::identity() + step), &course.before[g]);
             let weight = cells.weight(k * count + g);
             pressure += weight * response.stress.trace() / 3.0;
             cell.points.push(Point {
@@ -134,7 +274,7 @@ impl<L: BulkLaw> Large<L> {
                 weight,
             });
         }
-        let volume = volume + change;
+        let volume = course.volume + course.change;
         cell.mean = dilatation.map(|_| Mean {
             volume,
             pressure: pressure / volume,
@@ -142,10 +282,10 @@ impl<L: BulkLaw> Large<L> {
         Some(())
     }
 
-    /// ∂τ/∂l at a point, of this part of flow and of the stress that is there.
+    /// ∂τ/∂l at a point, of this part of flow; where not `complete`, without what the tangent of the law lacks.
     fn tangent(
         &self,
-        (old, point): (&Turned<L::State>, &Point<L::State>),
+        (old, point): (&Turned<L::State>, &Point),
         part: f64,
         complete: bool,
     ) -> GradientTangent {
@@ -164,66 +304,26 @@ impl<L: BulkLaw> Large<L> {
         }
     }
 
-    /// ∂P/∂F at every point, and what the mean dilatation adds, of this part of flow and of stresses; where
-    /// not `complete`, without what the tangent of the law lacks.
+    /// ∂P/∂F at every point, and what the mean dilatation adds, of this part of flow and of stresses.
     fn tangents<const D: usize>(
         &self,
-        (cells, k): (&dyn Cells<D>, usize),
+        of: (&dyn Cells<D>, usize),
         old: &[Turned<L::State>],
-        cell: &mut Cell<L::State>,
+        cell: &mut Cell,
         (part, complete): (f64, bool),
     ) -> Option<Coupling> {
+        let points = old.iter().zip(&cell.points);
         cell.tangents.clear();
-        let mut left = [Matrix3::zeros(); MAX_POINTS];
-        let mut right = [Matrix3::zeros(); MAX_POINTS];
-        let mut bulk = 0.0;
-        for (g, point) in cell.points.iter().enumerate() {
-            let mut a = self.tangent((&old[g], point), part, complete);
-            if let Some(mean) = cell.mean {
-                let by_dilatation = column_mean(&a);
-                let of_pressure = row_mean(&a);
-                let both = (by_dilatation[0] + by_dilatation[4] + by_dilatation[8]) / 3.0;
-                bulk += point.weight * both;
-                left[g] = product(&deviator(&by_dilatation, both), &point.inverse.transpose());
-                right[g] = product(&deviator(&of_pressure, both), &point.inverse.transpose());
-                remove_means(&mut a);
-                for (i, k) in (0..3).flat_map(|i| (0..3).map(move |k| (i, k))) {
-                    a[(4 * i, 4 * k)] += part * point.jacobian * mean.pressure;
-                }
-            }
-            let stress = part * cell.stress(point);
-            for i in 0..3 {
-                for j in 0..3 {
-                    for m in 0..3 {
-                        a[(3 * i + j, 3 * j + m)] -= stress[(i, m)];
-                    }
-                }
-            }
-            cell.tangents.push(pulled_back(&a, &point.inverse));
-        }
-        let mean = cell.mean?;
-        let mut coupling = Coupling {
-            volume: [0.0; MOST],
-            left: [0.0; MOST],
-            right: [0.0; MOST],
-            bulk: (bulk / mean.volume - part * mean.pressure) / mean.volume,
-        };
-        let (count, size) = (old.len(), D * cells.nodes(k).len());
-        cells.gradient_force(k, &left[..count], &mut coupling.left[..size]);
-        cells.gradient_force(k, &right[..count], &mut coupling.right[..size]);
-        let dilates = |p: &Point<L::State>| Matrix3::identity() * p.jacobian;
-        cell.force((cells, k), dilates, &mut coupling.volume[..size]);
-        for side in [&mut coupling.left, &mut coupling.right] {
-            side.iter_mut().for_each(|x| *x /= mean.volume);
-        }
-        Some(coupling)
+        cell.tangents
+            .extend(points.map(|(old, point)| self.tangent((old, point), part, complete)));
+        cell.pull_back(of, part)
     }
 }
 
 impl<L: BulkLaw, const D: usize> CellLaw<D> for Large<L> {
     type Law = L;
     type State = Turned<L::State>;
-    type Room = Cell<L::State>;
+    type Room = Cell;
 
     fn law(&self) -> &L {
         &self.0
@@ -246,14 +346,12 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Large<L> {
         out: CellOutput<'_, Self::State>,
         cell: &mut Self::Room,
     ) -> bool {
-        if self.place(of, old, motion, cell).is_none() {
+        let keep = |g: usize, state| out.new[g] = state;
+        if self.place(of, old, motion, cell, keep).is_none() {
             // No forces: who is in search of balance turns back.
             out.force.fill(f64::NAN);
             out.stiffness.fill(f64::NAN);
             return true;
-        }
-        for (new, point) in out.new.iter_mut().zip(cell.points.iter()) {
-            *new = point.response.state;
         }
         cell.force(of, |point| cell.stress(point), out.force);
         let part = match kind {
@@ -261,27 +359,7 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Large<L> {
             Stiffness::Total(part) | Stiffness::Plastic(part) => part,
         };
         let coupling = self.tangents(of, old, cell, (part, false));
-        for a in &mut cell.tangents {
-            *a = 0.5 * (*a + a.transpose());
-        }
-        let (cells, k) = of;
-        cells.gradient_stiffness(k, &cell.tangents, out.stiffness);
-        if let Some(Coupling {
-            volume,
-            left,
-            right,
-            bulk,
-        }) = coupling
-        {
-            let size = out.force.len();
-            let w = |i: usize| 0.5 * (left[i] + right[i]);
-            let mut entries = out.stiffness.iter_mut();
-            for i in 0..size {
-                for (j, entry) in (i..size).zip(entries.by_ref()) {
-                    *entry += w(i) * volume[j] + volume[i] * w(j) + bulk * volume[i] * volume[j];
-                }
-            }
-        }
+        cell.stiffness(of, coupling, out.stiffness);
         true
     }
 
@@ -302,37 +380,13 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Large<L> {
         force: &mut [f64],
     ) {
         let mut cell = Cell::default();
-        if self.place(of, old, motion, &mut cell).is_none() {
+        if self.place(of, old, motion, &mut cell, |_, _| {}).is_none() {
             return force.fill(f64::NAN);
         }
-        let (cells, k) = of;
-        let (count, size) = (old.len(), force.len());
         let complete = self.tangents(of, old, &mut cell, (1.0, true));
         let all = std::mem::take(&mut cell.tangents);
-        let symmetric = self.tangents(of, old, &mut cell, (1.0, false));
-        let given = cell.tangents;
-        let mut rate = [Matrix3::zeros(); MAX_POINTS];
-        cells.gradient(k, v, &mut rate[..count]);
-        for (rate, (all, given)) in rate[..count].iter_mut().zip(all.iter().zip(&given)) {
-            let symmetric = 0.5 * (given + given.transpose());
-            let own = Vector9::from_fn(|ij, _| rate[(ij / 3, ij % 3)]);
-            let lacks = (all - symmetric) * own;
-            *rate = Matrix3::from_fn(|i, j| lacks[3 * i + j]);
-        }
-        cells.gradient_force(k, &rate[..count], force);
-        let (Some(all), Some(given)) = (complete, symmetric) else {
-            return;
-        };
-        let nodes = cells.nodes(k);
-        let own = |i: usize| v[D * nodes[i / D] + i % D];
-        let along = |w: &[f64]| (0..size).map(|i| w[i] * own(i)).sum::<f64>();
-        let (dilates, volume) = (along(&all.volume), all.volume);
-        let of_right = along(&all.right) - 0.5 * (along(&given.left) + along(&given.right));
-        for i in 0..size {
-            let of_left = all.left[i] - 0.5 * (given.left[i] + given.right[i]);
-            let of_bulk = (all.bulk - given.bulk) * volume[i];
-            force[i] += (of_left + of_bulk) * dilates + volume[i] * of_right;
-        }
+        let given = self.tangents(of, old, &mut cell, (1.0, false));
+        cell.lacks(of, (&all, complete), given, (v, force));
     }
 
     fn potential(

@@ -17,8 +17,8 @@ use crate::newton::line_search::NewtonStep;
 use crate::newton::linearised::{Answer, Linearised};
 use crate::newton::tangent::STIFFENED;
 use crate::newton::tangent::Turning;
+use crate::report::Iteration;
 use crate::report::counts::Counts;
-use crate::report::{IncrementReport, Iteration};
 use crate::vector::{SparseVector, largest};
 use moreau_contact::{ContactError, ContactSolution};
 use std::borrow::Cow;
@@ -31,19 +31,6 @@ const WELL: f64 = 0.1;
 /// Imbalance over the forces in play, from which on a tangent that is not positive definite leads nowhere.
 const FAR: f64 = 0.1;
 
-/// Motion, over that of the increment before as often as the load grows, from which on a body may have snapped.
-const SNAP: f64 = 4.0;
-
-/// The same over the size of the mesh, below which nothing has.
-const STILL: f64 = 1e-6;
-
-/// Halvings of the part of the increment in which the body moves most, before it counts as one that snaps.
-const HALVINGS: usize = 4;
-
-/// Parts of an increment that is followed along its loading: the first, and the shortest.
-const PART: f64 = 0.25;
-const SHORTEST: f64 = 1.0 / 128.0;
-
 /// An increment on its way from one loading to another.
 pub(crate) struct Increment<'a, 'c, const D: usize> {
     start: &'a Loading<D>,
@@ -54,9 +41,11 @@ pub(crate) struct Increment<'a, 'c, const D: usize> {
     /// Prescribed displacements that the iterate does not have, and the next step makes up for \[mm\].
     pub(crate) missing: SparseVector,
     /// The last solution of the contact problem.
-    solution: Option<ContactSolution<D>>,
+    pub(crate) solution: Option<ContactSolution<D>>,
     chord: Chord,
     held: Held<D>,
+    /// Iterations in which the residual has to be halved, where there are other ways to try.
+    pub(crate) patience: Option<usize>,
     pub(crate) counts: Counts,
 }
 
@@ -96,153 +85,6 @@ impl<'a, 'c, const D: usize> Increment<'a, 'c, D> {
 }
 
 impl<const D: usize> Driver<D> {
-    /// Applies the increment from one loading to another and commits it; `watch` sees every
-    /// iterate.
-    pub(crate) fn increment(
-        &mut self,
-        system: &mut System,
-        start: &Loading<D>,
-        end: &Loading<D>,
-        watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
-    ) -> Result<IncrementReport, IncrementError> {
-        let guess = self.predictor(start, end);
-        let increment = self.begin_increment(system, (start, end), guess, None);
-        let mut candidate = match self.balance(system, increment, watch) {
-            Err(error)
-                if self.has_large_strains()
-                    && !matches!(error, IncrementError::Model(_))
-                    && !error.is_broken_off()
-                    && !self.condenses(system, &error) =>
-            {
-                self.continued(system, (start, end), watch)
-                    .map_err(|other| match other.is_broken_off() {
-                        true => other,
-                        false => error,
-                    })?
-            }
-            other => other?,
-        };
-        self.check_passage(&candidate.d_u, end)?;
-        self.check_bodies(&candidate.d_u)?;
-        self.check_snap(system, (start, end), &candidate, watch)?;
-        candidate.counts = std::mem::take(&mut self.spent).with(candidate.counts);
-        let unstable = candidate.counts.negative > 0;
-        let mode = match unstable && !self.unstable {
-            true => self.unstable_mode(system, &candidate),
-            false => None,
-        };
-        let report = self.commit(start, end, candidate)?;
-        self.unstable = unstable;
-        Ok(IncrementReport { mode, ..report })
-    }
-
-    /// Whether loads that grow, under large strains, have left the body near where it was: an equilibrium
-    /// beyond a limit of the load is that of another branch, which the path leads to.
-    ///
-    /// # Errors
-    /// [`IncrementError::Snap`].
-    fn check_snap(
-        &mut self,
-        system: &mut System,
-        (start, end): (&Loading<D>, &Loading<D>),
-        candidate: &Candidate<D>,
-        watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
-    ) -> Result<(), IncrementError> {
-        let moves = start.displacement != end.displacement || start.turn != end.turn;
-        let stable = candidate.counts.negative == 0;
-        if moves || !stable || !self.has_large_strains() {
-            return Ok(());
-        }
-        let dofs = self.mesh_dofs();
-        let between =
-            |a: &[f64], b: &[f64]| largest(a.iter().zip(b).take(dofs).map(|(a, b)| a - b));
-        let rest = vec![0.0; candidate.d_u.len()];
-        let moved = between(&candidate.d_u, &rest);
-        let expected = between(&self.predictor(start, end), &rest);
-        // Of the first increment nothing is expected. One in which contact opens may pass a limit although no tangent of its
-        // iterates was indefinite.
-        let may_snap = expected > 0.0 || system.was_indefinite();
-        if !may_snap || moved <= SNAP * expected.max(STILL * self.mesh.size()) {
-            return Ok(());
-        }
-        // A body that yields moves less in less of the increment, one that snaps as much.
-        let (mut near, mut far) = ((0.0, rest), (1.0, candidate.d_u.clone()));
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (near.0 + far.0);
-            let here = start.towards(end, middle);
-            let increment = self.begin_increment(system, (start, &here), near.1.clone(), None);
-            let Candidate { d_u, counts, .. } = self.balance(system, increment, watch)?;
-            self.spent.add(&counts);
-            match between(&d_u, &near.1) > between(&far.1, &d_u) {
-                true => far = (middle, d_u),
-                false => near = (middle, d_u),
-            }
-        }
-        if between(&far.1, &near.1) > 0.5 * moved {
-            return Err(IncrementError::Snap { moved });
-        }
-        // What is committed is the last that was evaluated.
-        let none = SparseVector::default();
-        self.assemble(system, end, (&candidate.d_u, &none), Stiffness::None);
-        if self.repairs() {
-            self.pair_at(end, &candidate.d_u)?;
-        }
-        Ok(())
-    }
-
-    /// Finds the equilibrium at the end of an increment by following it along the loading, in parts that
-    /// shrink where they fail: history stands still, so that the equilibrium is that of one increment.
-    ///
-    /// # Errors
-    /// That of a part as short as they may be.
-    fn continued(
-        &mut self,
-        system: &mut System,
-        (start, end): (&Loading<D>, &Loading<D>),
-        watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
-    ) -> Result<Candidate<D>, IncrementError> {
-        let (mut done, mut length) = (0.0, PART);
-        let mut last: Option<Candidate<D>> = None;
-        let mut spent = Counts::default();
-        loop {
-            let to = if done + length < 1.0 - 0.5 * PART {
-                done + length
-            } else {
-                1.0
-            };
-            let here = start.towards(end, to);
-            let d_u = match &last {
-                Some(last) => last.d_u.clone(),
-                None => vec![0.0; self.state.displacement.len()],
-            };
-            let mut increment = self.begin_increment(system, (start, &here), d_u, None);
-            if let Some(last) = &last {
-                if self.repairs() {
-                    self.pair_at(&here, &last.d_u)?;
-                }
-                increment.iterate.contact =
-                    self.contact_forces(&last.kinematics, &last.solution.force);
-                increment.solution = Some(last.solution.clone());
-            }
-            match self.balance(system, increment, watch) {
-                Ok(mut candidate) => {
-                    spent.add(&candidate.counts);
-                    if to == 1.0 {
-                        candidate.counts = spent;
-                        return Ok(candidate);
-                    }
-                    done = to;
-                    length = (2.0 * length).min(PART);
-                    last = Some(candidate);
-                }
-                Err(error) if length < SHORTEST || error.is_broken_off() => {
-                    return Err(error);
-                }
-                Err(_) => length *= 0.5,
-            }
-        }
-    }
-
     /// An increment at its first iterate: a guess of the displacement increments, under the committed
     /// contact forces. Under control the loading at the end is a first guess too.
     pub(crate) fn begin_increment<'a, 'c>(
@@ -275,6 +117,7 @@ impl<const D: usize> Driver<D> {
             solution: self.state.solution.clone(),
             chord: Chord::default(),
             held: Held::default(),
+            patience: None,
             counts: Counts {
                 solves: 1,
                 before: (system.factorisations, system.conjugate),
@@ -432,7 +275,7 @@ impl<const D: usize> Driver<D> {
     }
 
     /// # Errors
-    /// After too many iterations, or where they go round, or where forces are no numbers.
+    /// After too many iterations, or where they go round or stagnate, or where forces are no numbers.
     fn check_progress(
         &self,
         system: &System,
@@ -440,7 +283,11 @@ impl<const D: usize> Driver<D> {
         balance: &Balance<D>,
     ) -> Result<(), IncrementError> {
         let iteration = increment.counts.newton;
-        let ends = iteration >= self.settings.iterations || increment.counts.goes_round();
+        let counts = &increment.counts;
+        let wanders = |patience| counts.stagnates(patience) && balance.largest > balance.accepted;
+        let ends = iteration >= self.settings.iterations
+            || counts.goes_round()
+            || increment.patience.is_some_and(wanders);
         if ends && increment.counts.undetermined {
             // The motion that the statuses left free has no end.
             let source = ContactError::Singular;

@@ -62,6 +62,19 @@ impl Counts {
         }
     }
 
+    /// Whether the least residual has not been halved in so many iterations.
+    pub(crate) fn stagnates(&self, iterations: usize) -> bool {
+        let (mut least, mut since) = (f64::INFINITY, 0);
+        for &residual in &self.residuals {
+            if residual < 0.5 * least {
+                (least, since) = (residual, 0);
+            } else {
+                since += 1;
+            }
+        }
+        since >= iterations
+    }
+
     /// Whether the iterates go round: the residuals of the last two periods are those of the two before.
     pub(crate) fn goes_round(&self) -> bool {
         let back: Vec<f64> = self.residuals.iter().rev().copied().collect();
@@ -94,5 +107,16 @@ mod tests {
         assert!(!of(std::iter::repeat_n(3.0, 6)).goes_round());
         assert!(!of((0..40).map(|k| 0.9f64.powi(k))).goes_round());
         assert!(!of((0..40).map(|k| 2.0 + (f64::from(k)).sin())).goes_round());
+    }
+
+    #[test]
+    fn a_way_that_wanders_stagnates_and_one_that_is_slow_does_not() {
+        let wanders = |n: u32| of((0..n).map(|k| 2.0 + f64::from(k).sin()));
+        assert!(wanders(16).stagnates(15));
+        assert!(!wanders(15).stagnates(15));
+        assert!(!of((0..40).map(|k| 0.94f64.powi(k))).stagnates(15));
+        let arrives = [5.0, 4.0, 6.0, 3.0, 7.0, 2.0, 1e-3, 1e-8];
+        assert!(!of(arrives.into_iter().cycle().take(8)).stagnates(5));
+        assert!(of(std::iter::repeat_n(f64::NAN, 15)).stagnates(15));
     }
 }

@@ -1,7 +1,7 @@
 //! How steps are divided into increments, and what is told of them.
 
 use crate::steps::on_floor;
-use moreau_contact::{ContactSolver, Penalty, Plane, SemismoothNewton};
+use moreau_contact::{Ball, ContactSolver, Penalty, Plane, SemismoothNewton};
 use moreau_driver::{Axis, Driver, IncrementError, Increments, Model, Settings, Step};
 use moreau_laws::{Coulomb, Elastic, VonMises};
 use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
@@ -205,4 +205,40 @@ fn every_iteration_of_an_increment_is_counted() {
     let report = report.expect("converges");
     assert!(ways > 2 && report.cuts == 0, "{ways} {report:?}");
     assert_eq!(report.newton_iterations, told);
+}
+
+/// A roll that has bitten a strip and begins to turn makes all that it touches slip the other way at once: contacts that do
+/// not settle do when the increment is followed in parts, and iterates do not wander for it.
+#[test]
+fn contacts_that_turn_round_settle_in_parts() {
+    let (x, y) = (uniform(0.0, 20.0, 50), uniform(0.0, 1.0, 2));
+    let mesh = block2("strip", CellKind::Quad8, &x, &y).expect("valid");
+    let law = VonMises::new(70e3, 0.33, 100.0)
+        .and_then(|law| law.with_isotropic(100.0))
+        .expect("valid");
+    let roll = Ball::new([13.0, 61.0], 60.0).expect("valid");
+    let model = Model::with_large_strains(mesh, PlaneStrain::default())
+        .material("strip", law, Integration::Reduced)
+        .and_then(|m| m.tool("roll", roll))
+        .and_then(|m| m.contact("strip.top", "roll", Coulomb::new(0.15).expect("valid")))
+        .expect("valid");
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    let bite = Step::new("bite")
+        .fix("strip.bottom", &[Axis::Y])
+        .tool("roll", [0.0, -0.2]);
+    driver.run(&bite, 6, |_, _| {}).expect("bites");
+    let turn = bite.turn("roll", [0.0, 0.0, 1.0], 0.2f64.to_radians());
+    let mut ramp = driver.begin(&turn, 1).expect("valid");
+    let mut ways = 0;
+    let report = driver.proceed(&mut ramp, &mut |now| {
+        ways += usize::from(now.newton == 0);
+        ControlFlow::Continue(())
+    });
+    let report = report.expect("turns");
+    assert!(ways > 1, "the increment is too easy to tell");
+    assert!(
+        report.cuts == 0 && report.newton_iterations <= 40,
+        "{ways} ways, {} iterations",
+        report.newton_iterations
+    );
 }

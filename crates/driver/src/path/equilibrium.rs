@@ -1,0 +1,200 @@
+//! The equilibrium at the end of an increment, found at once or in parts along its loading, and committed; not the
+//! iteration that finds it.
+
+use crate::assembly::cell_law::Stiffness;
+use crate::driver::Driver;
+use crate::error::IncrementError;
+use crate::linear::system::System;
+use crate::model::load::Loading;
+use crate::newton::candidate::Candidate;
+use crate::report::counts::Counts;
+use crate::report::{IncrementReport, Iteration};
+use crate::vector::{SparseVector, largest};
+use std::ops::ControlFlow;
+
+/// Iterations in which a way to balance halves its residual: of 791 ways in the example decks that led there two took
+/// 12, and the others 8 at most; of those that did not, most took all they had (`moreau run --json-log`).
+const PATIENCE: usize = 15;
+
+/// Motion, over that of the increment before as often as the load grows, from which on a body may have snapped.
+const SNAP: f64 = 4.0;
+
+/// The same over the size of the mesh, below which nothing has.
+const STILL: f64 = 1e-6;
+
+/// Halvings of the part of the increment in which the body moves most, before it counts as one that snaps.
+const HALVINGS: usize = 4;
+
+/// Parts of an increment that is followed along its loading: the first, and the shortest.
+const PART: f64 = 0.25;
+const SHORTEST: f64 = 1.0 / 128.0;
+
+impl<const D: usize> Driver<D> {
+    /// Applies the increment from one loading to another and commits it; `watch` sees every
+    /// iterate.
+    pub(crate) fn increment(
+        &mut self,
+        system: &mut System,
+        start: &Loading<D>,
+        end: &Loading<D>,
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
+    ) -> Result<IncrementReport, IncrementError> {
+        let mut candidate = self.equilibrium(system, (start, end), watch)?;
+        self.check_passage(&candidate.d_u, end)?;
+        self.check_bodies(&candidate.d_u)?;
+        self.check_snap(system, (start, end), &candidate, watch)?;
+        candidate.counts = std::mem::take(&mut self.spent).with(candidate.counts);
+        let unstable = candidate.counts.negative > 0;
+        let mode = match unstable && !self.unstable {
+            true => self.unstable_mode(system, &candidate),
+            false => None,
+        };
+        let report = self.commit(start, end, candidate)?;
+        self.unstable = unstable;
+        Ok(IncrementReport { mode, ..report })
+    }
+
+    /// The equilibrium at the end of an increment: found at once or, under large strains, by following it along the
+    /// loading. First in quarters, none of which may wander, so that contacts that do not settle are given less to settle;
+    /// but a body that snaps is found where it has snapped to by iterates that have wandered for long, if at all.
+    fn equilibrium(
+        &mut self,
+        system: &mut System,
+        (start, end): (&Loading<D>, &Loading<D>),
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
+    ) -> Result<Candidate<D>, IncrementError> {
+        let follows = self.has_large_strains();
+        let guess = self.predictor(start, end);
+        let mut increment = self.begin_increment(system, (start, end), guess, None);
+        // Who gives a guess wants to go where it leads.
+        let is_guessed = self.guessed.is_some();
+        increment.patience = (follows && !is_guessed).then_some(PATIENCE);
+        let mut found = self.balance(system, increment, watch);
+        for patience in [Some(PATIENCE), None] {
+            let Err(error) = &found else { break };
+            if !follows
+                || matches!(error, IncrementError::Model(_))
+                || error.is_broken_off()
+                || patience.is_none() && self.condenses(system, error)
+            {
+                break;
+            }
+            match self.continued(system, (start, end), patience, watch) {
+                Err(other) if !other.is_broken_off() => {}
+                other => found = other,
+            }
+        }
+        found
+    }
+
+    /// Whether loads that grow, under large strains, have left the body near where it was: an equilibrium
+    /// beyond a limit of the load is that of another branch, which the path leads to.
+    ///
+    /// # Errors
+    /// [`IncrementError::Snap`].
+    fn check_snap(
+        &mut self,
+        system: &mut System,
+        (start, end): (&Loading<D>, &Loading<D>),
+        candidate: &Candidate<D>,
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
+    ) -> Result<(), IncrementError> {
+        let moves = start.displacement != end.displacement || start.turn != end.turn;
+        let stable = candidate.counts.negative == 0;
+        if moves || !stable || !self.has_large_strains() {
+            return Ok(());
+        }
+        let dofs = self.mesh_dofs();
+        let between =
+            |a: &[f64], b: &[f64]| largest(a.iter().zip(b).take(dofs).map(|(a, b)| a - b));
+        let rest = vec![0.0; candidate.d_u.len()];
+        let moved = between(&candidate.d_u, &rest);
+        let expected = between(&self.predictor(start, end), &rest);
+        // Of the first increment nothing is expected. One in which contact opens may pass a limit although no tangent of its
+        // iterates was indefinite.
+        let may_snap = expected > 0.0 || system.was_indefinite();
+        if !may_snap || moved <= SNAP * expected.max(STILL * self.mesh.size()) {
+            return Ok(());
+        }
+        // A body that yields moves less in less of the increment, one that snaps as much.
+        let (mut near, mut far) = ((0.0, rest), (1.0, candidate.d_u.clone()));
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (near.0 + far.0);
+            let here = start.towards(end, middle);
+            let increment = self.begin_increment(system, (start, &here), near.1.clone(), None);
+            let Candidate { d_u, counts, .. } = self.balance(system, increment, watch)?;
+            self.spent.add(&counts);
+            match between(&d_u, &near.1) > between(&far.1, &d_u) {
+                true => far = (middle, d_u),
+                false => near = (middle, d_u),
+            }
+        }
+        if between(&far.1, &near.1) > 0.5 * moved {
+            return Err(IncrementError::Snap { moved });
+        }
+        // What is committed is the last that was evaluated.
+        let none = SparseVector::default();
+        self.assemble(system, end, (&candidate.d_u, &none), Stiffness::None);
+        if self.repairs() {
+            self.pair_at(end, &candidate.d_u)?;
+        }
+        Ok(())
+    }
+
+    /// Finds the equilibrium at the end of an increment by following it along the loading, in parts: history stands
+    /// still, so that the equilibrium is that of one increment. Where a part may not go on for more than `patience`
+    /// iterations without halving its residual, none may fail, else parts shrink where they do.
+    ///
+    /// # Errors
+    /// That of a part as short as they may be.
+    fn continued(
+        &mut self,
+        system: &mut System,
+        (start, end): (&Loading<D>, &Loading<D>),
+        patience: Option<usize>,
+        watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
+    ) -> Result<Candidate<D>, IncrementError> {
+        let (mut done, mut length) = (0.0, PART);
+        let mut last: Option<Candidate<D>> = None;
+        let mut spent = Counts::default();
+        loop {
+            let to = if done + length < 1.0 - 0.5 * PART {
+                done + length
+            } else {
+                1.0
+            };
+            let here = start.towards(end, to);
+            let d_u = match &last {
+                Some(last) => last.d_u.clone(),
+                None => vec![0.0; self.state.displacement.len()],
+            };
+            let mut increment = self.begin_increment(system, (start, &here), d_u, None);
+            increment.patience = patience;
+            if let Some(last) = &last {
+                if self.repairs() {
+                    self.pair_at(&here, &last.d_u)?;
+                }
+                increment.iterate.contact =
+                    self.contact_forces(&last.kinematics, &last.solution.force);
+                increment.solution = Some(last.solution.clone());
+            }
+            match self.balance(system, increment, watch) {
+                Ok(mut candidate) => {
+                    spent.add(&candidate.counts);
+                    if to == 1.0 {
+                        candidate.counts = spent;
+                        return Ok(candidate);
+                    }
+                    done = to;
+                    length = (2.0 * length).min(PART);
+                    last = Some(candidate);
+                }
+                Err(error) if patience.is_some() || length < SHORTEST || error.is_broken_off() => {
+                    self.spent.add(&spent);
+                    return Err(error);
+                }
+                Err(_) => length *= 0.5,
+            }
+        }
+    }
+}
