@@ -215,21 +215,18 @@ impl Patch {
 
     /// Coordinates of its point nearest to x: of its inside, or of its edges.
     pub(super) fn nearest(&self, x: &Point) -> Vector2<f64> {
-        let flat = self.flat(x);
-        let out = match self.perpendicular(x, inwards(flat)) {
-            Ok(inside) => return inside,
-            Err(out) => out,
-        };
-        // Edge k is opposite corner k + 2.
-        let beyond = |k: &usize| [1.0 - out.x - out.y, out.x, out.y][(k + 2) % 3] < MET;
+        if let Some(inside) = self.perpendicular(x, inwards(self.flat(x))) {
+            return inside;
+        }
         let far = |at: &Vector2<f64>| (self.at(at).x - x).norm_squared();
-        let on_edges = (0..3).filter(beyond).map(|k| self.on_edge(x, k));
-        let nearest = on_edges.min_by(|a, b| far(a).total_cmp(&far(b)));
-        nearest.unwrap_or(out)
+        // Where a search for the perpendicular ends does not tell which edge is the nearest.
+        let [a, b, c] = [0, 1, 2].map(|k| self.on_edge(x, k));
+        let nearer = |p, q| if far(&p) <= far(&q) { p } else { q };
+        nearer(nearer(a, b), c)
     }
 
-    /// Where inside a perpendicular to the patch meets x, by Newton's method; or how far beyond its edges one may be.
-    fn perpendicular(&self, x: &Point, start: Vector2<f64>) -> Result<Vector2<f64>, Vector2<f64>> {
+    /// Where inside a perpendicular to the patch meets x, by Newton's method.
+    fn perpendicular(&self, x: &Point, start: Vector2<f64>) -> Option<Vector2<f64>> {
         let mut at = start;
         for _ in 0..STEPS {
             let jet = self.at(&at);
@@ -238,20 +235,17 @@ impl Patch {
             let whole = metric - jet.second(&(x - jet.x));
             // Where the distance is no valley, as a plane patch would have it.
             let valley = whole.determinant() > 0.0 && whole.trace() > 0.0;
-            let step = if valley { whole } else { metric }.try_inverse();
-            let Some(step) = step.map(|inverse| inverse * slope) else {
-                return Err(at);
-            };
+            let step = if valley { whole } else { metric }.try_inverse()? * slope;
             at += step * (LONGEST / step.amax()).min(1.0);
             let inside = least(&at);
             if inside.is_nan() || inside <= -BEYOND {
-                return Err(at);
+                return None;
             }
             if step.amax() < MET {
-                return if least(&at) > -MET { Ok(at) } else { Err(at) };
+                return (inside > -MET).then_some(at);
             }
         }
-        Err(at)
+        None
     }
 
     /// Coordinates of the point of edge k nearest to x.

@@ -150,6 +150,14 @@ fn normals_are_continuous_across_smooth_edges() {
     }
 }
 
+/// Opposite an edge, where the search for a perpendicular leaves both triangles beside it through another one.
+#[test]
+fn the_nearest_edge_is_met_wherever_the_search_ends() {
+    let x = Point::new(0.7785016097511112, -0.2596892675529314, -0.2391723488813726);
+    let distance = surface(&cube()).distance(&x);
+    assert!((distance - x.y.hypot(x.z)).abs() < 1e-15, "{distance}");
+}
+
 /// A mantle is round, its ends are plane, and both meet along a round edge.
 #[test]
 fn a_can_has_sharp_edges() {
