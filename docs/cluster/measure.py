@@ -2,10 +2,12 @@
 are those of the embedded engine; no part of moreau.
 
     python3 docs/cluster/measure.py MOREAU DECK DIR [PROCESSES ...]
+    python3 docs/cluster/measure.py --beside MOREAU DECK DIR
     python3 docs/cluster/measure.py --table DIR
 
-MOREAU is a command built with the feature `distributed`; 0 processes are the embedded engine. The table has all runs that
-are in DIR, those of earlier calls among them. Memory is the largest that a process has held, and processor time
+MOREAU is a command built with the feature `distributed`; 0 processes are the embedded engine. With --beside two runs of one
+process each are started at once: what they take more than one alone is not what processes wait for each other, but what
+processors take from each other. The table has all runs that are in DIR, those of earlier calls among them. Memory is the largest that a process has held, and processor time
 that of the program in its own code and in the system's, both as the system tells them of a process that has ended.
 """
 
@@ -17,7 +19,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-MPI = ["mpirun", "--oversubscribe", "-n"]
+# Not bound: runs at once would be bound to the same core.
+MPI = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n"]
 COLUMNS = "processes | processor [s] | largest memory [MB] | factors | iterations | forces | statuses"
 
 
@@ -53,17 +56,30 @@ def compare(first, second):
     return worst / largest, other
 
 
+def command(moreau, deck, out, mark, count):
+    # As many threads as each process of several has.
+    own = [moreau, "run", deck, "--out", str(out), "--force", "--quiet", "--threads", "1"]
+    own = [sys.executable, __file__, "--one", str(mark), *own]
+    return [*MPI, str(count), *own] if count else own
+
+
 def run(moreau, deck, directory, count):
     mark = Path(directory, f"took-{count}")
     for old in Path(directory).glob(f"took-{count}-*"):
         old.unlink()
-    # As many threads as each process of several has.
-    command = [moreau, "run", deck, "--out", str(results(directory, count)), "--force", "--quiet", "--threads", "1"]
-    command = [sys.executable, __file__, "--one", str(mark), *command]
-    command = [*MPI, str(count), *command] if count else command
-    outcome = subprocess.run(command, check=False).returncode
+    own = command(moreau, deck, results(directory, count), mark, count)
+    outcome = subprocess.run(own, check=False).returncode
     if outcome != 0:
         sys.exit(f"{deck} on {count} processes: status {outcome}")
+
+
+def beside(moreau, deck, directory):
+    Path(directory).mkdir(parents=True, exist_ok=True)
+    places = [Path(directory, f"beside-{side}") for side in ("left", "right")]
+    runs = [subprocess.Popen(command(moreau, deck, at, f"{at}-took", 1)) for at in places]
+    if any([run.wait() for run in runs]):
+        sys.exit(f"{deck} twice at once: a run failed")
+    table(directory)
 
 
 def table(directory):
@@ -84,6 +100,9 @@ def table(directory):
     for what, of, count in [("memory", largest, 4), ("processor time", sums, 2)]:
         if 1 in of and count in of:
             print(f"{what} on {count} over that on 1: {of[count] / of[1]:.2f}")
+    both = [float(f.read_text().split()[1]) for f in Path(directory).glob("beside-*-took-0")]
+    if both and 1 in sums:
+        print(f"processor time of two runs on 1 at once over that of one, twice: {sum(both) / (2 * sums[1]):.2f}")
 
 
 def main(moreau, deck, directory, counts):
@@ -97,6 +116,8 @@ if __name__ == "__main__":
     match sys.argv[1:]:
         case ["--one", mark, *command]:
             one(mark, command)
+        case ["--beside", moreau, deck, directory]:
+            beside(moreau, deck, directory)
         case ["--table", directory]:
             table(directory)
         case [moreau, deck, directory, *counts]:
