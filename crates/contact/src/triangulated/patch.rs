@@ -218,30 +218,44 @@ impl Patch {
         if let Some(inside) = self.perpendicular(x, inwards(self.flat(x))) {
             return inside;
         }
-        let far = |at: &Vector2<f64>| (self.at(at).x - x).norm_squared();
-        // Where a search for the perpendicular ends does not tell which edge is the nearest.
-        let [a, b, c] = [0, 1, 2].map(|k| self.on_edge(x, k));
+        let far = |at: &Vector2<f64>| (self.at(at).x - x).norm();
         let nearer = |p, q| if far(&p) <= far(&q) { p } else { q };
-        nearer(nearer(a, b), c)
+        // Where a search for the perpendicular ends does not tell which edge is the nearest.
+        let edges = [0, 1, 2].map(|k| self.on_edge(x, k));
+        let [a, b, c] = edges;
+        let edge = nearer(nearer(a, b), c);
+        if far(&edge) <= self.away(x) {
+            return edge;
+        }
+        // A bent patch may be nearer inside, where a search from its middle does not come to.
+        let inside = edges.map(|edge| self.perpendicular(x, inwards(edge)));
+        inside.into_iter().flatten().fold(edge, nearer)
     }
 
-    /// Where inside a perpendicular to the patch meets x, by Newton's method.
+    /// Where inside a perpendicular to the patch meets x, by Newton's method on the distance, which falls with every
+    /// step.
     fn perpendicular(&self, x: &Point, start: Vector2<f64>) -> Option<Vector2<f64>> {
-        let mut at = start;
+        let (mut at, mut jet) = (start, self.at(&start));
         for _ in 0..STEPS {
-            let jet = self.at(&at);
-            let slope = jet.d.transpose() * (x - jet.x);
+            let from = x - jet.x;
+            let slope = jet.d.transpose() * from;
             let metric = jet.d.transpose() * jet.d;
-            let whole = metric - jet.second(&(x - jet.x));
+            let whole = metric - jet.second(&from);
             // Where the distance is no valley, as a plane patch would have it.
             let valley = whole.determinant() > 0.0 && whole.trace() > 0.0;
             let step = if valley { whole } else { metric }.try_inverse()? * slope;
-            at += step * (LONGEST / step.amax()).min(1.0);
+            let step = step * (LONGEST / step.amax()).min(1.0);
+            let parts = (0..HALVINGS).map(|k| at + step * 0.5f64.powi(k));
+            let mut tried = parts.map(|at| (at, self.at(&at)));
+            let falls = |jet: &Jet| (x - jet.x).norm_squared() <= ROUNDED * from.norm_squared();
+            let moved = tried.find(|(_, jet)| falls(jet));
+            let met = step.amax() < MET || moved.is_none();
+            (at, jet) = moved.unwrap_or((at, jet));
             let inside = least(&at);
             if inside.is_nan() || inside <= -BEYOND {
                 return None;
             }
-            if step.amax() < MET {
+            if met {
                 return (inside > -MET).then_some(at);
             }
         }
@@ -278,6 +292,12 @@ const STEPS: usize = 30;
 
 /// Largest step of it, in coordinates of the patch.
 const LONGEST: f64 = 0.3;
+
+/// What the square of a distance may become of rounding.
+const ROUNDED: f64 = 1.0 + 1e-12;
+
+/// Halvings of a step after which the distance is as small as rounding lets it be.
+const HALVINGS: i32 = 12;
 
 /// How far beyond its edges a patch is followed.
 const BEYOND: f64 = 0.5;

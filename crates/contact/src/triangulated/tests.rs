@@ -69,6 +69,23 @@ fn can(n: usize) -> Skin {
     (points, faces.collect())
 }
 
+/// The torus of radii 3 and 1 around the axis z, of n by n quadrangles.
+fn torus(n: usize) -> Skin {
+    let angle = |k: usize| TAU * k as f64 / n as f64;
+    let points = (0..n * n).map(|k| {
+        let ((s, c), (z, r)) = (angle(k / n).sin_cos(), angle(k % n).sin_cos());
+        [(3.0 + r) * c, (3.0 + r) * s, z]
+    });
+    let faces = (0..n * n).flat_map(|k| {
+        let at = |i: usize, j: usize| (k / n + i) % n * n + (k % n + j) % n;
+        [
+            [at(0, 0), at(1, 0), at(1, 1)],
+            [at(0, 0), at(1, 1), at(0, 1)],
+        ]
+    });
+    (points.collect(), faces.collect())
+}
+
 fn cube() -> Skin {
     let points = (0..8).map(|k| [k & 1, (k >> 1) & 1, k >> 2].map(|b| b as f64));
     let sides = [
@@ -195,6 +212,22 @@ proptest! {
         prop_assert!((cube.clone().hollow().distance(&x) + exact).abs() < 1e-12);
         if exact > 0.05 {
             prop_assert!((x - cube.normal(&x) * exact).iter().all(|v| (-1e-12..1.0 + 1e-12).contains(v)));
+        }
+    }
+
+    /// No point of a curved surface is nearer than that which is found, from inside and from outside.
+    #[test]
+    fn of_all_points_the_nearest_is_met(x in prop::array::uniform3(-4.5..4.5f64), which in 0..4usize) {
+        let skin = vec![ball(0), ball(1), can(8), torus(8)].swap_remove(which);
+        let (surface, x) = (surface(&skin), Point::from(x));
+        let found = surface.distance(&x).abs();
+        let n = 8;
+        for patch in &surface.patches {
+            for (i, j) in (0..=n).flat_map(|i| (0..=n - i).map(move |j| (i, j))) {
+                let at = Vector2::new(f64::from(i), f64::from(j)) / f64::from(n);
+                let there = (patch.at(&at).x - x).norm();
+                prop_assert!(found <= there + 1e-12, "{found} {there} {at}");
+            }
         }
     }
 
