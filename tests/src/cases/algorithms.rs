@@ -49,8 +49,9 @@ const PENALTY: f64 = 1e8;
 /// Natural-map residual over the largest force at which the paper's nesting accepts an increment.
 const OUTER_TOLERANCE: f64 = 1e-6;
 
-/// Runs of every method of which the fastest counts: the others met another program.
-const REPETITIONS: usize = 15;
+/// Runs of every method of which the fastest counts, the others met another program; in a quick run, which does not
+/// judge times, fewer.
+const REPETITIONS: [usize; 2] = [15, 2];
 
 /// A method under comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,9 +107,9 @@ fn press(
 
 /// Shortest time of a method over some repetitions, in turn with the others so that all meet the
 /// same machine.
-fn fastest(cells: [usize; 2], increments: usize) -> Result<[f64; 4], Box<dyn Error>> {
+fn fastest(cells: [usize; 2], increments: usize, quick: bool) -> Result<[f64; 4], Box<dyn Error>> {
     let mut best = [f64::INFINITY; 4];
-    for _ in 0..REPETITIONS {
+    for _ in 0..REPETITIONS[usize::from(quick)] {
         for (method, best) in Method::ALL.into_iter().zip(&mut best) {
             let settings = Settings {
                 contact: method.solver()?,
@@ -318,7 +319,7 @@ fn times(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
     ] {
         let count = cells[0] * cells[1];
         (options.progress)(&format!("times, {count} cells, {increments} increments"));
-        let seconds = fastest(cells, increments)?;
+        let seconds = fastest(cells, increments, options.quick)?;
         for (method, time) in Method::ALL.into_iter().zip(seconds) {
             rows.push([
                 method.name().into(),

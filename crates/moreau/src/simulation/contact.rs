@@ -153,7 +153,7 @@ pub(super) fn table<const D: usize>(driver: &Driver<D>, units: Units, stage: usi
         values,
     };
     // The last column is one of the plane alone.
-    debug_assert_eq!(values.len(), COLUMNS.len() - usize::from(D == 3));
+    assert_eq!(values.len(), COLUMNS.len() - usize::from(D == 3));
     Table::new(COLUMNS.iter().zip(values).map(column).collect())
 }
 
