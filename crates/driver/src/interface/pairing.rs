@@ -2,7 +2,7 @@
 
 use crate::driver::Driver;
 use crate::error::ModelError;
-use crate::model::Contact;
+use crate::model::contact::Contact;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::ContactPoint;

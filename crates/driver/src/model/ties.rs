@@ -1,8 +1,10 @@
 //! Ties: surfaces of two bodies held together as they are at first; not contact.
 
 use crate::error::ModelError;
+use crate::model::Model;
+use crate::model::analysis::Analysis;
+use crate::model::contact::Contact;
 use crate::model::motion_row::RelativeMotionRow;
-use crate::model::{Analysis, Contact, Model};
 use moreau_laws::Tie;
 use moreau_mesh::{Facet, Mesh, Pairing};
 use nalgebra::SVector;
