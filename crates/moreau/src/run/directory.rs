@@ -4,7 +4,7 @@
 use super::files::read_text;
 use super::{CHECKPOINTS, RESOLVED, RUN, RunError, checkpoint, vtu};
 use std::fs::{self, File, OpenOptions, TryLockError};
-use std::io::Write;
+use std::io::{Seek, Write};
 use std::path::{Component, Path, PathBuf};
 use std::time::Duration;
 
@@ -52,7 +52,8 @@ impl Directory {
         fs::create_dir_all(path).map_err(|source| write(path, source))?;
         let at = path.join(LOCK);
         let mut options = OpenOptions::new();
-        let lock = options.read(true).append(true).create(true).open(&at);
+        let options = options.read(true).write(true).create(true);
+        let lock = options.truncate(false).open(&at);
         let lock = lock.map_err(|source| write(&at, source))?;
         let exclusive = match lock.try_lock() {
             Ok(()) => true,
@@ -109,10 +110,12 @@ impl Directory {
             name => format!(" on {name}"),
         };
         text.push_str(&format!("process {}{host}\n", std::process::id()));
+        // At no moment is it empty: others read it.
         let mut file = &self.lock;
         let written = file
-            .set_len(0)
-            .and_then(|()| file.write_all(text.as_bytes()));
+            .rewind()
+            .and_then(|()| file.write_all(text.as_bytes()))
+            .and_then(|()| file.set_len(text.len() as u64));
         written.map_err(|source| RunError::Write {
             path: self.path.join(LOCK),
             source,
@@ -156,22 +159,23 @@ fn recorded(directory: &Path) -> Option<String> {
 /// An error if a directory holds what a run of a deck would overwrite or remove, and is not that
 /// deck's.
 fn refuse_others(directory: &Path, deck: &Path) -> Result<(), RunError> {
-    let recorded = recorded(directory);
-    if recorded.as_deref() == Some(&*relative(deck, directory)) {
-        return Ok(());
-    }
     let entries = fs::read_dir(directory).into_iter().flatten().flatten();
     let names = entries.map(|e| e.file_name().to_string_lossy().into_owned());
     let ours = |name: &String| FILES.contains(&&**name) || name == vtu::LIST || vtu::is_ours(name);
     let checkpoint = checkpoint::list(&directory.join(CHECKPOINTS));
     let file = names.filter(ours).min().map(|name| directory.join(name));
-    match file.or(checkpoint.into_iter().next()) {
-        None => Ok(()),
-        Some(file) => Err(RunError::NotOurs {
-            file,
-            deck: recorded.map(|deck| directory.join(deck)),
-        }),
+    let Some(file) = file.or(checkpoint.into_iter().next()) else {
+        return Ok(());
+    };
+    // Read after the files were seen: who writes here at this moment has signed before them.
+    let recorded = recorded(directory);
+    if recorded.as_deref() == Some(&*relative(deck, directory)) {
+        return Ok(());
     }
+    Err(RunError::NotOurs {
+        file,
+        deck: recorded.map(|deck| directory.join(deck)),
+    })
 }
 
 /// A deck's path seen from a directory, so that it stays the same when both are moved.
