@@ -227,7 +227,7 @@ impl Patch {
         if far(&edge) <= self.away(x) {
             return edge;
         }
-        // A bent patch may be nearer inside, where a search from its middle does not come to.
+        // A bent patch may be nearer inside, where a search from its middle does not lead.
         let inside = edges.map(|edge| self.perpendicular(x, inwards(edge)));
         inside.into_iter().flatten().fold(edge, nearer)
     }

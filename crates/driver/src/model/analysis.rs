@@ -47,41 +47,27 @@ where
     Some(Box::new(cells))
 }
 
-/// The elements of the plane.
-fn plane<H: Hypothesis<2>>(
-    h: &H,
-    mesh: &Mesh<2>,
-    kind: CellKind,
-    of: &[usize],
-    rule: Integration,
-) -> Option<Box<dyn Cells<2>>> {
-    match kind {
-        CellKind::Tri3 => cells::<Tri3, H, 2, 3>(h, mesh, of, rule),
-        CellKind::Tri6 => cells::<Tri6, H, 2, 6>(h, mesh, of, rule),
-        CellKind::Quad4 => cells::<Quad4, H, 2, 4>(h, mesh, of, rule),
-        CellKind::Quad8 => cells::<Quad8, H, 2, 8>(h, mesh, of, rule),
-        CellKind::Quad9 => cells::<Quad9, H, 2, 9>(h, mesh, of, rule),
-        _ => None,
-    }
+macro_rules! elements {
+    ($name:ident, $dimension:literal: $($element:ident with $nodes:literal),*) => {
+        fn $name<H: Hypothesis<$dimension>>(
+            hypothesis: &H,
+            mesh: &Mesh<$dimension>,
+            kind: CellKind,
+            of: &[usize],
+            integration: Integration,
+        ) -> Option<Box<dyn Cells<$dimension>>> {
+            match kind {
+                $(CellKind::$element => {
+                    cells::<$element, H, $dimension, $nodes>(hypothesis, mesh, of, integration)
+                })*
+                _ => None,
+            }
+        }
+    };
 }
 
-/// The elements of space.
-fn space<H: Hypothesis<3>>(
-    h: &H,
-    mesh: &Mesh<3>,
-    kind: CellKind,
-    of: &[usize],
-    rule: Integration,
-) -> Option<Box<dyn Cells<3>>> {
-    match kind {
-        CellKind::Tet4 => cells::<Tet4, H, 3, 4>(h, mesh, of, rule),
-        CellKind::Tet10 => cells::<Tet10, H, 3, 10>(h, mesh, of, rule),
-        CellKind::Hex8 => cells::<Hex8, H, 3, 8>(h, mesh, of, rule),
-        CellKind::Hex20 => cells::<Hex20, H, 3, 20>(h, mesh, of, rule),
-        CellKind::Hex27 => cells::<Hex27, H, 3, 27>(h, mesh, of, rule),
-        _ => None,
-    }
-}
+elements!(plane, 2: Tri3 with 3, Tri6 with 6, Quad4 with 4, Quad8 with 8, Quad9 with 9);
+elements!(space, 3: Tet4 with 4, Tet10 with 10, Hex8 with 8, Hex20 with 20, Hex27 with 27);
 
 /// A law as it is.
 fn solid<L: BulkLaw, const D: usize>(
