@@ -224,7 +224,7 @@ impl Patch {
         let edges = [0, 1, 2].map(|k| self.on_edge(x, k));
         let [a, b, c] = edges;
         let edge = nearer(nearer(a, b), c);
-        if far(&edge) <= self.away(x) {
+        if far(&edge) <= self.away(x) || edges.iter().all(|at| self.at(at).is_valley(x)) {
             return edge;
         }
         // A bent patch may be nearer inside, where a search from its middle does not lead.
@@ -232,30 +232,24 @@ impl Patch {
         inside.into_iter().flatten().fold(edge, nearer)
     }
 
-    /// Where inside a perpendicular to the patch meets x, by Newton's method on the distance, which falls with every
-    /// step.
+    /// Where inside a perpendicular to the patch meets x, by Newton's method.
     fn perpendicular(&self, x: &Point, start: Vector2<f64>) -> Option<Vector2<f64>> {
-        let (mut at, mut jet) = (start, self.at(&start));
+        let mut at = start;
         for _ in 0..STEPS {
+            let jet = self.at(&at);
             let from = x - jet.x;
             let slope = jet.d.transpose() * from;
             let metric = jet.d.transpose() * jet.d;
             let whole = metric - jet.second(&from);
             // Where the distance is no valley, as a plane patch would have it.
-            let valley = whole.determinant() > 0.0 && whole.trace() > 0.0;
-            let step = if valley { whole } else { metric }.try_inverse()? * slope;
-            let step = step * (LONGEST / step.amax()).min(1.0);
-            let parts = (0..HALVINGS).map(|k| at + step * 0.5f64.powi(k));
-            let mut tried = parts.map(|at| (at, self.at(&at)));
-            let falls = |jet: &Jet| (x - jet.x).norm_squared() <= ROUNDED * from.norm_squared();
-            let moved = tried.find(|(_, jet)| falls(jet));
-            let met = step.amax() < MET || moved.is_none();
-            (at, jet) = moved.unwrap_or((at, jet));
+            let bent = if is_valley(&whole) { whole } else { metric };
+            let step = bent.try_inverse()? * slope;
+            at += step * (LONGEST / step.amax()).min(1.0);
             let inside = least(&at);
             if inside.is_nan() || inside <= -BEYOND {
                 return None;
             }
-            if met {
+            if step.amax() < MET {
                 return (inside > -MET).then_some(at);
             }
         }
@@ -292,12 +286,6 @@ const STEPS: usize = 30;
 
 /// Largest step of it, in coordinates of the patch.
 const LONGEST: f64 = 0.3;
-
-/// What the square of a distance may become of rounding.
-const ROUNDED: f64 = 1.0 + 1e-12;
-
-/// Halvings of a step after which the distance is as small as rounding lets it be.
-const HALVINGS: i32 = 12;
 
 /// How far beyond its edges a patch is followed.
 const BEYOND: f64 = 0.5;
@@ -345,7 +333,17 @@ fn share(p: f64, q: f64) -> [f64; 6] {
     ]
 }
 
+/// Whether second derivatives are those of a valley.
+fn is_valley(whole: &Matrix2<f64>) -> bool {
+    whole.determinant() > 0.0 && whole.trace() > 0.0
+}
+
 impl Jet {
+    /// Whether the distance from x is a valley here.
+    fn is_valley(&self, x: &Point) -> bool {
+        is_valley(&(self.d.transpose() * self.d - self.second(&(x - self.x))))
+    }
+
     /// The unit normal, to the left of the first two corners seen from the third: out of the surface where corners
     /// go round counter-clockwise.
     pub(super) fn normal(&self) -> Option<Point> {
