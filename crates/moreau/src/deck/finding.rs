@@ -201,6 +201,13 @@ impl Findings {
         &mut self.list[at]
     }
 
+    /// Takes back what was found at a place, by its message.
+    pub(super) fn take_back(&mut self, span: &Range<usize>, message: &str) -> Option<Finding> {
+        let this = |f: &Finding| f.span == *span && f.message == message;
+        let at = self.list.iter().position(this)?;
+        Some(self.list.remove(at))
+    }
+
     /// All of them.
     pub fn iter(&self) -> impl Iterator<Item = &Finding> {
         self.list.iter()
@@ -303,16 +310,22 @@ impl Findings {
     }
 }
 
+/// The candidate that is near to a name. One that has no letter of it is not.
+pub(super) fn near<'a>(
+    name: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
+    let near = crate::mesh::nearest(name, candidates);
+    let lower = name.to_lowercase();
+    near.filter(|n| lower.chars().any(|c| n.to_lowercase().contains(c)))
+}
+
 /// `"; did you mean \"…\"?"`, if there is anything near.
 pub(super) fn did_you_mean<'a>(
     name: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> String {
-    let near = crate::mesh::nearest(name, candidates);
-    // A name that has no letter of the other is not near.
-    let lower = name.to_lowercase();
-    let near = near.filter(|n| lower.chars().any(|c| n.to_lowercase().contains(c)));
-    near.map_or_else(String::new, |n| format!("; did you mean \"{n}\"?"))
+    near(name, candidates).map_or_else(String::new, |n| format!("; did you mean \"{n}\"?"))
 }
 
 /// `"a", "b" or "c"`.

@@ -1,7 +1,7 @@
 //! Reading tables and values of a deck, noting what is not as expected; it knows no key.
 
 use super::entries::FieldEntry;
-use super::finding::{At, Class, Findings, did_you_mean, one_of};
+use super::finding::{At, Class, Findings, did_you_mean, near, one_of};
 use super::formula::{self, Mistake};
 use std::cell::{Cell, Ref, RefCell, RefMut};
 use std::collections::{BTreeMap, BTreeSet};
@@ -165,6 +165,8 @@ pub(super) struct Table<'a> {
     /// What it is called in messages.
     name: String,
     known: RefCell<Vec<&'static str>>,
+    /// Keys that must be there and are not, with what was said of them.
+    missing: RefCell<Vec<(&'static str, String)>>,
     log: &'a Log,
 }
 
@@ -180,6 +182,7 @@ impl<'a> Table<'a> {
             span,
             name: name.into(),
             known: RefCell::default(),
+            missing: RefCell::default(),
             log,
         }
     }
@@ -208,17 +211,14 @@ impl<'a> Table<'a> {
     pub(super) fn need(&self, key: &'static str, expected: &str) -> Option<Value<'a>> {
         let value = self.get(key);
         if value.is_none() {
-            self.log
-                .borrow_mut()
-                .error(
-                    &self.span,
-                    format!(
-                        "{} has no key \"{key}\", expected {key} = {expected}",
-                        self.name
-                    ),
-                    format!("\"{key}\" is missing here"),
-                )
+            let name = &self.name;
+            let message = format!("{name} has no key \"{key}\", expected {key} = {expected}");
+            let label = format!("\"{key}\" is missing here");
+            let mut findings = self.log.borrow_mut();
+            findings
+                .error(&self.span, &message, label)
                 .about(Class::Keys);
+            self.missing.borrow_mut().push((key, message));
         }
         value
     }
@@ -235,25 +235,29 @@ impl<'a> Table<'a> {
         list
     }
 
-    /// Reports the keys that were never asked for.
+    /// Reports the keys that were never asked for, and with one of them a missing one that it is near to.
     pub(super) fn finish(self) {
-        let known = self.known.borrow();
+        let (known, missing) = (self.known.borrow(), self.missing.borrow());
         for (key, _) in self.entries() {
-            if !known.contains(&key.value.as_str()) {
-                let meant = SYMBOLS
-                    .iter()
-                    .find(|s| s.0 == key.value && known.contains(&s.1));
-                let given = meant.map_or(key.value.as_str(), |s| s.1);
-                let near = did_you_mean(given, known.iter().copied());
-                self.log
-                    .borrow_mut()
-                    .error_with(
-                        &key.span,
-                        format!("unknown key \"{}\" in {}{near}", key.value, self.name),
-                        "not a key here",
-                        format!("{} has the keys {}", self.name, known.join(", ")),
-                    )
-                    .about(Class::Keys);
+            if known.contains(&key.value.as_str()) {
+                continue;
+            }
+            let symbol = |s: &&(&str, &str)| s.0 == key.value && known.contains(&s.1);
+            let given = SYMBOLS.iter().find(symbol).map_or(&*key.value, |s| s.1);
+            let near = near(given, known.iter().copied());
+            let mut findings = self.log.borrow_mut();
+            let wanted = missing.iter().find(|m| Some(m.0) == near);
+            let wanted = wanted.and_then(|m| findings.take_back(&self.span, &m.1));
+            let meant = did_you_mean(given, known.iter().copied());
+            let unknown = findings.error_with(
+                &key.span,
+                format!("unknown key \"{}\" in {}{meant}", key.value, self.name),
+                "not a key here",
+                format!("{} has the keys {}", self.name, known.join(", ")),
+            );
+            unknown.about(Class::Keys);
+            if let Some(wanted) = wanted {
+                unknown.and_at(&wanted.span, wanted.label);
             }
         }
     }

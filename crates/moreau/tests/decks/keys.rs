@@ -12,12 +12,6 @@ fn unknown_keys_and_values_name_the_nearest() {
         &["unknown key \"poison\"", "did you mean \"poisson\"?"],
     );
     says(
-        "poisson",
-        "poison",
-        "[[material]]",
-        &["has no key \"poisson\""],
-    );
-    says(
         "units = \"mm-N-MPa\"",
         "units = \"mm-N-Mpa\"",
         "units =",
@@ -52,6 +46,29 @@ fn unknown_keys_and_values_name_the_nearest() {
         "[[tols]]\na = 1\n[[tool]]",
         "[[tols]]",
         &["did you mean \"tool\"?"],
+    );
+}
+
+/// A misspelt key that must be there is one mistake, not an unknown key and a missing one.
+#[test]
+fn a_misspelt_key_is_told_once() {
+    let place = "\"poisson\" is missing here";
+    says("poisson", "poison", "poison", &[place]);
+    let out = shown("poisson", "poison");
+    assert!(
+        out.matches("error: ").count() == 1 && !out.contains("has no key"),
+        "{out}"
+    );
+    let out = shown("poisson = 0.3", "poison = 0.3\npoissson = 0.3");
+    assert!(
+        out.matches("error: ").count() == 2 && !out.contains("has no key"),
+        "{out}"
+    );
+    // What is near to another key is missing all the same.
+    let out = shown("poisson = 0.3", "yuong = 0.3");
+    assert!(
+        out.contains("has no key \"poisson\"") && out.contains("unknown key \"yuong\""),
+        "{out}"
     );
 }
 

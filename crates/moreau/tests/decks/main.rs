@@ -119,7 +119,7 @@ fn all_errors_are_shown_at_once() {
         .replace("on = \"punch\"", "on = \"pinch\"");
     let (_, problem, findings) = open(&text);
     let out = findings.render("deck.toml", &text, false);
-    assert!(problem.is_none() && findings.errors() == 5, "{out}");
+    assert!(problem.is_none() && findings.errors() == 4, "{out}");
     for word in ["0.7", "frixion", "pinch", "botom"] {
         assert!(out.contains(word), "{word} in {out}");
     }
