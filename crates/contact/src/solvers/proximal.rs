@@ -133,7 +133,7 @@ impl<const D: usize> LocalSolver<D> for ProximalNewton {
         let (mut iterations, mut problems, mut idle) = (0, 0, 0);
         while best.size() > tolerance && iterations < limit && idle < PATIENCE {
             let size = now.residual.size();
-            let target = (TARGET * size).clamp(0.3 * tolerance, 1.0);
+            let target = (TARGET * size).min(1.0).max(0.3 * tolerance);
             let run = path.softened(problem, size, target);
             iterations += run.iterations.max(1);
             let reached = run.residual <= target;

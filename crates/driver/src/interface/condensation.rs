@@ -151,7 +151,9 @@ impl InFrames {
             }
         }
         let transformation = rows.finish(D * points.len());
-        let springs: Vec<f64> = suspended.iter().map(|s| s.spring(&stiffness)).collect();
+        let of_node = system.shift();
+        let springs = suspended.iter().map(|s| s.spring(&stiffness, of_node));
+        let springs: Vec<f64> = springs.collect();
         let mut stiffness = transformation.congruence(stiffness);
         let mut load = transformation.transposed(load);
         for (own, spring) in suspended.iter().zip(springs) {

@@ -40,7 +40,11 @@ const STIFFER: f64 = 30.0;
 /// The same at most, where contacts answer steeply.
 const STIFFEST: f64 = 1e6;
 
-/// k \[N/mm\] for a stiffness of the unknowns and the [`steepness`] of friction.
+/// Least stiffness of the unknowns that a spring is measured by, over that of a node: a tool that a force drives has none
+/// of its own, or that of its turning forces, which may be negative.
+const SOFTEST: f64 = 0.01;
+
+/// k \[N/mm\] for a positive stiffness of the unknowns and the [`steepness`] of friction.
 pub(crate) fn spring(stiffness: f64, steepness: f64) -> f64 {
     STIFFER * steepness.clamp(stiffness, STIFFEST / STIFFER * stiffness)
 }
@@ -62,11 +66,11 @@ pub(crate) fn steepness<const D: usize>(
 }
 
 impl Suspended {
-    /// k \[N/mm\], from the diagonal of the stiffness of the unknowns.
-    pub(crate) fn spring(&self, stiffness: &DMatrix<f64>) -> f64 {
+    /// k \[N/mm\], from the diagonal of the stiffness of the unknowns, and that of a node.
+    pub(crate) fn spring(&self, stiffness: &DMatrix<f64>, of_node: f64) -> f64 {
         let entries = self.measure.iter();
-        let entries = entries.map(|(&x, c)| c * c * stiffness[(x, x)]);
-        spring(entries.sum(), self.steepness)
+        let own: f64 = entries.map(|(&x, c)| c * c * stiffness[(x, x)]).sum();
+        spring(own.abs().max(SOFTEST * of_node), self.steepness)
     }
 
     /// Adds ½ k e² + t₀ e to a stiffness and a load whose first unknowns are the components of all
@@ -85,5 +89,33 @@ impl Suspended {
                 stiffness[(i, j)] += k * a * b;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tool that a force drives has no stiffness, or a negative one; its spring holds all the same, and is the stiffer the
+    /// steeper friction is.
+    #[test]
+    fn a_spring_is_stiffer_than_what_has_no_stiffness() {
+        let of = |own: f64, steepness: f64| {
+            let suspended = Suspended {
+                component: 0,
+                row: BTreeMap::from([(0, 2.0)]),
+                force: 0.0,
+                measure: BTreeMap::from([(0, 2.0)]),
+                steepness,
+            };
+            suspended.spring(&DMatrix::from_element(1, 1, own), 1e5)
+        };
+        for own in [0.0, -1e-11, 1e-11, -27.0, f64::NAN] {
+            assert_eq!(of(own, 0.0), STIFFER * SOFTEST * 1e5);
+            assert_eq!(of(own, 1e4), STIFFER * 1e4);
+        }
+        assert_eq!(of(1e4, 0.0), STIFFER * 4e4);
+        assert_eq!(of(-1e4, 0.0), STIFFER * 4e4);
+        assert_eq!(of(1e4, 1e99), STIFFEST * 4e4);
     }
 }

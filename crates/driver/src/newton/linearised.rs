@@ -25,6 +25,10 @@ const SOFT: [f64; 2] = [1e-10, 1e-6];
 /// Part of the forces in play that it may carry where nothing else needs to.
 const CARRIED: f64 = 1e-2;
 
+/// Motion over the size of the mesh, or over a larger gap, beyond which nothing is left of what was linearised: a tool that
+/// a force drives flies away where its contacts open, though a solution may be near.
+const BEYOND: f64 = 1e3;
+
 /// An increment linearised at an iterate.
 pub(crate) struct Linearised<'a, const D: usize> {
     pub(crate) kinematics: &'a [Kinematics<D>],
@@ -191,8 +195,15 @@ impl<const D: usize> Driver<D> {
         .map_err(contact)?;
         let problem = &mut condensation.problem;
         let method = &self.settings.contact;
-        let solution = method
-            .approach(problem, guess, linearised.enough)
+        let gaps = kinematics.iter().map(|k| k.u[0]);
+        let reach = BEYOND * gaps.fold(self.mesh.size(), f64::max);
+        let within = |s: &ContactSolution<D>| largest(s.motion.iter().flatten().copied()) <= reach;
+        let from = |guess| method.approach(problem, guess, linearised.enough);
+        let solution = from(guess)
+            .and_then(|solution| match within(&solution) {
+                true => Ok(solution),
+                false => (from(None).ok().filter(within)).ok_or(ContactError::Singular),
+            })
             .or_else(|error| {
                 // Where stresses make the structure unstable there may be none.
                 let step = self

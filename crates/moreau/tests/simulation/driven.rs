@@ -1,0 +1,82 @@
+//! Tools that a force drives, over all of a body's boundary and over single nodes.
+
+use super::*;
+
+/// A block on its held base under a cylinder that a force presses, moves aside until it only just touches, and lets rise.
+fn pressed(surface: &str, strain: &str) -> Simulation {
+    let held = r#"fix = [{ on = "block.bottom", u = ["x", "y"] }]"#;
+    let step = |name: &str, x: f64, force: f64| {
+        format!(
+            "[[step]]\nname = \"{name}\"\nincrements = 2\n{held}\n\
+             tools = [{{ name = \"punch\", move = [{x:?}, 0], force = [0, {force:?}] }}]\n"
+        )
+    };
+    let steps = [
+        ("press", 0.0, -105.0),
+        ("drag", 2.0, -105.0),
+        ("rise", 0.0, -10.5),
+    ];
+    let steps: String = steps.iter().map(|&(n, x, f)| step(n, x, f)).collect();
+    finish(simulation(&format!(
+        r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+strain = "{strain}"
+mesh = {{ block = [{{ name = "block", element = "quad8", x = [-8, 8], y = [0, 5], cells = [12, 3] }}] }}
+material = [{{ on = "block", young = 210000, poisson = 0.3, yield-stress = 210, hardening = {{ linear = 1050 }} }}]
+tool = [{{ name = "punch", cylinder = {{ center = [-0.4, 9], radius = 4 }} }}]
+contact = [{{ surface = {surface}, against = "punch", friction = 0.3 }}]
+{steps}"#
+    )))
+}
+
+/// Corners that are held touch nothing: that they are of the surface changes nothing. What they would leave a tool is no
+/// stiffness, and what rounding makes of that is of either sign.
+#[test]
+fn held_corners_of_a_surface_leave_a_driven_tool_as_it_is() {
+    for strain in ["small", "finite"] {
+        let top = pressed(r#""block.top""#, strain);
+        let all = pressed(r#"["block.top", "block.left", "block.right"]"#, strain);
+        for name in ["u.punch.y", "force.punch.x", "force.punch.y"] {
+            let [a, b] = [&top, &all].map(|s| s.history().numbers(name));
+            let size = a.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            assert!(a.len() == 6 && size > 0.0, "{name}: {a:?}");
+            for (a, b) in a.iter().zip(&b) {
+                assert!((a - b).abs() <= 1e-8 * size, "{strain} {name}: {a} {b}");
+            }
+        }
+    }
+}
+
+/// A roll that turns freely on the one node that it touches turns by its way over its radius, though with the contact open
+/// a motion without end would be in balance too.
+#[test]
+fn a_free_roll_on_one_node_turns_by_its_way() {
+    let step = |name: &str, way: &str| {
+        format!(
+            "[[step]]\nname = \"{name}\"\nincrements = 2\nfix = [{{ on = \"bar.bottom\", u = [\"x\", \"y\"] }}]\n\
+             tools = [{{ name = \"roll\", {way} force = [0, -140], moment = 0 }}]\n"
+        )
+    };
+    let steps = step("press", "") + &step("roll", "move = [0.25, 0],");
+    let mut roll = simulation(&format!(
+        r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+strain = "finite"
+mesh = {{ block = [{{ name = "bar", element = "quad4", x = [-8, 8], y = [0, 5], cells = [12, 5] }}] }}
+material = [{{ on = "bar", young = 70000, poisson = 0.45 }}]
+tool = [{{ name = "roll", cylinder = {{ center = [-0.1856, 25], radius = 20 }} }}]
+contact = [{{ surface = ["bar.top", "bar.left", "bar.right"], against = "roll", friction = 0.1 }}]
+{steps}"#
+    ));
+    while advance(&mut roll) {}
+    let history = roll.history();
+    let turn = history
+        .numbers("turn.roll")
+        .last()
+        .copied()
+        .unwrap_or(f64::NAN);
+    let expected = -(0.25f64 / 20.0).to_degrees();
+    assert!((turn / expected - 1.0).abs() < 1e-2, "{turn} {expected}");
+    assert_eq!(history.numbers("cuts").iter().sum::<f64>(), 0.0);
+    assert!(history.numbers("stick").iter().all(|&n| n == 1.0));
+}
