@@ -72,6 +72,13 @@ impl<const D: usize> Driver<D> {
         Ok(answer)
     }
 
+    /// Whether the motion of a solution is one that the linearisation may know of.
+    fn reaches(&self, kinematics: &[Kinematics<D>], solution: &ContactSolution<D>) -> bool {
+        let gaps = kinematics.iter().map(|k| k.u[0]);
+        let reach = BEYOND * gaps.fold(self.mesh.size(), f64::max);
+        largest(solution.motion.iter().flatten().copied()) <= reach
+    }
+
     fn answer_tied(
         &self,
         system: &mut System,
@@ -121,11 +128,12 @@ impl<const D: usize> Driver<D> {
             };
             solve_tied(&mut problem, linearised.guess, (tolerance, enough), factor)
         };
-        let determined = |(s, z): (ContactSolution<D>, DVector<f64>)| match floats
-            && !self.is_held(loading, &s.status)
-        {
-            true => Err(ContactError::Singular),
-            false => Ok((s, z)),
+        let determined = |(s, z): (ContactSolution<D>, DVector<f64>)| {
+            let held = !floats || self.is_held(loading, &s.status);
+            match held && self.reaches(kinematics, &s) {
+                true => Ok((s, z)),
+                false => Err(ContactError::Singular),
+            }
         };
         let (mut solution, z) = solve(0.0, linearised.enough)
             .and_then(determined)
@@ -195,14 +203,14 @@ impl<const D: usize> Driver<D> {
         .map_err(contact)?;
         let problem = &mut condensation.problem;
         let method = &self.settings.contact;
-        let gaps = kinematics.iter().map(|k| k.u[0]);
-        let reach = BEYOND * gaps.fold(self.mesh.size(), f64::max);
-        let within = |s: &ContactSolution<D>| largest(s.motion.iter().flatten().copied()) <= reach;
         let from = |guess| method.approach(problem, guess, linearised.enough);
         let solution = from(guess)
-            .and_then(|solution| match within(&solution) {
+            .and_then(|solution| match self.reaches(kinematics, &solution) {
                 true => Ok(solution),
-                false => (from(None).ok().filter(within)).ok_or(ContactError::Singular),
+                false => {
+                    let again = from(None).ok().filter(|s| self.reaches(kinematics, s));
+                    again.ok_or(ContactError::Singular)
+                }
             })
             .or_else(|error| {
                 // Where stresses make the structure unstable there may be none.
