@@ -25,10 +25,6 @@ const SOFT: [f64; 2] = [1e-10, 1e-6];
 /// Part of the forces in play that it may carry where nothing else needs to.
 const CARRIED: f64 = 1e-2;
 
-/// Motion over the size of the mesh, or over a larger gap, beyond which nothing is left of what was linearised: a tool that
-/// a force drives flies away where its contacts open, though a solution may be near.
-const BEYOND: f64 = 1e3;
-
 /// An increment linearised at an iterate.
 pub(crate) struct Linearised<'a, const D: usize> {
     pub(crate) kinematics: &'a [Kinematics<D>],
@@ -72,11 +68,25 @@ impl<const D: usize> Driver<D> {
         Ok(answer)
     }
 
-    /// Whether the motion of a solution is one that the linearisation may know of.
-    fn reaches(&self, kinematics: &[Kinematics<D>], solution: &ContactSolution<D>) -> bool {
+    /// The solution from the guess; where it moves farther than the mesh and its gaps are large, that from where the bodies are
+    /// if it is nearer. Forces that turn with a tool leave it a little stiffness of either sign, and with all of its
+    /// contacts open it is in balance far away.
+    fn nearest_of<T>(
+        &self,
+        kinematics: &[Kinematics<D>],
+        motion: impl Fn(&T) -> f64,
+        mut solve: impl FnMut(bool) -> Result<T, ContactError>,
+    ) -> Result<T, ContactError> {
         let gaps = kinematics.iter().map(|k| k.u[0]);
-        let reach = BEYOND * gaps.fold(self.mesh.size(), f64::max);
-        largest(solution.motion.iter().flatten().copied()) <= reach
+        let reach = gaps.fold(self.mesh.size(), f64::max);
+        let guessed = solve(true)?;
+        if motion(&guessed) <= reach {
+            return Ok(guessed);
+        }
+        Ok(match solve(false) {
+            Ok(here) if motion(&here) < motion(&guessed) => here,
+            _ => guessed,
+        })
     }
 
     fn answer_tied(
@@ -114,7 +124,7 @@ impl<const D: usize> Driver<D> {
         let largest_of =
             |forces: &[Local<D>], other: f64| forces.iter().map(|t| t.norm()).fold(other, f64::max);
         let given = largest_of(&previous, largest_load);
-        let mut solve = |c: f64, enough: f64| {
+        let mut solve = |guess: Option<&ContactSolution<D>>, c: f64, enough: f64| {
             if tied.hold(c) {
                 *factor = TiedFactor::default();
             }
@@ -126,21 +136,26 @@ impl<const D: usize> Driver<D> {
                 load: largest_load,
                 previous: previous.clone(),
             };
-            solve_tied(&mut problem, linearised.guess, (tolerance, enough), factor)
+            solve_tied(&mut problem, guess, (tolerance, enough), factor)
         };
-        let determined = |(s, z): (ContactSolution<D>, DVector<f64>)| {
-            let held = !floats || self.is_held(loading, &s.status);
-            match held && self.reaches(kinematics, &s) {
-                true => Ok((s, z)),
-                false => Err(ContactError::Singular),
-            }
+        let determined = |(s, z): (ContactSolution<D>, DVector<f64>)| match floats
+            && !self.is_held(loading, &s.status)
+        {
+            true => Err(ContactError::Singular),
+            false => Ok((s, z)),
         };
-        let (mut solution, z) = solve(0.0, linearised.enough)
+        let guess = linearised.guess;
+        let (mut solution, z) = self
+            .nearest_of(
+                kinematics,
+                |(s, _)| farthest(s),
+                |guessed| solve(guess.filter(|_| guessed), 0.0, linearised.enough),
+            )
             .and_then(determined)
             .or_else(|error| {
                 counts.undetermined |= error == ContactError::Singular;
                 nearest(error, stiffest, |c| {
-                    let (solution, z) = solve(c, 0.0)?;
+                    let (solution, z) = solve(guess, c, 0.0)?;
                     let scale = largest_of(&solution.force, given);
                     Ok((solution, z, scale))
                 })
@@ -203,14 +218,9 @@ impl<const D: usize> Driver<D> {
         .map_err(contact)?;
         let problem = &mut condensation.problem;
         let method = &self.settings.contact;
-        let from = |guess| method.approach(problem, guess, linearised.enough);
-        let solution = from(guess)
-            .and_then(|solution| match self.reaches(kinematics, &solution) {
-                true => Ok(solution),
-                false => {
-                    let again = from(None).ok().filter(|s| self.reaches(kinematics, s));
-                    again.ok_or(ContactError::Singular)
-                }
+        let solution = self
+            .nearest_of(kinematics, farthest, |guessed| {
+                method.approach(problem, guess.filter(|_| guessed), linearised.enough)
             })
             .or_else(|error| {
                 // Where stresses make the structure unstable there may be none.
@@ -258,6 +268,11 @@ impl<const D: usize> Driver<D> {
     }
 }
 
+/// The largest motion of a solution \[mm\].
+fn farthest<const D: usize>(solution: &ContactSolution<D>) -> f64 {
+    largest(solution.motion.iter().flatten().copied())
+}
+
 /// A contact problem that is singular, as where all that touches slips or nothing is left to press: of its
 /// solutions, which differ by a rigid motion, the one nearest to where the bodies are, found with a proximal
 /// term c. There is none where a body falls or slides away: what holds it here would have to carry its
@@ -274,7 +289,7 @@ fn nearest<const D: usize, T>(
         let Ok((solution, other, scale)) = solve(c) else {
             continue;
         };
-        let motion = largest(solution.motion.iter().flatten().copied());
+        let motion = farthest(&solution);
         let carries = c * motion > CARRIED * scale;
         return if carries {
             Err(error)
