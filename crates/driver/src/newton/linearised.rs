@@ -68,9 +68,9 @@ impl<const D: usize> Driver<D> {
         Ok(answer)
     }
 
-    /// The solution from the guess; where it moves farther than the mesh and its gaps are large, that from where the bodies are
-    /// if it is nearer. Forces that turn with a tool leave it a little stiffness of either sign, and with all of its
-    /// contacts open it is in balance far away.
+    /// The solution found from the guess, `solve(true)`. Where it moves by more than the size of the mesh and the largest gap,
+    /// that from where the bodies are, `solve(false)`, if it moves less: contact forces that turn leave a driven tool a
+    /// little stiffness of either sign, on which it is in balance far away with all of its contacts open.
     fn nearest_of<T>(
         &self,
         kinematics: &[Kinematics<D>],

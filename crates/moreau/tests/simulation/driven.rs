@@ -60,7 +60,7 @@ struct Roll {
 }
 
 /// A roll that turns freely on the one node that it touches turns by its way over its radius, though with the contact open
-/// a motion of hundreds of metres would be in balance too.
+/// a motion of metres to kilometres would be in balance too.
 #[test]
 fn a_free_roll_on_one_node_turns_by_its_way() {
     let light = Roll {
