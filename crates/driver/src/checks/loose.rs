@@ -1,5 +1,5 @@
 //! Tools driven by a force that touch nothing yet: how far they are, and where their force takes
-//! them; not what stops them.
+//! them, from where an increment begins; not what stops them.
 
 use crate::driver::Driver;
 use crate::error::{ModelError, ToolOutOfContact};
@@ -61,23 +61,56 @@ impl<const D: usize> Driver<D> {
         })
     }
 
+    /// How far a tool with a force under a loading is from what it may touch, with the point that is nearest, and the
+    /// motion along its force with which it meets it, if it does; `None` if it touches or has no force.
+    fn way_to_contact(
+        &self,
+        tool: usize,
+        end: &Loading<D>,
+    ) -> Option<(f64, usize, Option<SVector<f64, D>>)> {
+        let touching = TOUCHING * self.mesh.size();
+        let force = SVector::from(end.force.at_node::<D>(self.tool_node(tool)));
+        let (gap, nearest) = self.tool_gap(tool, &SVector::zeros())?;
+        if force.norm() == 0.0 || gap <= touching {
+            return None;
+        }
+        // Nothing is nearer than the gap: going as far can pass nothing.
+        let way = force.normalize();
+        let (mut gone, mut left) = (gap, gap);
+        while left > touching && gone < FARTHEST * self.mesh.size() + gap {
+            left = self.tool_gap(tool, &(way * gone))?.0;
+            gone += left.max(touching);
+        }
+        Some((gap, nearest, (left <= touching).then(|| way * gone)))
+    }
+
+    /// Moves tools that a force drives, that touch nothing and of whose motion nothing is guessed, to where they meet what they
+    /// may touch; whether there are any.
+    pub(crate) fn meet(&self, end: &Loading<D>, d_u: &mut [f64]) -> bool {
+        let mut met = false;
+        for tool in 0..self.tools.len() {
+            let first = D * self.tool_node(tool);
+            let driven = (first..first + D).filter(|dof| !end.displacement.contains_key(dof));
+            let driven: Vec<usize> = driven.collect();
+            if driven.iter().any(|&dof| d_u[dof] != 0.0) {
+                continue;
+            }
+            let Some((_, _, Some(motion))) = self.way_to_contact(tool, end) else {
+                continue;
+            };
+            met = true;
+            driven
+                .iter()
+                .for_each(|&dof| d_u[dof] = motion[dof - first]);
+        }
+        met
+    }
+
     /// The first tool with a force under a loading that touches nothing, if there is one.
     pub(crate) fn loose_tool(&self, end: &Loading<D>) -> Option<ModelError> {
-        let size = self.mesh.size();
         (0..self.tools.len()).find_map(|tool| {
+            let (gap, nearest, meets) = self.way_to_contact(tool, end)?;
             let force = SVector::from(end.force.at_node::<D>(self.tool_node(tool)));
-            let (gap, nearest) = self.tool_gap(tool, &SVector::zeros())?;
-            if force.norm() == 0.0 || gap <= TOUCHING * size {
-                return None;
-            }
-            // Nothing is nearer than the gap: going as far can pass nothing.
-            let way = force.normalize();
-            let (mut gone, mut left) = (gap, gap);
-            while left > TOUCHING * size && gone < FARTHEST * size + gap {
-                left = self.tool_gap(tool, &(way * gone))?.0;
-                gone += left.max(TOUCHING * size);
-            }
-            let meets = left <= TOUCHING * size;
             let point = &self.points[nearest];
             Some(ModelError::ToolOutOfContact(Box::new(ToolOutOfContact {
                 tool: self.tools[tool].name.clone(),
@@ -85,7 +118,7 @@ impl<const D: usize> Driver<D> {
                 surface: self.contact_name(point.contact).0.to_owned(),
                 position: self.position(point.node).iter().copied().collect(),
                 gap,
-                meets: meets.then(|| (way * gone).iter().copied().collect()),
+                meets: meets.map(|motion| motion.iter().copied().collect()),
             })))
         })
     }

@@ -98,6 +98,11 @@ impl<const D: usize> Driver<D> {
         for (&dof, u) in end.displacement.range(self.mesh_dofs()..) {
             d_u[dof] = u - start.displacement.get(&dof).unwrap_or(u);
         }
+        // One that a force takes through a gap begins where it meets the body: its last solution is that of the gap.
+        let last = match self.meet(end, &mut d_u) {
+            true => None,
+            false => self.state.solution.clone(),
+        };
         let missing = self.missing(start, end, &d_u);
         system.begin();
         let tangent = Stiffness::Plastic(1.0);
@@ -114,7 +119,7 @@ impl<const D: usize> Driver<D> {
                 part: 0.0,
             },
             missing,
-            solution: self.state.solution.clone(),
+            solution: last,
             chord: Chord::default(),
             held: Held::default(),
             patience: None,

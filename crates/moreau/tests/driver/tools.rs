@@ -3,7 +3,7 @@
 use moreau_contact::{Ball, Plane};
 use moreau_driver::{
     Analysis, Axis, Collapse, Driver, IncrementError, Increments, Model, ModelError, Numbers,
-    Saved, Settings, Step,
+    Saved, Seam, Settings, Step,
 };
 use moreau_laws::{Coulomb, Status, VonMises};
 use moreau_mesh::{
@@ -398,6 +398,35 @@ fn a_driven_tool_comes_from_afar() {
     assert!((force / -3000.0 - 1.0).abs() < 1e-9, "{force}");
     let [a, b] = [&near, &far].map(|d| d.tool_displacement("ball").expect("exists")[1]);
     assert!((a - b - 149.999).abs() < 1e-8, "{a} {b}");
+}
+
+/// Through a gap to where its force takes it, then as from there: with contacts condensed and tied in the factor.
+#[test]
+fn a_driven_tool_meets_what_its_force_takes_it_to() {
+    for seam in [Seam::Condensed, Seam::Tied] {
+        let pressed = |gap: f64| {
+            let model = Model::new(block(), PlaneStrain::default())
+                .material("block", steel(), Integration::Reduced)
+                .and_then(|m| m.tool("ball", Ball::new([0.0, 120.0 + gap], 100.0)?))
+                .and_then(|m| m.contact("block.top", "ball", coulomb(0.0)))
+                .expect("valid");
+            let settings = Settings {
+                seam,
+                ..Settings::default()
+            };
+            let mut driver = Driver::new(model, settings).expect("valid");
+            let press = held("press").fix("block.left", &[Axis::X]);
+            let press = press.push("ball", Axis::Y, -3000.0);
+            let reports = driver.run(&press, 3, |_, _| {}).expect("converges");
+            assert!(reports.iter().all(|r| r.cuts == 0));
+            let at = driver.tool_displacement("ball").expect("exists")[1];
+            (at, driver.tool_force("ball").expect("exists")[1])
+        };
+        let (touching, _) = pressed(0.0);
+        let (far, force) = pressed(7.0);
+        assert!((touching - far - 7.0).abs() < 1e-8, "{touching} {far}");
+        assert!((force / -3000.0 - 1.0).abs() < 1e-9, "{force}");
+    }
 }
 
 /// A tool that its force takes past the body: told with its distance, and what to do.
