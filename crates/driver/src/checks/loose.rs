@@ -1,5 +1,5 @@
 //! Tools driven by a force that touch nothing yet: how far they are, and where their force takes
-//! them, from where an increment begins; not what stops them.
+//! them, which is where an increment begins; not what stops them.
 
 use crate::driver::Driver;
 use crate::error::{ModelError, ToolOutOfContact};
@@ -12,6 +12,8 @@ const CLOSED: f64 = 1e-9;
 const TOUCHING: f64 = 1e-6;
 /// How far its way is followed, in sizes of the mesh beyond the first gap.
 const FARTHEST: f64 = 10.0;
+/// After so many looks it passes along the body, not towards it.
+const LOOKS: usize = 10_000;
 
 impl<const D: usize> Driver<D> {
     /// The least gap of the points that a tool may touch, after a further motion of it, with the point;
@@ -77,7 +79,10 @@ impl<const D: usize> Driver<D> {
         // Nothing is nearer than the gap: going as far can pass nothing.
         let way = force.normalize();
         let (mut gone, mut left) = (gap, gap);
-        while left > touching && gone < FARTHEST * self.mesh.size() + gap {
+        for _ in 0..LOOKS {
+            if left <= touching || gone >= FARTHEST * self.mesh.size() + gap {
+                break;
+            }
             left = self.tool_gap(tool, &(way * gone))?.0;
             gone += left.max(touching);
         }

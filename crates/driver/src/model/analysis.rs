@@ -47,6 +47,7 @@ where
     Some(Box::new(cells))
 }
 
+/// The cells of a mesh of one dimension, by the elements that it has.
 macro_rules! elements {
     ($name:ident, $dimension:literal: $($element:ident with $nodes:literal),*) => {
         fn $name<H: Hypothesis<$dimension>>(

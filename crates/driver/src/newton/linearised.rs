@@ -68,25 +68,10 @@ impl<const D: usize> Driver<D> {
         Ok(answer)
     }
 
-    /// The solution found from the guess, `solve(true)`. Where it moves by more than the size of the mesh and the largest gap,
-    /// that from where the bodies are, `solve(false)`, if it moves less: contact forces that turn leave a driven tool a
-    /// little stiffness of either sign, on which it is in balance far away with all of its contacts open.
-    fn nearest_of<T>(
-        &self,
-        kinematics: &[Kinematics<D>],
-        motion: impl Fn(&T) -> f64,
-        mut solve: impl FnMut(bool) -> Result<T, ContactError>,
-    ) -> Result<T, ContactError> {
+    /// Motion beyond which a solution is looked for nearer by: the size of the mesh, or the largest gap.
+    fn reach(&self, kinematics: &[Kinematics<D>]) -> f64 {
         let gaps = kinematics.iter().map(|k| k.u[0]);
-        let reach = gaps.fold(self.mesh.size(), f64::max);
-        let guessed = solve(true)?;
-        if motion(&guessed) <= reach {
-            return Ok(guessed);
-        }
-        Ok(match solve(false) {
-            Ok(here) if motion(&here) < motion(&guessed) => here,
-            _ => guessed,
-        })
+        gaps.fold(self.mesh.size(), f64::max)
     }
 
     fn answer_tied(
@@ -145,12 +130,8 @@ impl<const D: usize> Driver<D> {
             false => Ok((s, z)),
         };
         let guess = linearised.guess;
-        let (mut solution, z) = self
-            .nearest_of(
-                kinematics,
-                |(s, _)| farthest(s),
-                |guessed| solve(guess.filter(|_| guessed), 0.0, linearised.enough),
-            )
+        let from = |guessed: bool| solve(guess.filter(|_| guessed), 0.0, linearised.enough);
+        let (mut solution, z) = nearer(self.reach(kinematics), |(s, _)| farthest(s), from)
             .and_then(determined)
             .or_else(|error| {
                 counts.undetermined |= error == ContactError::Singular;
@@ -218,10 +199,9 @@ impl<const D: usize> Driver<D> {
         .map_err(contact)?;
         let problem = &mut condensation.problem;
         let method = &self.settings.contact;
-        let solution = self
-            .nearest_of(kinematics, farthest, |guessed| {
-                method.approach(problem, guess.filter(|_| guessed), linearised.enough)
-            })
+        let from =
+            |guessed: bool| method.approach(problem, guess.filter(|_| guessed), linearised.enough);
+        let solution = nearer(self.reach(kinematics), farthest, from)
             .or_else(|error| {
                 // Where stresses make the structure unstable there may be none.
                 let step = self
@@ -268,6 +248,26 @@ impl<const D: usize> Driver<D> {
     }
 }
 
+/// The solution found from the guess, `solve(true)`; where its motion is beyond `reach`, that found from where the bodies
+/// are, `solve(false)`, if it moves less: contact forces that turn leave a driven tool a little stiffness of either sign,
+/// on which it is in balance far away with all of its contacts open. What is returned was solved last, as the factor with
+/// the contacts tied needs it.
+fn nearer<T>(
+    reach: f64,
+    motion: impl Fn(&T) -> f64,
+    mut solve: impl FnMut(bool) -> Result<T, ContactError>,
+) -> Result<T, ContactError> {
+    let guessed = solve(true)?;
+    let far = motion(&guessed);
+    if far <= reach {
+        return Ok(guessed);
+    }
+    match solve(false) {
+        Ok(here) if motion(&here) < far => Ok(here),
+        _ => solve(true),
+    }
+}
+
 /// The largest motion of a solution \[mm\].
 fn farthest<const D: usize>(solution: &ContactSolution<D>) -> f64 {
     largest(solution.motion.iter().flatten().copied())
@@ -298,4 +298,39 @@ fn nearest<const D: usize, T>(
         };
     }
     Err(error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The nearer one, and always the one that was solved last.
+    #[test]
+    fn of_two_solutions_the_nearer_is_the_last() {
+        let singular = Err(ContactError::Singular);
+        let cases = [
+            (Ok(0.5), Ok(0.1), Ok(0.5), 1),
+            (Ok(2.0), Ok(0.1), Ok(0.1), 2),
+            (Ok(2.0), Ok(3.0), Ok(2.0), 3),
+            (Ok(2.0), singular.clone(), Ok(2.0), 3),
+            (singular.clone(), Ok(0.1), singular, 1),
+        ];
+        for (guessed, here, expected, count) in cases {
+            let mut solved = Vec::new();
+            let found = nearer(
+                1.0,
+                |m: &f64| *m,
+                |from_guess| {
+                    solved.push(if from_guess {
+                        guessed.clone()
+                    } else {
+                        here.clone()
+                    });
+                    solved[solved.len() - 1].clone()
+                },
+            );
+            assert_eq!((&found, solved.len()), (&expected, count));
+            assert_eq!(solved.last(), Some(&found));
+        }
+    }
 }
