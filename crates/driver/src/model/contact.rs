@@ -167,7 +167,8 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 law,
                 axis: None,
                 offset: 0.0,
-                area: share.area,
+                // A node on the axis bears nothing, to rounding of either sign.
+                area: share.area.max(0.0),
                 kind: share.kind,
                 own,
                 tied: None,

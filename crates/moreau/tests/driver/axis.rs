@@ -3,7 +3,7 @@
 
 use moreau_contact::{Ball, Obstacle, Plane};
 use moreau_driver::{Analysis, Axis, Driver, Model, Settings, Step};
-use moreau_laws::{Coulomb, Elastic, Status};
+use moreau_laws::{Coulomb, Elastic, Friction, LimitedCoulomb, Status, Tresca};
 use moreau_mesh::{Axisymmetric, CellKind, Mesh, Solid, block2, block3, uniform};
 use nalgebra::SVector;
 use std::f64::consts::PI;
@@ -107,6 +107,44 @@ fn a_uniform_pressure_reaches_the_axis() {
         }
         let whole = PRESSURE * PI * RADIUS * RADIUS;
         assert!((force / whole - 1.0).abs() < 1e-11, "{kind} {support:?}");
+    }
+}
+
+/// Where large strains leave a node on the axis no share of the surface, it has none of a limit of the shear either, whatever
+/// the sign of its rounding: a disc that is hardly pressed carries what it does under small strains.
+#[test]
+fn limits_of_the_shear_reach_the_axis_under_large_strains() {
+    let limits: [Friction; 2] = [
+        Tresca::new(0.02).expect("a limit").into(),
+        LimitedCoulomb::new(0.3, 0.02).expect("a limit").into(),
+    ];
+    let force = |kind: CellKind, law: &Friction, model: Model<2, Axisymmetric>| {
+        let plane = |y: f64, n: f64| Plane::new([0.0, y], [0.0, n]).expect("a plane");
+        let elastic = Elastic::new(1000.0, 0.3).expect("elastic");
+        let model = model
+            .material("disc", elastic, kind.integration())
+            .and_then(|m| m.tool("base", plane(0.0, 1.0)))
+            .and_then(|m| m.tool("press", plane(3.0, -1.0)))
+            .and_then(|m| m.contact("disc.bottom", "base", *law))
+            .and_then(|m| m.contact("disc.top", "press", *law));
+        let mut driver = Driver::new(model.expect("valid"), Settings::default()).expect("valid");
+        let step = Step::new("press")
+            .fix("disc.left", &[Axis::X])
+            .tool("press", [0.0, -3e-4]);
+        driver.run(&step, 1, |_, _| {}).expect("converges");
+        assert!(driver.contacts().iter().any(|c| c.status == Status::Slip));
+        driver.tool_force("press").expect("exists")[1]
+    };
+    for (kind, law) in KINDS.into_iter().flat_map(|k| limits.map(|l| (k, l))) {
+        for cells in 3..7 {
+            let mesh = || disc("disc", kind, cells, [0.0, 3.0]);
+            let small = force(kind, &law, Model::new(mesh(), Axisymmetric));
+            let large = force(kind, &law, Model::with_large_strains(mesh(), Axisymmetric));
+            assert!(
+                (large / small - 1.0).abs() < 1e-3,
+                "{kind} {cells}: {large} {small}"
+            );
+        }
     }
 }
 
