@@ -170,6 +170,13 @@ impl CellKind {
         }
     }
 
+    /// Whether meshes of this kind and rule have deformations without strain at any point: hourglasses, which nothing but
+    /// what they are held by resists.
+    pub const fn hourglasses(self, integration: Integration) -> bool {
+        let kind = matches!(self, Self::Quad4 | Self::Quad9 | Self::Hex8 | Self::Hex27);
+        kind && matches!(integration, Integration::Reduced)
+    }
+
     /// Values at a node of the shape functions of the linear cell with the same corners \[–\]: what a
     /// linear field has there of every corner.
     pub fn corner_shape(self, node: usize) -> Vec<f64> {

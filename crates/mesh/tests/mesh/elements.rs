@@ -3,9 +3,10 @@
 use crate::ROUND_OFF;
 use approx::assert_abs_diff_eq;
 use moreau_mesh::{
-    CellKind, Element, FacetKind, Hex8, Hex20, Hex27, Integration, Line2, Line3, Quad4, Quad8,
-    Quad9, Tet4, Tet10, Tri3, Tri6, UnknownKind,
+    CellKind, Element, FacetKind, Hex8, Hex20, Hex27, Integration, Line2, Line3, Mesh, Quad4,
+    Quad8, Quad9, Tet4, Tet10, Tri3, Tri6, UnknownKind, block2, block3, uniform,
 };
+use nalgebra::DMatrix;
 
 /// Points scattered over [−1, 1]^D; polynomial identities hold outside a reference cell too.
 fn scattered<const D: usize>() -> impl Iterator<Item = [f64; D]> {
@@ -193,6 +194,53 @@ fn the_rule_of_a_kind_does_not_lock() {
         assert_eq!(kind.locks(kind.integration()), constant_strain, "{kind}");
     }
     assert!(CellKind::Hex8.locks(Integration::Full) && !CellKind::Hex20.locks(Integration::Full));
+}
+
+/// Whether a block of two cells each way has more deformations without strain at the points of the reduced rule than its
+/// rigid motions.
+fn has_hourglasses<const D: usize, const N: usize, E: Element<D, N>>(mesh: &Mesh<D>) -> bool {
+    let dofs = D * mesh.nodes().len();
+    let mut rows = Vec::new();
+    for cell in 0..mesh.cell_count() {
+        let nodes = mesh.cell_nodes(cell);
+        let positions: [[f64; D]; N] = std::array::from_fn(|a| mesh.nodes()[nodes[a]]);
+        for point in &E::rule(Integration::Reduced).points {
+            let gradient = E::map(&positions, point.xi).gradient;
+            for (i, j) in (0..D).flat_map(|i| (i..D).map(move |j| (i, j))) {
+                let mut row = vec![0.0; dofs];
+                for (a, g) in gradient.iter().enumerate() {
+                    row[D * nodes[a] + i] += 0.5 * g[j];
+                    row[D * nodes[a] + j] += 0.5 * g[i];
+                }
+                rows.extend(row);
+            }
+        }
+    }
+    let strains = DMatrix::from_row_slice(rows.len() / dofs, dofs, &rows);
+    dofs - strains.rank(1e-9) > D * (D + 1) / 2
+}
+
+#[test]
+fn hourglasses_are_deformations_without_strain() {
+    let lines = uniform(0.0, 2.0, 2);
+    let plane = |kind| block2("b", kind, &lines, &lines).expect("valid");
+    let solid = |kind| block3("b", kind, &lines, &lines, &lines).expect("valid");
+    for kind in CellKind::ALL {
+        let found = match kind {
+            CellKind::Tri3 => has_hourglasses::<2, 3, Tri3>(&plane(kind)),
+            CellKind::Tri6 => has_hourglasses::<2, 6, Tri6>(&plane(kind)),
+            CellKind::Quad4 => has_hourglasses::<2, 4, Quad4>(&plane(kind)),
+            CellKind::Quad8 => has_hourglasses::<2, 8, Quad8>(&plane(kind)),
+            CellKind::Quad9 => has_hourglasses::<2, 9, Quad9>(&plane(kind)),
+            CellKind::Tet4 => has_hourglasses::<3, 4, Tet4>(&solid(kind)),
+            CellKind::Tet10 => has_hourglasses::<3, 10, Tet10>(&solid(kind)),
+            CellKind::Hex8 => has_hourglasses::<3, 8, Hex8>(&solid(kind)),
+            CellKind::Hex20 => has_hourglasses::<3, 20, Hex20>(&solid(kind)),
+            CellKind::Hex27 => has_hourglasses::<3, 27, Hex27>(&solid(kind)),
+        };
+        assert_eq!(kind.hourglasses(Integration::Reduced), found, "{kind}");
+        assert!(!kind.hourglasses(kind.integration()), "{kind}");
+    }
 }
 
 #[test]

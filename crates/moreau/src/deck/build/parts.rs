@@ -41,6 +41,7 @@ pub(super) fn parts(deck: &Deck, given: &Laws, findings: &mut Findings) -> Optio
         if deck.analysis != Hypothesis::PlaneStress {
             locking(material, deck.analysis, findings);
         }
+        hourglasses(material, findings);
     }
     let mut frictions = Vec::new();
     for contact in &deck.contacts {
@@ -236,6 +237,22 @@ fn locking(material: &MaterialEntry, analysis: Hypothesis, findings: &mut Findin
                 "plastic flow keeps volumes",
             );
         }
+    }
+}
+
+fn hourglasses(material: &MaterialEntry, findings: &mut Findings) {
+    let Some(rule) = &material.quadrature else {
+        return;
+    };
+    if let Some(kind) = (material.kinds.iter()).find(|kind| kind.hourglasses(rule.value)) {
+        findings.warning(
+            &rule.span,
+            format!(
+                "{kind} with reduced quadrature deforms without strain at its points, as an hourglass: displacements \
+                 may alternate from node to node, or nothing hold them; leave out quadrature"
+            ),
+            "one point too few",
+        );
     }
 }
 
