@@ -2,7 +2,7 @@
 
 use super::groups::Groups;
 use crate::deck::Laws;
-use crate::deck::entries::{Action, Deck};
+use crate::deck::entries::{Action, ContactEntry, Deck};
 use crate::deck::finding::{At, Class, Findings, did_you_mean};
 use std::collections::BTreeSet;
 
@@ -276,14 +276,10 @@ fn twice<const D: usize>(deck: &Deck, groups: Option<&Groups<D>>, findings: &mut
         }
     }
     for (k, contact) in deck.contacts.iter().enumerate() {
-        let name = &contact.surface.value;
-        let before = deck.contacts[..k].iter().find(|c| c.surface.value == *name);
-        if let Some(before) = before {
-            let message = format!(
-                "\"{name}\" has a contact with \"{}\" already: a node touches one thing only; give \
-                 each contact a part of the surface, as a [[mesh.group]]",
-                before.against.value
-            );
+        let (name, against) = (&contact.surface.value, &contact.against.value);
+        let is_same = |c: &ContactEntry| c.surface.value == *name && c.against.value == *against;
+        if deck.contacts[..k].iter().any(is_same) {
+            let message = format!("\"{name}\" has a contact with \"{against}\" already");
             findings
                 .error(&contact.surface.span, message, "given twice")
                 .about(Class::Names);
