@@ -10,6 +10,9 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 /// Eigenvalue of S, over its largest diagonal, below which it is rounding.
 const FAINT: f64 = 1e-9;
 
+/// Least proximal term, over the stiffest diagonal, whose inverse is not too large to iterate on.
+const SWEPT: f64 = 1e-9;
+
 /// The contact problem of one linearised increment, in the contacts' local frames:
 ///
 /// ```text
@@ -27,8 +30,8 @@ pub struct CondensedProblem<const D: usize> {
     origin: Vec<Local<D>>,
     laws: Vec<Friction>,
     previous: Vec<Local<D>>,
-    /// Whether it has a proximal term.
-    held: bool,
+    /// Its proximal term \[N/mm\].
+    held: f64,
 }
 
 impl<const D: usize> CondensedProblem<D> {
@@ -61,7 +64,7 @@ impl<const D: usize> CondensedProblem<D> {
             origin,
             laws: laws.into_iter().map(Into::into).collect(),
             previous,
-            held: false,
+            held: 0.0,
         })
     }
 
@@ -95,12 +98,12 @@ impl<const D: usize> CondensedProblem<D> {
         for k in 0..self.stiffness.nrows() {
             self.stiffness[(k, k)] += c;
         }
-        self.held = true;
+        self.held += c;
     }
 
-    /// Whether only a proximal term makes S regular: its inverse is then too large to iterate on.
-    pub(crate) fn is_held(&self) -> bool {
-        self.held
+    /// Whether only a proximal term makes S regular that is so small that the inverse is too large to iterate on.
+    pub(crate) fn is_faintly_held(&self) -> bool {
+        self.held > 0.0 && self.held < SWEPT * self.stiffness.diagonal().amax()
     }
 
     /// Whether S has an eigenvalue that is negative and no rounding of a rigid motion, as where stresses make the structure

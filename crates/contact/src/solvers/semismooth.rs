@@ -163,9 +163,9 @@ pub(super) fn newton<const D: usize>(
             continue;
         }
         part += 1;
-        // When all have stalled, sweeps find the statuses; where no inverse exists there are none.
+        // When all have stalled, sweeps find the statuses; where no inverse exists, or only a huge one, there are none.
         if part % PARTS.len() == 0 {
-            if problem.is_held() || problem.is_unstable() {
+            if problem.is_faintly_held() || problem.is_unstable() {
                 return Err(ContactError::Singular);
             }
             // From where Newton got to, and the next time from nothing.

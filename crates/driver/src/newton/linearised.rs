@@ -25,6 +25,9 @@ const SOFT: [f64; 2] = [1e-10, 1e-6];
 /// Part of the forces in play that it may carry where nothing else needs to.
 const CARRIED: f64 = 1e-2;
 
+/// Part of a motion that is left under the stiffer of both where it is not a load that moves the body.
+const PUSHED: f64 = 0.5;
+
 /// An increment linearised at an iterate.
 pub(crate) struct Linearised<'a, const D: usize> {
     pub(crate) kinematics: &'a [Kinematics<D>],
@@ -276,7 +279,7 @@ fn farthest<const D: usize>(solution: &ContactSolution<D>) -> f64 {
 /// A contact problem that is singular, as where all that touches slips or nothing is left to press: of its
 /// solutions, which differ by a rigid motion, the one nearest to where the bodies are, found with a proximal
 /// term c. There is none where a body falls or slides away: what holds it here would have to carry its
-/// load, of which `scale` tells the size.
+/// load, of which `scale` tells the size. What a surface pushes away moves as far whatever holds it.
 fn nearest<const D: usize, T>(
     error: ContactError,
     stiffest: f64,
@@ -285,16 +288,19 @@ fn nearest<const D: usize, T>(
     if error != ContactError::Singular {
         return Err(error);
     }
-    for c in SOFT.map(|part| part * stiffest) {
+    let [soft, stiff] = SOFT.map(|part| part * stiffest);
+    for c in [soft, stiff] {
         let Ok((solution, other, scale)) = solve(c) else {
             continue;
         };
         let motion = farthest(&solution);
-        let carries = c * motion > CARRIED * scale;
-        return if carries {
-            Err(error)
-        } else {
-            Ok((solution, other))
+        if c * motion <= CARRIED * scale {
+            return Ok((solution, other));
+        }
+        let is_pushed = |s: &ContactSolution<D>| farthest(s) > PUSHED * motion;
+        return match c == soft && solve(stiff).is_ok_and(|(s, ..)| is_pushed(&s)) {
+            true => solve(soft).map(|(solution, other, _)| (solution, other)),
+            false => Err(error),
         };
     }
     Err(error)
@@ -303,6 +309,37 @@ fn nearest<const D: usize, T>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn moved(motion: f64) -> ContactSolution<2> {
+        ContactSolution {
+            displacement: Vec::new(),
+            motion: vec![Local::<2>::new(motion, 0.0)],
+            irreversible: Vec::new(),
+            force: Vec::new(),
+            status: Vec::new(),
+            residual: 0.0,
+            iterations: 0,
+            exact: true,
+        }
+    }
+
+    /// What no load moves is where it is; what a load moves goes as far as what holds it is soft, and has no place; what a
+    /// surface pushes goes as far as the surface, and the solution that counts is the last.
+    #[test]
+    fn a_body_that_falls_has_no_place_and_one_that_is_pushed_has() {
+        let found = |motion: &dyn Fn(f64) -> f64, scale: f64| {
+            let mut last = 0.0;
+            let found = nearest(ContactError::Singular, 1e5, |c| {
+                last = c;
+                Ok((moved(motion(c)), (), scale))
+            });
+            found.map(|(s, ())| (farthest(&s), last == SOFT[0] * 1e5))
+        };
+        assert_eq!(found(&|_| 1e-3, 1.0), Ok((1e-3, true)));
+        assert_eq!(found(&|c| 0.5 / c, 1.0), Err(ContactError::Singular));
+        assert_eq!(found(&|c| 0.5e-6 / c, 1e-6), Err(ContactError::Singular));
+        assert_eq!(found(&|_| 1e-3, 1e-8), Ok((1e-3, true)));
+    }
 
     /// The nearer one, and always the one that was solved last.
     #[test]
