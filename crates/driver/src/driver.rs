@@ -45,6 +45,8 @@ pub(crate) struct State<const D: usize> {
     /// Largest displacement of a node of the mesh so far \[mm\]: stresses keep the rounding of the largest
     /// that they have been.
     pub(crate) farthest: f64,
+    /// Largest internal or contact force of a node so far \[N\].
+    pub(crate) largest_force: f64,
     /// Last solution of the contact problem, to start the next from.
     pub(crate) solution: Option<ContactSolution<D>>,
 }
@@ -116,6 +118,7 @@ impl<const D: usize> Driver<D> {
             contacts: model.points.iter().map(rest).collect(),
             contact: SparseVector::default(),
             farthest: 0.0,
+            largest_force: 0.0,
             solution: None,
         };
         let blocks = model.take_blocks();

@@ -223,6 +223,7 @@ impl<const D: usize> Saved for State<D> {
         let (dofs, points) = (self.displacement.len(), self.contacts.len());
         numbers.count(&mut self.increment)?;
         numbers.value(&mut self.farthest)?;
+        numbers.value(&mut self.largest_force)?;
         numbers.known(DOFS, &mut self.displacement)?;
         numbers.known(DOFS, &mut self.internal)?;
         numbers.sparse(&mut self.contact)?;

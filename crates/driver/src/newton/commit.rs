@@ -68,6 +68,8 @@ impl<const D: usize> Driver<D> {
         // Against stresses heat does work, by the trapezoidal rule, that comes back from what it moves.
         energies.external_work -= 0.5 * (at_start + self.work_on_free(&free, &displacement));
         let moved = largest(displacement[..self.mesh_dofs()].iter().copied());
+        let forces = internal[..self.mesh_dofs()].iter().copied();
+        let force = largest(forces.chain(contact.iter().map(|(_, f)| f)));
         let loading = self.loading_after(&d_u, end);
         let last = self.repeatable(d_u, end);
         let answered = end.increment_from(start);
@@ -83,6 +85,7 @@ impl<const D: usize> Driver<D> {
             contacts,
             contact,
             farthest: moved.max(self.state.farthest),
+            largest_force: force.max(self.state.largest_force),
             solution: Some(solution),
         };
         let verdict = (plastic_fraction, certificate);

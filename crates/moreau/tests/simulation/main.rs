@@ -1,5 +1,6 @@
 //! A deck in memory, stepped from outside.
 
+mod cornered;
 mod driven;
 mod interrupted;
 mod keys;
