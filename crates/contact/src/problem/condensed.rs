@@ -93,12 +93,13 @@ impl<const D: usize> CondensedProblem<D> {
 
     /// A proximal term c/2 |u − g|² about the origin, c \[N/mm\]: S + c 1 takes the place of S. Where
     /// the statuses leave the bodies a rigid motion S is singular, and the solutions are many; this has
-    /// one, near to the origin. Repeated about its own solution it ends at one of the problem itself.
+    /// one, near to the origin. Repeated about its own solution it ends at one of the problem itself. It takes the
+    /// place of the term before.
     pub fn hold(&mut self, c: f64) {
         for k in 0..self.stiffness.nrows() {
-            self.stiffness[(k, k)] += c;
+            self.stiffness[(k, k)] += c - self.held;
         }
-        self.held += c;
+        self.held = c;
     }
 
     /// Whether only a proximal term makes S regular that is so small that the inverse is too large to iterate on.
@@ -279,6 +280,22 @@ mod tests {
         let form = problem.delassus().expect("definite");
         let back = problem.force(&form.displacement(&[t]));
         assert!((back[0] - t).norm() < 1e-14);
+    }
+
+    /// The last term counts alone, and only a faint one forbids to iterate on the inverse.
+    #[test]
+    fn a_proximal_term_takes_the_place_of_the_one_before() {
+        let s = DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 2.0]);
+        let zero = vec![Local::<2>::zeros()];
+        let (f, laws) = (DVector::zeros(2), vec![coulomb(0.3)]);
+        let problem = CondensedProblem::new(s, f, zero.clone(), laws, zero);
+        let mut problem = problem.expect("valid");
+        for (c, faint) in [(0.0, false), (2e-9, true), (0.5, false), (2e-9, true)] {
+            problem.hold(c);
+            let held = DMatrix::from_row_slice(2, 2, &[4.0 + c, 1.0, 1.0, 2.0 + c]);
+            assert!((problem.stiffness() - held).amax() < 1e-15, "{c}");
+            assert_eq!(problem.is_faintly_held(), faint, "{c}");
+        }
     }
 
     /// What is measured in newtons, by its definition.

@@ -187,7 +187,8 @@ impl Warnings {
             self.note(Kind::Held, numbers, at, when);
         }
         let apart = |c: &&ContactRecord<D>| {
-            c.t[0] == 0.0 && c.u[0] > driver.rounding_of_gaps() && c.t.norm() > 0.0
+            let is_open = c.t[0] == 0.0 && c.u[0] > driver.rounding_of_gaps();
+            is_open && c.t.norm() > report.out_of_balance
         };
         let apart = driver.contacts().iter().filter(apart);
         if let Some(widest) = apart.clone().max_by(|a, b| a.u[0].total_cmp(&b.u[0])) {
