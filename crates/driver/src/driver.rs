@@ -9,6 +9,7 @@ use crate::model::Model;
 use crate::model::analysis::{Analysis, Measure};
 use crate::model::contact::Contact;
 use crate::model::footing::Footing;
+use crate::model::grip::Grip;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Tool, in_space, tool_index, turned};
@@ -62,6 +63,8 @@ pub struct Driver<const D: usize> {
     pub(crate) points: Vec<ContactPoint<D>>,
     /// Where the contact points stand in the increment at hand.
     pub(crate) footing: Footing<D>,
+    /// Where shears of given limits act in the increment at hand.
+    pub(crate) grips: Vec<Grip>,
     pub(crate) settings: Settings<D>,
     pub(crate) state: State<D>,
     pub(crate) system: Option<System>,
@@ -132,6 +135,7 @@ impl<const D: usize> Driver<D> {
             blocks,
             tools: model.tools,
             contacts: model.contacts,
+            grips: vec![Grip::default(); model.points.len()],
             points: model.points,
             footing: Footing::default(),
             settings,

@@ -4,6 +4,7 @@
 pub(crate) mod condensation;
 pub(crate) mod elimination;
 pub(crate) mod free;
+pub(crate) mod grips;
 pub(crate) mod kinematics;
 pub(crate) mod pairing;
 pub(crate) mod redistribution;

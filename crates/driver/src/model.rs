@@ -4,6 +4,7 @@ pub(crate) mod amplitude;
 pub(crate) mod analysis;
 pub(crate) mod contact;
 pub(crate) mod footing;
+pub(crate) mod grip;
 pub(crate) mod load;
 pub(crate) mod material;
 pub(crate) mod motion_row;

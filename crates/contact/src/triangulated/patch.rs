@@ -11,10 +11,14 @@ type Point = Vector3<f64>;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Patch {
     corners: [Point; 3],
-    /// Bernstein coefficients of the boundary, by [`BOUNDARY`].
-    boundary: [Point; 12],
-    /// Inner coefficients near a corner: that for the edge out of the corner, and that for the edge into it.
-    inner: [[Point; 2]; 3],
+    /// Coefficients of uⁱ vʲ, by [`place`], of what is polynomial in the coordinates u and v of corners 1 and 2.
+    powers: [Point; 15],
+    /// Half of what the two inner coefficients near a corner differ by.
+    twists: [Point; 3],
+    /// Whether it is its plane triangle.
+    is_plane: bool,
+    /// Least and greatest coordinates of a box around it.
+    around: [[f64; 3]; 2],
     /// How far it is at most from its plane triangle \[mm\].
     bulge: f64,
 }
@@ -73,7 +77,7 @@ impl Patch {
                 to,
             ]
         });
-        let boundary = std::array::from_fn(|k| edges[k / 4][k % 4]);
+        let boundary: [Point; 12] = std::array::from_fn(|k| edges[k / 4][k % 4]);
         let mut inner = [[Point::zeros(); 2]; 3];
         for k in 0..3 {
             let (next, last) = ((k + 1) % 3, (k + 2) % 3);
@@ -102,103 +106,101 @@ impl Patch {
             inner[k][0] = 0.5 * (p[1] + p[2]) + s[0] + t[0];
             inner[next][1] = 0.5 * (p[2] + p[3]) + s[1] + t[1];
         }
-        let plane = Self {
+        let mut powers = [Point::zeros(); 15];
+        let mut add = |point: &Point, factor: f64, of: [usize; 3]| {
+            expand(of, |k, c| powers[k] += (point - corners[0]) * (factor * c));
+        };
+        for (k, (point, of)) in boundary.iter().zip(BOUNDARY).enumerate() {
+            add(point, BINOMIAL[k % 4], of);
+        }
+        for (k, [p, q]) in inner.iter().enumerate() {
+            let of = std::array::from_fn(|i| 1 + usize::from(i == k));
+            add(&(0.5 * (p + q)), 12.0, of);
+        }
+        powers[0] += corners[0];
+        let twists = inner.map(|[p, q]| 0.5 * (p - q));
+        // It lies within its coefficients, and the distance to a triangle is convex.
+        let points = || boundary.iter().chain(inner.iter().flatten());
+        let most = |i: usize, side: fn(f64, f64) -> f64| {
+            let of = points().map(|p| p[i]);
+            of.reduce(side).unwrap_or_default()
+        };
+        let around = [f64::min, f64::max].map(|side| std::array::from_fn(|i| most(i, side)));
+        let flat = Self {
             corners,
-            boundary,
-            inner,
+            powers,
+            twists,
+            is_plane: false,
+            around,
             bulge: 0.0,
         };
-        // It lies within its coefficients, and the distance to a triangle is convex.
-        let points = boundary.iter().chain(inner.iter().flatten());
-        let bulge = points.fold(0.0, |most, p| f64::max(most, plane.away(p)));
-        Self { bulge, ..plane }
+        let bulge = points().fold(0.0, |most, p| f64::max(most, flat.away(p)));
+        let size = [0, 1, 2].map(|k| (corners[k] - corners[(k + 1) % 3]).norm());
+        let bent = powers
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| ![0, place(0, 1), place(1, 0)].contains(k));
+        let bent = bent.map(|(_, p)| p).chain(&twists).map(Point::norm);
+        let is_plane = bent.fold(0.0, f64::max) <= STRAIGHT * size.into_iter().fold(0.0, f64::max);
+        Self {
+            is_plane,
+            bulge: if is_plane { 0.0 } else { bulge },
+            ..flat
+        }
     }
 
     /// What its distance from a point is at least \[mm\].
     pub(super) fn away(&self, x: &Point) -> f64 {
         let [a, b, c] = self.corners;
-        let flat = self.flat(x);
-        let foot = match least(&flat) >= 0.0 {
-            true => a + (b - a) * flat.x + (c - a) * flat.y,
-            false => {
-                let on = |k: usize| {
-                    let (from, along) =
-                        (self.corners[k], self.corners[(k + 1) % 3] - self.corners[k]);
-                    let s = (x - from).dot(&along) / along.norm_squared();
-                    from + along * s.clamp(0.0, 1.0)
-                };
-                let far = |p: &Point| (p - x).norm_squared();
-                let [p, q, r] = [on(0), on(1), on(2)];
-                let nearer = |p: Point, q: Point| if far(&p) <= far(&q) { p } else { q };
-                nearer(nearer(p, q), r)
-            }
-        };
-        (x - foot).norm() - self.bulge
+        let at = self.nearest_of_triangle(x);
+        (x - (a + (b - a) * at.x + (c - a) * at.y)).norm() - self.bulge
     }
 
     /// Least and greatest coordinates of a box around it.
     pub(super) fn around(&self) -> [[f64; 3]; 2] {
-        let points = || self.boundary.iter().chain(self.inner.iter().flatten());
-        let most = |i: usize, side: fn(f64, f64) -> f64| {
-            let of = points().map(|p| p[i]);
-            of.reduce(side).unwrap_or_default()
-        };
-        [f64::min, f64::max].map(|side| std::array::from_fn(|i| most(i, side)))
+        self.around
     }
 
     /// Where it is at the coordinates of corners 1 and 2, with derivatives.
     pub(super) fn at(&self, at: &Vector2<f64>) -> Jet {
-        let c = [1.0 - at.x - at.y, at.x, at.y];
-        // By the barycentric coordinates; second derivatives ₀₀, ₁₁, ₂₂, ₀₁, ₁₂, ₂₀.
-        let mut sum = (Point::zeros(), [Point::zeros(); 3], [Point::zeros(); 6]);
-        let mut add = |point: &Point, value: f64, d: [f64; 3], dd: [f64; 6]| {
-            sum.0 += point * value;
-            (0..3).for_each(|i| sum.1[i] += point * d[i]);
-            (0..6).for_each(|i| sum.2[i] += point * dd[i]);
+        let ([u, du, ddu], [v, dv, ddv]) = (powers(at.x), powers(at.y));
+        // The point, its first and its second derivatives.
+        let mut jet = [Point::zeros(); 6];
+        let mut add = |point: &Point, by: [f64; 6]| {
+            for (sum, factor) in jet.iter_mut().zip(by) {
+                *sum += point * factor;
+            }
         };
-        // Powers of each coordinate, with first and second derivatives.
-        let powers = c.map(|c| {
-            let (c2, c3) = (c * c, c * c * c);
-            [
-                [1.0, c, c2, c3, c2 * c2],
-                [0.0, 1.0, 2.0 * c, 3.0 * c2, 4.0 * c3],
-                [0.0, 0.0, 2.0, 6.0 * c, 12.0 * c2],
-            ]
-        });
-        for (k, (point, of)) in self.boundary.iter().zip(&BOUNDARY).enumerate() {
-            let term = |down: [usize; 3]| {
-                let [a, b, c] = [0, 1, 2].map(|i| powers[i][down[i]][of[i]]);
-                BINOMIAL[k % 4] * a * b * c
-            };
-            let d = [term([1, 0, 0]), term([0, 1, 0]), term([0, 0, 1])];
-            let own = [term([2, 0, 0]), term([0, 2, 0]), term([0, 0, 2])];
-            let mixed = [term([1, 1, 0]), term([0, 1, 1]), term([1, 0, 1])];
-            let dd = [own[0], own[1], own[2], mixed[0], mixed[1], mixed[2]];
-            add(point, term([0; 3]), d, dd);
-        }
-        for k in 0..3 {
-            let (p, q) = ((k + 1) % 3, (k + 2) % 3);
-            for (point, (p, q)) in self.inner[k].iter().zip([(p, q), (q, p)]) {
-                let (mut d, mut dd) = ([0.0; 3], [0.0; 6]);
-                let [f, f_p, f_q, f_pp, f_pq, f_qq] = share(c[p], c[q]);
-                let s = 12.0 * c[k] * c[k];
-                (d[k], d[p], d[q]) = (24.0 * c[k] * f, s * f_p, s * f_q);
-                (dd[k], dd[p], dd[q]) = (24.0 * f, s * f_pp, s * f_qq);
-                dd[between(k, p)] = 24.0 * c[k] * f_p;
-                dd[between(k, q)] = 24.0 * c[k] * f_q;
-                dd[between(p, q)] = s * f_pq;
-                add(point, s * f, d, dd);
+        let mut k = 0;
+        for i in 0..5 {
+            for j in 0..5 - i {
+                let first = [du[i] * v[j], u[i] * dv[j]];
+                let second = [ddu[i] * v[j], du[i] * dv[j], u[i] * ddv[j]];
+                add(
+                    &self.powers[k],
+                    [
+                        u[i] * v[j],
+                        first[0],
+                        first[1],
+                        second[0],
+                        second[1],
+                        second[2],
+                    ],
+                );
+                k += 1;
             }
         }
-        let (x, d, dd) = sum;
+        if !self.is_plane {
+            let c = [1.0 - at.x - at.y, at.x, at.y];
+            for (k, twist) in self.twists.iter().enumerate() {
+                add(twist, twisted(c, k));
+            }
+        }
+        let [x, d1, d2, d11, d12, d22] = jet;
         Jet {
             x,
-            d: Matrix3x2::from_columns(&[d[1] - d[0], d[2] - d[0]]),
-            dd: [
-                dd[1] - 2.0 * dd[3] + dd[0],
-                dd[4] - dd[3] - dd[5] + dd[0],
-                dd[2] - 2.0 * dd[5] + dd[0],
-            ],
+            d: Matrix3x2::from_columns(&[d1, d2]),
+            dd: [d11, d12, d22],
         }
     }
 
@@ -213,8 +215,27 @@ impl Patch {
         found.unwrap_or_else(|| Vector2::repeat(1.0 / 3.0))
     }
 
+    /// Coordinates of the point of the plane triangle nearest to x, of its inside or of its edges.
+    fn nearest_of_triangle(&self, x: &Point) -> Vector2<f64> {
+        let flat = self.flat(x);
+        if least(&flat) >= 0.0 {
+            return flat;
+        }
+        let on = |k: usize| {
+            let (from, along) = (self.corners[k], self.corners[(k + 1) % 3] - self.corners[k]);
+            let s = ((x - from).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+            ((from + along * s - x).norm_squared(), on_side(k, s))
+        };
+        let nearer =
+            |p: (f64, Vector2<f64>), q: (f64, Vector2<f64>)| if p.0 <= q.0 { p } else { q };
+        nearer(nearer(on(0), on(1)), on(2)).1
+    }
+
     /// Coordinates of its point nearest to x: of its inside, or of its edges.
     pub(super) fn nearest(&self, x: &Point) -> Vector2<f64> {
+        if self.is_plane {
+            return self.nearest_of_triangle(x);
+        }
         if let Some(inside) = self.perpendicular(x, inwards(self.flat(x))) {
             return inside;
         }
@@ -258,14 +279,12 @@ impl Patch {
 
     /// Coordinates of the point of edge k nearest to x.
     fn on_edge(&self, x: &Point, k: usize) -> Vector2<f64> {
-        let ends = [k, (k + 1) % 3].map(|i| Vector2::new(f64::from(i == 1), f64::from(i == 2)));
-        let along = ends[1] - ends[0];
-        let point = |s: f64| ends[0] + along * s;
+        let along = on_side(k, 1.0) - on_side(k, 0.0);
         let [a, b] = [k, (k + 1) % 3].map(|i| self.corners[i]);
         let chord = b - a;
         let mut s = ((x - a).dot(&chord) / chord.norm_squared()).clamp(0.0, 1.0);
         for _ in 0..STEPS {
-            let jet = self.at(&point(s));
+            let jet = self.at(&on_side(k, s));
             let (d, from) = (jet.d * along, x - jet.x);
             let bend = along.dot(&(jet.second(&from) * along));
             let whole = d.norm_squared() - bend;
@@ -277,9 +296,12 @@ impl Patch {
                 break;
             }
         }
-        point(s)
+        on_side(k, s)
     }
 }
+
+/// Coefficients that a plane patch has not, in parts of its longest edge.
+const STRAIGHT: f64 = 1e-14;
 
 /// Steps of a search for the nearest point.
 const STEPS: usize = 30;
@@ -305,6 +327,67 @@ fn inwards(at: Vector2<f64>) -> Vector2<f64> {
         true => at,
         false => middle + (at - middle) * ((1.0 / 3.0) / (1.0 / 3.0 - low)).min(1.0),
     }
+}
+
+/// The point that divides edge k in the ratio of s to 1 - s.
+fn on_side(k: usize, s: f64) -> Vector2<f64> {
+    match k {
+        0 => Vector2::new(s, 0.0),
+        1 => Vector2::new(1.0 - s, s),
+        _ => Vector2::new(0.0, 1.0 - s),
+    }
+}
+
+/// Place of uⁱ vʲ among the powers up to the fourth.
+fn place(i: usize, j: usize) -> usize {
+    i * (11 - i) / 2 + j
+}
+
+/// Adds (1 - u - v)ᵃ uᵇ vᶜ, as powers by their places.
+fn expand([a, b, c]: [usize; 3], mut add: impl FnMut(usize, f64)) {
+    let choose = |n: usize, k: usize| (0..k).fold(1.0, |x, i| x * (n - i) as f64 / (i + 1) as f64);
+    for i in 0..=a {
+        for j in 0..=a - i {
+            let sign = if (i + j) % 2 == 0 { 1.0 } else { -1.0 };
+            add(place(b + i, c + j), sign * choose(a, i) * choose(a - i, j));
+        }
+    }
+}
+
+/// Powers up to the fourth, with their first and second derivatives.
+fn powers(x: f64) -> [[f64; 5]; 3] {
+    let (x2, x3) = (x * x, x * x * x);
+    [
+        [1.0, x, x2, x3, x2 * x2],
+        [0.0, 1.0, 2.0 * x, 3.0 * x2, 4.0 * x3],
+        [0.0, 0.0, 2.0, 6.0 * x, 12.0 * x2],
+    ]
+}
+
+/// What the twist near corner k is multiplied by, 12 c_k² p q (p - q) / (p + q) with the other coordinates p and q in
+/// turn, and its derivatives by the coordinates of corners 1 and 2.
+fn twisted(c: [f64; 3], k: usize) -> [f64; 6] {
+    let (p, q) = ((k + 1) % 3, (k + 2) % 3);
+    let ([f, f_p, f_q, f_pp, f_pq, f_qq], other) = (share(c[p], c[q]), share(c[q], c[p]));
+    let f = f - other[0];
+    let (f_p, f_q) = (f_p - other[2], f_q - other[1]);
+    let (f_pp, f_pq, f_qq) = (f_pp - other[5], f_pq - other[4], f_qq - other[3]);
+    let s = 12.0 * c[k] * c[k];
+    // By the barycentric coordinates; second derivatives ₀₀, ₁₁, ₂₂, ₀₁, ₁₂, ₂₀.
+    let (mut d, mut dd) = ([0.0; 3], [0.0; 6]);
+    (d[k], d[p], d[q]) = (24.0 * c[k] * f, s * f_p, s * f_q);
+    (dd[k], dd[p], dd[q]) = (24.0 * f, s * f_pp, s * f_qq);
+    dd[between(k, p)] = 24.0 * c[k] * f_p;
+    dd[between(k, q)] = 24.0 * c[k] * f_q;
+    dd[between(p, q)] = s * f_pq;
+    [
+        s * f,
+        d[1] - d[0],
+        d[2] - d[0],
+        dd[1] - 2.0 * dd[3] + dd[0],
+        dd[4] - dd[3] - dd[5] + dd[0],
+        dd[2] - 2.0 * dd[5] + dd[0],
+    ]
 }
 
 /// Place of a mixed second derivative among ₀₁, ₁₂, ₂₀.

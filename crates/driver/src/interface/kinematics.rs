@@ -119,7 +119,7 @@ impl<const D: usize> Driver<D> {
                     // Opposite to nothing: as far away as anything can be.
                     None => Kinematics::apart(p.law, size),
                 };
-                return kinematics.between_forces(motion_row.area);
+                return kinematics.between_forces(self.grips[i].area(&p.law, motion_row.area));
             };
             let turn = self.turn_at(tool, end, d_u);
             let follows = self.follows(&turn, end, tool);
@@ -152,7 +152,7 @@ impl<const D: usize> Driver<D> {
                     });
                     kinematics.curvature = SMatrix::from_fn(|i, j| axes[j][i]);
                 }
-                return kinematics.between_forces(motion_row.area);
+                return kinematics.between_forces(self.grips[i].area(&p.law, motion_row.area));
             };
             // Any normal of the cone: friction about its axis that holds as far as the cone reaches.
             let gap = corner.axis.dot(&(x - corner.position)) - p.offset;

@@ -103,6 +103,7 @@ impl<const D: usize> Driver<D> {
             true => None,
             false => self.state.solution.clone(),
         };
+        self.begin_grips();
         let missing = self.missing(start, end, &d_u);
         system.begin();
         let tangent = Stiffness::Plastic(1.0);
@@ -169,17 +170,31 @@ impl<const D: usize> Driver<D> {
         watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<(Balance<D>, ContactSolution<D>), IncrementError> {
         loop {
-            let balance = self.balance_of(system, increment)?;
+            let mut balance = self.balance_of(system, increment)?;
             self.tell(increment, &balance, watch)?;
             if let Some(solution) = self.accepted(system, increment, &balance) {
-                let state = (balance.kinematics.as_slice(), solution.status.as_slice());
-                let held = &mut increment.held;
-                increment.counts.negative = self.negative_eigenvalues(system, state, held);
-                increment.count(system);
-                return Ok((balance, solution));
+                if !self.release(&solution.force) {
+                    let state = (balance.kinematics.as_slice(), solution.status.as_slice());
+                    let held = &mut increment.held;
+                    increment.counts.negative = self.negative_eigenvalues(system, state, held);
+                    increment.count(system);
+                    return Ok((balance, solution));
+                }
+                increment.solution = Some(solution);
+                balance = self.balance_of(system, increment)?;
             }
             self.check_progress(system, increment, &balance)?;
-            let step = self.newton_step(system, increment, balance)?;
+            let step = match self.newton_step(system, increment, balance) {
+                Err(IncrementError::Contact {
+                    source: ContactError::Singular,
+                    ..
+                }) if self.grip_everywhere() => {
+                    increment.missing =
+                        self.missing(increment.start, &increment.end, &increment.iterate.d_u);
+                    continue;
+                }
+                step => step?,
+            };
             self.go_along(system, increment, &step);
         }
     }
@@ -355,6 +370,7 @@ impl<const D: usize> Driver<D> {
             (enough, imbalance, accuracy),
         )?;
         let (step, factor) = (answer.step, answer.growth);
+        self.grip(&answer.solution.force);
         increment.solution = Some(answer.solution);
         let last = increment
             .chord

@@ -126,7 +126,11 @@ impl<const D: usize> Driver<D> {
             &line.contact(0.0),
             0.0,
         );
-        let (at_start, before) = (line.slope(&before), norm(&before));
+        let (at_start, out, before) = (
+            line.slope(&before),
+            largest(before.iter().copied()),
+            norm(&before),
+        );
         let after = line.residual(system, &assembly.internal, &line.contact(1.0), 1.0);
         let (at_end, left) = (line.slope(&after), largest(after.iter().copied()));
         let overshoots = match step.allowed {
@@ -137,9 +141,9 @@ impl<const D: usize> Driver<D> {
         // A step that turns cells inside out leads to no forces.
         let inverts = !left.is_finite();
         // While prescribed displacements or motions are missing, ΔΦ is not what the step minimises; in balance
-        // its slope is rounding.
+        // its slope is rounding; and an iterate that is in balance, but not under the law, is better than any beside it.
         let enough = self.accepted_residual(system, scale, &d_u) + step.slack;
-        let searched = step.complete || line.under_last && !step.arrives;
+        let searched = (step.complete || line.under_last && !step.arrives) && out > enough;
         if !inverts && (!searched || !overshoots || left <= enough) {
             *iterate = Iterate {
                 d_u,

@@ -117,6 +117,9 @@ impl<const D: usize> Driver<D> {
                 return Err(IncrementError::Interrupted);
             }
             if left <= tolerance * scale {
+                if self.release(&uzawa.force) {
+                    continue;
+                }
                 self.check_passage(&iterate.d_u, end)?;
                 let state = (response.kinematics.as_slice(), response.status.as_slice());
                 let held = &mut Held::default();
@@ -127,6 +130,7 @@ impl<const D: usize> Driver<D> {
                 return self.commit(start, end, candidate);
             }
             uzawa.correct(&response);
+            self.grip(&uzawa.force);
         }
         let iterate = &increment.iterate;
         let source = ContactError::NotConverged {

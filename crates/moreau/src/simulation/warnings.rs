@@ -21,8 +21,6 @@ enum Kind {
     Buckling,
     /// Nodes that are held inside of what they are in contact with.
     Held,
-    /// Nodes that are sheared by what they do not touch.
-    Apart,
     /// Nodes at sharp corners of tools.
     Corner,
     /// Rigid motions that nothing resists.
@@ -35,14 +33,13 @@ enum Kind {
     Distorted,
 }
 
-const KINDS: [Kind; 12] = [
+const KINDS: [Kind; 11] = [
     Kind::Strain,
     Kind::Rotation,
     Kind::Inverted,
     Kind::Between,
     Kind::Buckling,
     Kind::Held,
-    Kind::Apart,
     Kind::Corner,
     Kind::Free,
     Kind::Unstable,
@@ -185,22 +182,6 @@ impl Warnings {
             let numbers = vec![-deepest.u[0], held.count() as f64, deepest.contact as f64];
             let at = (deepest.node, deepest.position.to_vec());
             self.note(Kind::Held, numbers, at, when);
-        }
-        let apart = |c: &&ContactRecord<D>| {
-            let is_open = c.t[0] == 0.0 && c.u[0] > driver.rounding_of_gaps();
-            is_open && c.t.norm() > report.out_of_balance
-        };
-        let apart = driver.contacts().iter().filter(apart);
-        if let Some(widest) = apart.clone().max_by(|a, b| a.u[0].total_cmp(&b.u[0])) {
-            let shear = apart.clone().map(|c| c.t.norm()).sum();
-            let numbers = vec![
-                widest.u[0],
-                apart.count() as f64,
-                widest.contact as f64,
-                shear,
-            ];
-            let at = (widest.node, widest.position.to_vec());
-            self.note(Kind::Apart, numbers, at, when);
         }
         if let Some(&first) = report.corners.first() {
             let point = &driver.contacts()[first];
@@ -361,7 +342,6 @@ impl Worst {
             ),
             Kind::Between => self.between(driver, deck),
             Kind::Held => self.held(driver, deck),
-            Kind::Apart => self.apart(driver, deck),
             Kind::Corner => self.corner(driver),
             Kind::Free => self.free(driver),
             Kind::Unstable => format!(
@@ -421,21 +401,6 @@ impl Worst {
              {length} in increment {when}: displacement conditions put them there, and contact cannot \
              push them out; release them, or move \"{opposite}\"",
             shown(self.number(1), 9),
-            shown(self.number(0), 4)
-        )
-    }
-
-    fn apart<const D: usize>(&self, driver: &Driver<D>, deck: &Deck) -> String {
-        let (length, force) = (deck.units.length(), deck.units.force());
-        let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
-        let (surface, opposite) = driver.contact_name(self.number(2) as usize);
-        format!(
-            "\"{opposite}\" shears {} nodes of \"{surface}\" that it does not touch, with {} {force} in all, node \
-             {index} at {at} across a gap of {} {length} in increment {when}: a limit \"tresca\" holds without regard \
-             to the pressure, also where there is none; for friction where surfaces press on each other only, take \
-             \"coulomb\" and \"tau-max\"",
-            shown(self.number(1), 9),
-            shown(self.number(3), 4),
             shown(self.number(0), 4)
         )
     }

@@ -374,24 +374,6 @@ fn tells_once(name: &str, deck: &str, words: &[&str]) {
     assert_eq!(warnings.iter().filter(told).count(), 1, "{warnings:#?}");
 }
 
-/// A limit of the shear without regard to the pressure holds wherever a tool is, and that is told; one that
-/// begins with Coulomb's law holds where it touches.
-#[test]
-fn shear_across_a_gap_is_told() {
-    let tool = "cylinder = { center = [10, 20.0], radius = 10 }";
-    let deck = block("quad4", [0.0, 20.0], [8, 4], tool, -0.02);
-    let deck = deck.replace("move = [0, -0.02]", "move = [0.01, -0.02]");
-    let limit = |law: &str| deck.replace("friction = 0.2", &format!("friction = {{ {law} }}"));
-    let words = [
-        "\"t\" shears ",
-        " nodes of \"b.top\" that it does not touch",
-        " across a gap of 4.",
-        "\"coulomb\" and \"tau-max\"",
-    ];
-    tells_once("sheared", &limit("tresca = 20"), &words);
-    tells("rubbed", &limit("coulomb = 1, tau-max = 20"), &[]);
-}
-
 /// A rule that leaves deformations without strain is told.
 #[test]
 fn hourglasses_are_told() {

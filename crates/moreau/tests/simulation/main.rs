@@ -9,6 +9,7 @@ mod outside;
 mod points;
 mod replaced;
 mod saved;
+mod sheared;
 
 use moreau::deck::{Given, Meshes};
 use moreau::driver::IncrementError;

@@ -1,0 +1,51 @@
+//! Whether a shear of given limit acts at a contact point; not how large it is.
+
+use moreau_laws::Friction;
+
+/// Tresca's law limits a shear without regard to the pressure, and would shear what a tool does not touch. It holds
+/// where bodies press: in an increment at the points that are closed at its start and at those that come to press in it,
+/// less those that balance is found to leave open. What presses without its shear and opens under it, time and again,
+/// keeps it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Grip {
+    acts: bool,
+    /// How often balance has left the point open.
+    released: u8,
+}
+
+/// Times that a point is released in an increment.
+const RELEASES: u8 = 3;
+
+impl Grip {
+    /// At the start of an increment, of a point that is closed there or not.
+    pub(crate) fn start(closed: bool) -> Self {
+        Self {
+            acts: closed,
+            released: 0,
+        }
+    }
+
+    /// Of a point that presses.
+    pub(crate) fn pressed(self) -> Self {
+        Self { acts: true, ..self }
+    }
+
+    /// Of a point that balance leaves open.
+    pub(crate) fn open(self) -> Self {
+        match self.acts && self.released < RELEASES {
+            true => Self {
+                acts: false,
+                released: self.released + 1,
+            },
+            false => self,
+        }
+    }
+
+    /// The area on which a limit of the shear acts, of that of the point.
+    pub(crate) fn area(self, law: &Friction, area: f64) -> f64 {
+        match law {
+            Friction::Tresca(_) if !self.acts => 0.0,
+            _ => area,
+        }
+    }
+}
