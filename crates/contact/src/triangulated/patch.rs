@@ -16,7 +16,7 @@ pub(super) struct Patch {
     /// Half of what the two inner coefficients near a corner differ by.
     twists: [Point; 3],
     /// Whether it is its plane triangle.
-    is_plane: bool,
+    pub(super) is_plane: bool,
     /// Least and greatest coordinates of a box around it.
     around: [[f64; 3]; 2],
     /// How far it is at most from its plane triangle \[mm\].
@@ -301,7 +301,7 @@ impl Patch {
 }
 
 /// Coefficients that a plane patch has not, in parts of its longest edge.
-const STRAIGHT: f64 = 1e-14;
+const STRAIGHT: f64 = 1e-12;
 
 /// Steps of a search for the nearest point.
 const STEPS: usize = 30;

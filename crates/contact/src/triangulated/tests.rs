@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::Ball;
+use nalgebra::Rotation3;
 use proptest::prelude::*;
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
@@ -201,6 +202,20 @@ fn a_bent_patch_is_met_inside() {
 }
 
 /// A mantle is round, its ends are plane, and both meet along a round edge.
+/// Wherever a plane part stands, it is known for one, which is met without a search.
+#[test]
+fn faces_of_a_cube_are_plane_wherever_it_stands() {
+    for (k, far) in [0.0, 1.0, 30.0].into_iter().enumerate() {
+        let turn = Rotation3::new(Point::new(0.3, -0.7, 0.2) * (1.0 + k as f64));
+        let (points, faces) = cube();
+        let moved =
+            |x: &[f64; 3]| (turn * Point::from(*x) + Point::new(far, -far, 2.0 * far)).into();
+        let points: Vec<[f64; 3]> = points.iter().map(moved).collect();
+        let cube = surface(&(points, faces));
+        assert!(cube.patches.iter().all(|patch| patch.is_plane), "{far}");
+    }
+}
+
 #[test]
 fn a_can_has_sharp_edges() {
     let off = |n: usize| {
