@@ -94,6 +94,7 @@ impl<const D: usize> Driver<D> {
         mut d_u: Vec<f64>,
         control: Option<&'a mut Control<'c, D>>,
     ) -> Increment<'a, 'c, D> {
+        self.begin_grips();
         // Tools resist nothing: they are where they shall be from the first.
         for (&dof, u) in end.displacement.range(self.mesh_dofs()..) {
             d_u[dof] = u - start.displacement.get(&dof).unwrap_or(u);
@@ -103,7 +104,6 @@ impl<const D: usize> Driver<D> {
             true => None,
             false => self.state.solution.clone(),
         };
-        self.begin_grips();
         let missing = self.missing(start, end, &d_u);
         system.begin();
         let tangent = Stiffness::Plastic(1.0);
