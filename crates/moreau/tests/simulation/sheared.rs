@@ -81,3 +81,54 @@ fn shears_of_given_limits_act_where_bodies_press() {
         }
     }
 }
+
+/// A cylinder on a floor under a ball that goes up again: as its rim is released, the iterate is in balance to the last
+/// digit, and the law does not hold.
+#[test]
+fn what_is_released_in_balance_finds_its_place() {
+    let block = finish(simulation(
+        r#"units = "mm-N-MPa"
+analysis = "axisymmetric"
+mesh = { block = [{ name = "block", element = "quad9", x = [0, 6], y = [0, 6], cells = [6, 4] }] }
+[[material]]
+on = "block"
+young = 210e3
+poisson = 0.2
+yield-stress = 210.0
+hardening = { voce = [210.0, 10] }
+hill = { f = 0.4, g = 0.6, h = 0.5, l = 1.5, m = 1.4, n = 1.3 }
+[[tool]]
+name = "ball"
+sphere = { center = [0, 9], radius = 3 }
+[[tool]]
+name = "floor"
+plane = { point = [0, 0], normal = [0, 1] }
+[[contact]]
+surface = "block.top"
+against = "ball"
+friction = 0.6
+[[contact]]
+surface = "block.bottom"
+against = "floor"
+friction = { tresca = 21.0 }
+[[step]]
+name = "down"
+increments = 1
+fix = [{ on = "block.left", u = ["x"] }]
+tools = [{ name = "ball", move = [0, -0.06] }]
+[[step]]
+name = "up"
+increments = { start = 0.05, min = 1e-5, max = 0.5 }
+fix = [{ on = "block.left", u = ["x"] }]
+tools = [{ name = "ball", move = [0, 0.1] }]
+"#,
+    ));
+    let of = |name: &str| block.history().numbers(name);
+    assert!(of("cuts").iter().all(|&n| n == 0.0));
+    let [ball, floor] = ["ball", "floor"].map(|t| of(&format!("force.{t}.y")));
+    assert!(ball[0] < -1e3, "{ball:?}");
+    for (a, b) in ball.iter().zip(&floor) {
+        assert!((a + b).abs() < 1e-6, "{ball:?} {floor:?}");
+    }
+    assert!(ball[ball.len() - 1].abs() < 1e-9, "{ball:?}");
+}
