@@ -5,6 +5,7 @@ pub(crate) mod chord;
 pub(crate) mod commit;
 pub(crate) mod control;
 pub(crate) mod criteria;
+pub(crate) mod descent;
 pub(crate) mod following;
 pub(crate) mod heat;
 pub(crate) mod increment;

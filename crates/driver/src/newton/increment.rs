@@ -12,6 +12,7 @@ use crate::newton::candidate::Candidate;
 use crate::newton::chord::Chord;
 use crate::newton::control::Control;
 use crate::newton::criteria::slack;
+use crate::newton::descent::{TERMS, stiffer};
 use crate::newton::iterate::Iterate;
 use crate::newton::line_search::NewtonStep;
 use crate::newton::linearised::{Answer, Linearised};
@@ -363,11 +364,14 @@ impl<const D: usize> Driver<D> {
         let enough = if exact { 0.0 } else { expected };
         let accuracy = (expected, balance.accepted);
         let missing = std::mem::take(&mut increment.missing);
+        // What displacements or tools that move give the bodies is no way down.
+        let descends = arrived && !moved && increment.control.is_none();
         let (answer, contact) = self.solve_step(
             system,
             increment,
             (&balance, &missing),
             (enough, imbalance, accuracy),
+            descends && self.asks_for_descent(system),
         )?;
         let (step, factor) = (answer.step, answer.growth);
         self.grip(&answer.solution.force);
@@ -393,14 +397,46 @@ impl<const D: usize> Driver<D> {
         })
     }
 
-    /// Solves the linearised increment that makes up for what is missing: again where the factorised tangent lacks
-    /// something, or surfaces move with the step. Returns its answer with the contact forces at its end.
+    /// Solves the linearised increment that makes up for what is missing; a step that has to go downhill and does not is
+    /// found anew, held by proximal terms. Returns its answer with the contact forces at its end.
     fn solve_step(
+        &mut self,
+        system: &mut System,
+        increment: &mut Increment<'_, '_, D>,
+        of: (&Balance<D>, &SparseVector),
+        accuracy: (f64, f64, (f64, f64)),
+        descends: bool,
+    ) -> Result<(Answer<D>, SparseVector), IncrementError> {
+        let (mut answer, mut contact) = self.solve_held(system, increment, of, accuracy, 0.0)?;
+        if !descends {
+            return Ok((answer, contact));
+        }
+        let load = increment.iterate.assembly.load(&[&increment.end.force]);
+        let mut held = 0.0;
+        for _ in 0..TERMS {
+            let Some(next) = stiffer(&load, (&answer, &contact), held) else {
+                break;
+            };
+            held = next;
+            match self.solve_held(system, increment, of, accuracy, held) {
+                Ok(found) => (answer, contact) = found,
+                // Stiffer it may have a solution.
+                Err(IncrementError::Contact { .. }) => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Ok((answer, contact))
+    }
+
+    /// Solves the linearised increment with a proximal term of its contact problem \[N/mm\]: again where the factorised
+    /// tangent lacks something, or surfaces move with the step.
+    fn solve_held(
         &mut self,
         system: &mut System,
         increment: &mut Increment<'_, '_, D>,
         (balance, missing): (&Balance<D>, &SparseVector),
         (enough, imbalance, accuracy): (f64, f64, (f64, f64)),
+        proximal: f64,
     ) -> Result<(Answer<D>, SparseVector), IncrementError> {
         let mut unsymmetric = self.unsymmetric(system, &increment.iterate, imbalance, accuracy);
         let load = increment.iterate.assembly.load(&[&increment.end.force]);
@@ -422,6 +458,7 @@ impl<const D: usize> Driver<D> {
                     .as_ref()
                     .map(|c| (c.load, c.compliance, c.missing(&increment.iterate.d_u))),
                 enough,
+                proximal,
                 held: &mut increment.held,
             };
             let load = match &unsymmetric {

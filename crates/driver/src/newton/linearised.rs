@@ -38,6 +38,9 @@ pub(crate) struct Linearised<'a, const D: usize> {
     pub(crate) guess: Option<&'a ContactSolution<D>>,
     /// A load q of unknown factor, and c and m of q·u + c λ = m.
     pub(crate) border: Option<(&'a SparseVector, f64, f64)>,
+    /// A proximal term c/2 |x|² of the motions x of the contacts \[N/mm\], where they are condensed; zero where nothing asks
+    /// for one.
+    pub(crate) proximal: f64,
     /// Residual that the contact solution may keep \[N\].
     pub(crate) enough: f64,
     /// The factor that the last contact problem has left, where contacts are tied.
@@ -201,6 +204,7 @@ impl<const D: usize> Driver<D> {
         )
         .map_err(contact)?;
         let problem = &mut condensation.problem;
+        problem.hold(linearised.proximal);
         let method = &self.settings.contact;
         let from =
             |guessed: bool| method.approach(problem, guess.filter(|_| guessed), linearised.enough);
