@@ -32,6 +32,9 @@ const WELL: f64 = 0.1;
 /// Imbalance over the forces in play, from which on a tangent that is not positive definite leads nowhere.
 const FAR: f64 = 0.1;
 
+/// Iterations in which the residual is not halved, after which steps have to go downhill.
+const STRAYING: usize = 4;
+
 /// An increment on its way from one loading to another.
 pub(crate) struct Increment<'a, 'c, const D: usize> {
     start: &'a Loading<D>,
@@ -364,8 +367,10 @@ impl<const D: usize> Driver<D> {
         let enough = if exact { 0.0 } else { expected };
         let accuracy = (expected, balance.accepted);
         let missing = std::mem::take(&mut increment.missing);
-        // What displacements or tools that move give the bodies is no way down.
-        let descends = arrived && !moved && increment.control.is_none();
+        // An unstable equilibrium that the iteration leads to is one, and told; what displacements or tools that move give
+        // the bodies is no way down.
+        let astray = increment.counts.stagnates(STRAYING);
+        let descends = astray && arrived && !moved && increment.control.is_none();
         let (answer, contact) = self.solve_step(
             system,
             increment,
