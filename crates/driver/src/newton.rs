@@ -1,6 +1,5 @@
 //! One increment by Newton's method; not the sequence of increments.
 
-pub(crate) mod candidate;
 pub(crate) mod chord;
 pub(crate) mod commit;
 pub(crate) mod control;

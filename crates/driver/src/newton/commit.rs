@@ -7,7 +7,7 @@ use crate::interface::kinematics::NO_SLIP;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Kinematics, in_space, turned};
-use crate::newton::candidate::Candidate;
+use crate::newton::iterate::Candidate;
 use crate::report::counts::Counts;
 use crate::report::{ContactRecord, Energies, IncrementReport};
 use crate::vector::SparseVector;

@@ -1,12 +1,15 @@
-//! Where Newton's iteration stands: displacements, forces and what they are measured by; not how it
+//! Where Newton's iteration stands, and ends: displacements, forces and what they are measured by; not how it
 //! got there.
 
 use crate::linear::system::Assembly;
 use crate::model::load::Loading;
+use crate::model::points::Kinematics;
+use crate::report::counts::Counts;
 use crate::vector::SparseVector;
 use crate::vector::largest;
 use crate::vector::prescribed::Prescribed;
 use crate::vector::prescribed::residual;
+use moreau_contact::ContactSolution;
 
 /// Where Newton's iteration stands.
 pub(crate) struct Iterate {
@@ -40,4 +43,15 @@ impl Iterate {
         let pairs = residual.iter().zip(&self.assembly.prescribed_load);
         largest(pairs.map(|(force, prescribed)| force - prescribed))
     }
+}
+
+/// A converged increment, not yet committed.
+pub(crate) struct Candidate<const D: usize> {
+    pub(crate) d_u: Vec<f64>,
+    pub(crate) internal: Vec<f64>,
+    pub(crate) kinematics: Vec<Kinematics<D>>,
+    /// Forces and statuses; the displacements are those of the linearised problem.
+    pub(crate) solution: ContactSolution<D>,
+    pub(crate) out_of_balance: f64,
+    pub(crate) counts: Counts,
 }

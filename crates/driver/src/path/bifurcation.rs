@@ -4,7 +4,7 @@ use super::buckling::noise;
 use crate::driver::Driver;
 use crate::interface::free::Free;
 use crate::linear::system::System;
-use crate::newton::candidate::Candidate;
+use crate::newton::iterate::Candidate;
 use crate::vector::SparseVector;
 use moreau_algebra::{DenseLdlt, Interface};
 use nalgebra::{DMatrix, DVector};

@@ -6,7 +6,7 @@ use crate::driver::Driver;
 use crate::error::IncrementError;
 use crate::linear::system::System;
 use crate::model::load::Loading;
-use crate::newton::candidate::Candidate;
+use crate::newton::iterate::Candidate;
 use crate::report::counts::Counts;
 use crate::report::{IncrementReport, Iteration};
 use crate::vector::{SparseVector, largest};
