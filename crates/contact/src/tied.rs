@@ -101,6 +101,8 @@ pub struct TiedProblem<'a, const D: usize> {
     pub springs: Vec<Springs<D>>,
     /// The largest force of the load f \[N\].
     pub load: f64,
+    /// By how much that load may be rounding \[N\], as [`CondensedProblem::rounds`](crate::CondensedProblem::rounds) tells.
+    pub rounding: f64,
     /// Contact forces t₀ at the start of the step \[N\].
     pub previous: Vec<Local<D>>,
 }

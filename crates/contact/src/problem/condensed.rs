@@ -13,6 +13,11 @@ const FAINT: f64 = 1e-9;
 /// Least proximal term, over the stiffest diagonal, whose inverse is not too large to iterate on.
 const SWEPT: f64 = 1e-9;
 
+/// The largest proximal term that is looked for, over the stiffest diagonal, and how near the least that makes S stable is
+/// found.
+const MOST: f64 = 1e3;
+const NEAR: f64 = 2.0;
+
 /// The contact problem of one linearised increment, in the contacts' local frames:
 ///
 /// ```text
@@ -32,6 +37,8 @@ pub struct CondensedProblem<const D: usize> {
     previous: Vec<Local<D>>,
     /// Its proximal term \[N/mm\].
     held: f64,
+    /// By how much the load may be rounding \[N\].
+    load_rounding: f64,
 }
 
 impl<const D: usize> CondensedProblem<D> {
@@ -65,6 +72,7 @@ impl<const D: usize> CondensedProblem<D> {
             laws: laws.into_iter().map(Into::into).collect(),
             previous,
             held: 0.0,
+            load_rounding: 0.0,
         })
     }
 
@@ -102,6 +110,12 @@ impl<const D: usize> CondensedProblem<D> {
         self.held = c;
     }
 
+    /// Tells by how much the load may be rounding \[N\] beyond that of its own size: what is left of stresses that have
+    /// vanished is the rounding of those before. A solution is exact where its residual is no larger.
+    pub fn rounds(&mut self, rounding: f64) {
+        self.load_rounding = rounding;
+    }
+
     /// Whether only a proximal term makes S regular that is so small that the inverse is too large to iterate on.
     pub(crate) fn is_faintly_held(&self) -> bool {
         self.held > 0.0 && self.held < SWEPT * self.stiffness.diagonal().amax()
@@ -110,10 +124,32 @@ impl<const D: usize> CondensedProblem<D> {
     /// Whether S has an eigenvalue that is negative and no rounding of a rigid motion, as where stresses make the structure
     /// unstable with all its contacts free: it has no inverse that is one of a body, and there may be no solution.
     pub(crate) fn is_unstable(&self) -> bool {
+        !self.is_stable_with(FAINT * self.stiffness.diagonal().amax())
+    }
+
+    /// Whether S + c 1 is positive definite.
+    fn is_stable_with(&self, c: f64) -> bool {
         let mut stiffness = self.stiffness.clone();
-        let faint = FAINT * stiffness.diagonal().amax();
-        (0..stiffness.nrows()).for_each(|k| stiffness[(k, k)] += faint);
-        DenseCholesky::new(stiffness).is_none()
+        (0..stiffness.nrows()).for_each(|k| stiffness[(k, k)] += c);
+        DenseCholesky::new(stiffness).is_some()
+    }
+
+    /// The least c with which S + c 1 is positive definite, or up to twice as much \[N/mm\]; `None` of an S that is
+    /// not unstable without, and of one that no c makes stable.
+    pub fn stabilising(&self) -> Option<f64> {
+        let stiffest = self.stiffness.diagonal().amax();
+        let (mut unstable, mut stable) = (FAINT * stiffest, MOST * stiffest);
+        if self.is_stable_with(unstable) || !self.is_stable_with(stable) {
+            return None;
+        }
+        while stable > NEAR * unstable {
+            let between = (unstable * stable).sqrt();
+            match self.is_stable_with(between) {
+                true => stable = between,
+                false => unstable = between,
+            }
+        }
+        Some(stable)
     }
 
     /// Number of contacts.
@@ -200,7 +236,7 @@ impl<const D: usize> CondensedProblem<D> {
         let reach = x.iter().map(|x| x.amax()).fold(0.0, f64::max);
         let stiffest = self.stiffness.diagonal().amax();
         let terms = (self.load.len() as f64).sqrt();
-        4.0 * f64::EPSILON * terms * (stiffest * reach + self.load.amax())
+        4.0 * f64::EPSILON * terms * (stiffest * reach + self.load.amax()) + self.load_rounding
     }
 
     /// Largest ratio μ/μ_c over the contacts that are closed, or were at the start of the step, with its
@@ -255,6 +291,7 @@ fn inverse(a: DMatrix<f64>) -> Result<DMatrix<f64>, usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{ContactSolver, SemismoothNewton};
     use moreau_laws::Coulomb;
 
     fn coulomb(mu: f64) -> Friction {
@@ -296,6 +333,54 @@ mod tests {
             assert!((problem.stiffness() - held).amax() < 1e-15, "{c}");
             assert_eq!(problem.is_faintly_held(), faint, "{c}");
         }
+    }
+
+    /// Within its factor, and only where it is unstable.
+    #[test]
+    fn the_least_term_that_makes_it_stable() {
+        let zero = vec![Local::<2>::zeros()];
+        let stabilising = |own: f64, across: f64| {
+            let s = DMatrix::from_row_slice(2, 2, &[own, across, across, own]);
+            let laws = vec![coulomb(0.3)];
+            let problem =
+                CondensedProblem::new(s, DVector::zeros(2), zero.clone(), laws, zero.clone());
+            problem.expect("valid").stabilising()
+        };
+        assert_eq!(stabilising(3.0, 2.0), None);
+        assert_eq!(stabilising(3.0, 3.0), None);
+        // Eigenvalues own ± across.
+        for across in [3.0 + 1e-6, 3.1, 30.0, 300.0] {
+            let (c, least) = (stabilising(3.0, across).expect("unstable"), across - 3.0);
+            assert!((least..=NEAR * least).contains(&c), "{across}: {c}");
+        }
+        assert_eq!(stabilising(3.0, 1e5), None);
+    }
+
+    /// A body that nothing holds under a load of rounding: where that is told, it is at rest where it is.
+    #[test]
+    fn a_load_that_is_rounding_moves_nothing() {
+        let s = DMatrix::from_row_slice(
+            4,
+            4,
+            &[
+                1.0, 0.0, -1.0, 0.0, 0.0, 1.0, 0.0, -1.0, -1.0, 0.0, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0,
+            ],
+        );
+        let load = DVector::from_row_slice(&[1e-10, 0.0, 2e-10, 0.0]);
+        let gaps = vec![Local::<2>::new(0.1, 0.0); 2];
+        let before = vec![Local::<2>::new(1.0, 0.0), Local::zeros()];
+        let problem = CondensedProblem::new(s, load, gaps, vec![coulomb(0.3); 2], before);
+        let mut problem = problem.expect("valid");
+        let solve = |problem: &_| SemismoothNewton::default().solve(problem, None);
+        assert!(solve(&problem).is_err());
+        problem.rounds(1e-9);
+        let solution = solve(&problem).expect("at rest");
+        assert!(solution.exact);
+        assert_eq!(solution.motion, [Local::<2>::zeros(); 2]);
+        assert_eq!(solution.status, [Status::Open; 2]);
+        // A load that is more than that moves it.
+        problem.rounds(1e-12);
+        assert!(solve(&problem).is_err());
     }
 
     /// What is measured in newtons, by its definition.

@@ -156,10 +156,14 @@ pub(super) fn newton<const D: usize>(
             start = all_closed(problem, &begun);
             continue;
         }
+        // There may be no solution, and if there is another α hardly finds it.
+        if problem.is_unstable() {
+            return Err(ContactError::Singular);
+        }
         part += 1;
         // When all have stalled, sweeps find the statuses; where no inverse exists, or only a huge one, there are none.
         if part % PARTS.len() == 0 {
-            if problem.is_faintly_held() || problem.is_unstable() {
+            if problem.is_faintly_held() {
                 return Err(ContactError::Singular);
             }
             start = loop {

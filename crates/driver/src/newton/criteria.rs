@@ -43,15 +43,19 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Out-of-balance force at which an increment is accepted \[N\]: the tolerance, or the rounding of
-    /// internal forces where the body moves almost rigidly, or is let go: a stress that has vanished is
-    /// what rounding left of the largest so far.
+    /// internal forces.
     pub(crate) fn accepted_residual(&self, system: &System, scale: f64, d_u: &[f64]) -> f64 {
+        (self.settings.tolerance * scale).max(self.rounding(system, d_u))
+    }
+
+    /// Rounding of internal forces \[N\], which counts where the body moves almost rigidly, or is let go: a stress that has
+    /// vanished is what rounding left of the largest so far.
+    pub(crate) fn rounding(&self, system: &System, d_u: &[f64]) -> f64 {
         // Of the size of the mesh, no position has a smaller part.
         let (size, moved) = (self.mesh.size(), &d_u[..self.mesh_dofs()]);
         let motion = largest(moved.iter().copied()).max(self.state.farthest);
         let motion = motion.clamp(f64::EPSILON * size, size);
-        let rounding = 64.0 * f64::EPSILON * system.stiffest() * motion;
-        (self.settings.tolerance * scale).max(rounding)
+        64.0 * f64::EPSILON * system.stiffest() * motion
     }
 
     /// Whether nothing has gone so far that forces are rounding, in all of the increment or in its last step: what

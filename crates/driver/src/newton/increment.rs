@@ -451,6 +451,7 @@ impl<const D: usize> Driver<D> {
         let mut reached = increment.iterate.d_u.clone();
         missing.add_to(&mut reached, 1.0);
         let mut kinematics = Cow::Borrowed(balance.kinematics.as_slice());
+        let rounding = self.rounding(system, &increment.iterate.d_u);
         loop {
             let mut linearised = Linearised {
                 kinematics: &kinematics,
@@ -462,6 +463,7 @@ impl<const D: usize> Driver<D> {
                     .as_ref()
                     .map(|c| (c.load, c.compliance, c.missing(&increment.iterate.d_u))),
                 enough,
+                rounding,
                 proximal,
                 held: &mut increment.held,
             };

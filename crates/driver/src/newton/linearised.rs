@@ -13,7 +13,9 @@ use crate::timings::Clock;
 use crate::vector::SparseVector;
 use crate::vector::largest;
 use moreau_algebra::Interface;
-use moreau_contact::{ContactError, ContactSolution, Springs, TiedFactor, TiedProblem, solve_tied};
+use moreau_contact::{
+    CondensedProblem, ContactError, ContactSolution, Springs, TiedFactor, TiedProblem, solve_tied,
+};
 use moreau_laws::Local;
 use nalgebra::DVector;
 
@@ -27,6 +29,12 @@ const CARRIED: f64 = 1e-2;
 
 /// Part of a motion that is left under the stiffer of both where it is not a load that moves the body.
 const PUSHED: f64 = 0.5;
+
+/// Proximal terms under which the problem of an unstable structure is tried, over the least that makes it stable.
+const STABLE: [f64; 4] = [2.0, 8.0, 32.0, 128.0];
+
+/// Part that a contact solution may keep of what increments are excused for as rounding, which is ample.
+const ROUNDED: f64 = 0.01;
 
 /// An increment linearised at an iterate.
 pub(crate) struct Linearised<'a, const D: usize> {
@@ -43,6 +51,8 @@ pub(crate) struct Linearised<'a, const D: usize> {
     pub(crate) proximal: f64,
     /// Residual that the contact solution may keep \[N\].
     pub(crate) enough: f64,
+    /// Rounding of the forces that it is to balance \[N\].
+    pub(crate) rounding: f64,
     /// The factor that the last contact problem has left, where contacts are tied.
     pub(crate) held: &'a mut Held<D>,
 }
@@ -115,6 +125,7 @@ impl<const D: usize> Driver<D> {
         let largest_of =
             |forces: &[Local<D>], other: f64| forces.iter().map(|t| t.norm()).fold(other, f64::max);
         let given = largest_of(&previous, largest_load);
+        let rounding = ROUNDED * linearised.rounding;
         let mut solve = |guess: Option<&ContactSolution<D>>, c: f64, enough: f64| {
             if tied.hold(c) {
                 *factor = TiedFactor::default();
@@ -125,6 +136,7 @@ impl<const D: usize> Driver<D> {
                 friction: kinematics.iter().map(|k| k.law).collect(),
                 springs: springs.clone(),
                 load: largest_load,
+                rounding,
                 previous: previous.clone(),
             };
             solve_tied(&mut problem, guess, (tolerance, enough), factor)
@@ -205,16 +217,20 @@ impl<const D: usize> Driver<D> {
         .map_err(contact)?;
         let problem = &mut condensation.problem;
         problem.hold(linearised.proximal);
+        problem.rounds(ROUNDED * linearised.rounding);
         let method = &self.settings.contact;
         let from =
             |guessed: bool| method.approach(problem, guess.filter(|_| guessed), linearised.enough);
         let solution = nearer(self.reach(kinematics), farthest, from)
             .or_else(|error| {
                 // Where stresses make the structure unstable there may be none.
-                let step = self
-                    .has_large_strains()
-                    .then(|| method.step(problem, &force));
-                step.flatten().ok_or(error)
+                if !self.has_large_strains() {
+                    return Err(error);
+                }
+                let is_free = border.is_none() && linearised.proximal == 0.0;
+                let approach = |p: &_| method.approach(p, guess, linearised.enough).ok();
+                let held = is_free.then(|| stabilised(problem, approach)).flatten();
+                held.or_else(|| method.step(problem, &force)).ok_or(error)
             })
             .or_else(|error| {
                 counts.undetermined = true;
@@ -278,6 +294,21 @@ fn nearer<T>(
 /// The largest motion of a solution \[mm\].
 fn farthest<const D: usize>(solution: &ContactSolution<D>) -> f64 {
     largest(solution.motion.iter().flatten().copied())
+}
+
+/// The solution of the problem of an unstable structure with a proximal term that makes it stable; `None` where there is none
+/// either, or the structure is stable. The term is gone afterwards.
+fn stabilised<const D: usize>(
+    problem: &mut CondensedProblem<D>,
+    solve: impl Fn(&CondensedProblem<D>) -> Option<ContactSolution<D>>,
+) -> Option<ContactSolution<D>> {
+    let least = problem.stabilising()?;
+    let found = STABLE.iter().find_map(|times| {
+        problem.hold(times * least);
+        solve(problem)
+    });
+    problem.hold(0.0);
+    found
 }
 
 /// A contact problem that is singular, as where all that touches slips or nothing is left to press: of its

@@ -2,7 +2,7 @@
 
 use moreau_contact::Ball;
 use moreau_driver::{Axis, Driver, Model, Settings, Step};
-use moreau_laws::{Coulomb, Elastic};
+use moreau_laws::{Coulomb, Elastic, VonMises};
 use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
 
 /// A cantilever of this length and unit height, bent by a cylinder at nine tenths of it: the beam's
@@ -73,4 +73,87 @@ fn what_snaps_comes_to_rest_where_it_stays() {
     let [few, many] = ends;
     assert!((few - many).abs() < 1e-6 * few.abs(), "{ends:?}");
     assert!(few < -1e-4, "{few}");
+}
+
+/// A strip bowed by its end snaps away from under a roll, and is straightened again. On the way its stresses make it unstable
+/// under what touches, and contact problems have no solution; held by a proximal term they have one, and the iteration goes
+/// on from there. Let go it is as it was.
+#[test]
+fn a_bowed_strip_springs_back() {
+    let (x, y) = (uniform(0.0, 30.0, 40), uniform(0.0, 1.0, 2));
+    let mesh = block2("b", CellKind::Quad8, &x, &y).expect("valid");
+    let law = Elastic::new(70_000.0, 0.3).expect("valid");
+    let roll = Ball::new([9.195664, 2.0], 1.0).expect("valid");
+    let model = Model::with_large_strains(mesh, PlaneStrain::default())
+        .material("b", law, Integration::Reduced)
+        .and_then(|m| m.tool("roll", roll))
+        .and_then(|m| m.contact("b.top", "roll", Coulomb::new(0.2).expect("valid")))
+        .expect("valid");
+    let bow = Step::new("bow")
+        .fix("b.left", &[Axis::X])
+        .displace("b.right", Axis::X, -1.733)
+        .displace("b.right", Axis::Y, 0.0)
+        .tool("roll", [0.0, -1.371]);
+    let back = Step::new("back")
+        .fix("b.left", &[Axis::X])
+        .displace("b.right", Axis::X, 0.0)
+        .displace("b.right", Axis::Y, 0.0)
+        .tool("roll", [0.0, 1.922]);
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    let mut iterations = 0;
+    for (step, increments) in [(bow, 5), (back, 2)] {
+        let reports = driver.run(&step, increments, |_, _| {}).expect("converges");
+        iterations += reports.iter().map(|r| r.newton_iterations).sum::<usize>();
+    }
+    assert!(iterations < 150, "{iterations}");
+    assert_eq!(driver.tool_force("roll").expect("exists").norm(), 0.0);
+    assert!(driver.displacements().iter().all(|u| u.abs() < 1e-6));
+}
+
+/// A thin sheet bent between three rolls and let go in one increment: nothing holds it any more, and its forces are what
+/// rounding left of those before. It comes to rest without a force, bent by what has flowed.
+#[test]
+fn a_sheet_let_go_between_rolls_comes_to_rest() {
+    let (x, y) = (uniform(0.0, 30.0, 16), uniform(0.0, 0.2, 1));
+    let mesh = block2("b", CellKind::Quad8, &x, &y).expect("valid");
+    let steel = VonMises::new(210e3, 0.3, 250.0).and_then(|l| l.with_isotropic(500.0));
+    let law = steel.expect("valid");
+    let friction = Coulomb::new(0.3).expect("valid");
+    let ball = |x, y| Ball::new([x, y], 3.0).expect("valid");
+    let model = Model::with_large_strains(mesh, PlaneStrain::default())
+        .material("b", law, Integration::Reduced)
+        .and_then(|m| m.tool("left", ball(5.0, -3.0)))
+        .and_then(|m| m.tool("right", ball(25.0, -3.0)))
+        .and_then(|m| m.tool("roll", ball(14.0, 3.2)))
+        .and_then(|m| m.contact("b.bottom", "left", friction))
+        .and_then(|m| m.contact("b.bottom", "right", friction))
+        .and_then(|m| m.contact("b.top", "roll", friction))
+        .expect("valid");
+    let step = |name, y| {
+        Step::new(name)
+            .fix("b.left", &[Axis::X])
+            .tool("roll", [0.0, y])
+    };
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    let pressed = driver.run(&step("press", -3.0), 5, |_, _| {});
+    assert!(pressed.expect("converges")[4].plastic_fraction > 0.1);
+    let peak = -driver.tool_force("roll").expect("exists")[1];
+    let back = driver.run(&step("back", 1.0), 1, |_, _| {});
+    let back = back.expect("converges");
+    assert!(
+        back[0].cuts == 0 && back[0].newton_iterations < 100,
+        "{back:?}"
+    );
+    for tool in ["left", "right", "roll"] {
+        let force = driver.tool_force(tool).expect("exists");
+        assert!(
+            force.iter().all(|f| f.abs() < 1e-9 * peak),
+            "{tool}: {force:?}"
+        );
+    }
+    let bent = driver
+        .displacements()
+        .iter()
+        .fold(0.0_f64, |a, u| a.max(u.abs()));
+    assert!(peak > 0.1 && (0.5..4.0).contains(&bent), "{peak} {bent}");
 }

@@ -144,13 +144,13 @@ impl<const D: usize> Tied<'_, '_, D> {
     }
 
     /// Rounding of the map \[N\]: of displacements in the stiffness of a contact, and of what ties hold, which
-    /// forces are differences from.
+    /// forces are differences from; and of the load.
     fn rounding(&self, at: &At<D>) -> f64 {
         let count = at.u.len();
         let stiffest = (0..count).map(|i| self.problem.structure.stiffness(i));
         let stiffest = stiffest.fold(0.0, f64::max);
         let held = stack(&at.t) - &at.z;
         let terms = ((D * count) as f64).sqrt();
-        4.0 * f64::EPSILON * (terms * stiffest * at.v.amax() + held.amax())
+        4.0 * f64::EPSILON * (terms * stiffest * at.v.amax() + held.amax()) + self.problem.rounding
     }
 }

@@ -118,6 +118,7 @@ fn tied<const D: usize>(
         friction: problem.laws().to_vec(),
         springs: vec![Springs::default(); contacts],
         load,
+        rounding: 0.0,
         previous: problem.previous().to_vec(),
     };
     let asked = (SemismoothNewton::default().tolerance, 0.0);
@@ -214,6 +215,7 @@ fn springs_are_those_of_the_penalty() {
         friction: problem.laws().to_vec(),
         springs: vec![springs; 6],
         load,
+        rounding: 0.0,
         previous: problem.previous().to_vec(),
     };
     let (found, _) = solve_tied(
@@ -257,7 +259,7 @@ fn a_factor_serves_as_long_as_its_statuses_do() {
     let (mut structure, problem) = sample::<3>(8, &seed, &[law], false);
     let mut held = TiedFactor::default();
     let asked = (SemismoothNewton::default().tolerance, 0.0);
-    let mut solve = |structure: &mut Dense, guess: Option<&ContactSolution<3>>| {
+    let mut solve = |structure: &mut Dense, guess: Option<&ContactSolution<3>>, rounding: f64| {
         let load = structure.load.amax();
         let mut own = TiedProblem {
             structure,
@@ -265,22 +267,33 @@ fn a_factor_serves_as_long_as_its_statuses_do() {
             friction: problem.laws().to_vec(),
             springs: vec![Springs::default(); 8],
             load,
+            rounding,
             previous: problem.previous().to_vec(),
         };
         let solved = solve_tied(&mut own, guess, asked, &mut held);
         solved.expect("solved").0
     };
-    let found = solve(&mut structure, None);
+    let found = solve(&mut structure, None, 0.0);
     // The last factor on the way to it may have other statuses.
-    let found = solve(&mut structure, Some(&found));
+    let found = solve(&mut structure, Some(&found), 0.0);
     let factorisations = structure.factorisations;
     let slips = |s: &ContactSolution<3>| s.status.contains(&moreau_laws::Status::Slip);
     assert!(slips(&found));
     structure.load *= 1.0 + 1e-3;
-    let again = solve(&mut structure, Some(&found));
+    let again = solve(&mut structure, Some(&found), 0.0);
     assert_eq!(structure.factorisations, factorisations);
     assert!(again.status == found.status && again.force != found.force);
     assert_solves(&structure, &problem, &again).expect("solved");
+    // What is known to rounding is solved to rounding: a change below it asks for no iteration.
+    structure.load *= 1.0 + 1e-6;
+    let size = structure.load.amax();
+    let changed = solve(&mut structure, Some(&again), 0.0);
+    let rounded = solve(&mut structure, Some(&again), 1e-3 * size);
+    assert!(
+        changed.iterations > rounded.iterations,
+        "{changed:?} {rounded:?}"
+    );
+    assert!(rounded.exact && rounded.residual <= 1e-3 * size);
 }
 
 /// A long beam on springs, all of it on the ground, pressed down in the middle: next to where it bears it
@@ -316,6 +329,7 @@ fn what_lifts_off_is_not_peeled_off() {
         friction: vec![Coulomb::new(0.0).expect("valid").into(); contacts],
         springs: vec![springs; contacts],
         load: 1.0,
+        rounding: 0.0,
         previous: vec![Local::zeros(); contacts],
     };
     let asked = (SemismoothNewton::default().tolerance, 0.0);
