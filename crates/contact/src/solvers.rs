@@ -168,7 +168,8 @@ impl<'a, const D: usize> Goal<'a, D> {
     /// Residual that meets the tolerance at forces t and displacements u, or is rounding \[N\].
     fn target(&self, t: &[Local<D>], u: &[Local<D>]) -> f64 {
         let asked = self.tolerance.relative * self.problem.force_scale(t);
-        asked.max(self.problem.rounding(&self.problem.relative(u)))
+        let problem = self.problem;
+        asked.max(problem.rounding(&problem.relative(u)) + problem.rounding_of_origin(t))
     }
 
     /// The solution at a point that is one, the failure where the iterations are used up or lead nowhere.

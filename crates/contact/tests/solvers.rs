@@ -334,6 +334,51 @@ fn enumerate(w: &DMatrix<f64>, q: &[f64], law: &Friction) -> Vec<DVector<f64>> {
     found
 }
 
+/// Where a contact hardly presses, and slips, the rounding of the slip is more than the tolerance asks of the force: every
+/// method ends there.
+#[test]
+fn a_contact_that_hardly_presses_is_solved_to_rounding() {
+    let steep = definite(
+        4,
+        &[
+            0.828_034_956,
+            0.815_505_184,
+            0.975_306_820,
+            -0.964_406_679,
+            0.0,
+        ],
+    );
+    let entries = [0.393_281_698_262_629_26, -0.079_870_710_859_483_73];
+    let mut soft = DMatrix::from_row_slice(2, 2, &[entries[0], entries[1], 0.0, 0.0]);
+    soft = &soft * soft.transpose() + DMatrix::identity(2, 2) * 0.05;
+    let cases = [
+        (
+            steep,
+            vec![
+                Local::<2>::new(-8.776_527_8e-6, -0.654_621_457),
+                Local::zeros(),
+            ],
+            0.01,
+        ),
+        (
+            soft,
+            vec![Local::<2>::new(0.0, -0.398_416_309_204_069)],
+            0.026_403_225_966_080_548,
+        ),
+    ];
+    for (w, free, mu) in cases {
+        let along = AnisotropicCoulomb::new(mu + 0.01, mu).expect("valid");
+        for law in [along.into(), Coulomb::new(mu).expect("valid").into()] {
+            let problem = under(w.clone(), &free, law);
+            for solver in exact().into_iter().chain(dual()) {
+                let found = solver.solve(&problem, None);
+                let found = found.unwrap_or_else(|e| panic!("{solver:?}, {law:?}: {e}"));
+                assert!(found.residual < 1e-13, "{solver:?}, {law:?}");
+            }
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 

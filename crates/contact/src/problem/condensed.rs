@@ -239,6 +239,14 @@ impl<const D: usize> CondensedProblem<D> {
         4.0 * f64::EPSILON * terms * (stiffest * reach + self.load.amax()) + self.load_rounding
     }
 
+    /// Rounding of forces where displacements are sums with the origin \[N\]: beside a force that hardly presses, a slip that
+    /// is large shows.
+    pub(crate) fn rounding_of_origin(&self, t: &[Local<D>]) -> f64 {
+        let bearing = t.iter().zip(&self.origin).filter(|(t, _)| t.amax() > 0.0);
+        let reach = bearing.map(|(_, g)| g.amax()).fold(0.0, f64::max);
+        4.0 * f64::EPSILON * self.stiffness.diagonal().amax() * reach
+    }
+
     /// Largest ratio μ/μ_c over the contacts that are closed, or were at the start of the step, with its
     /// contact; `None` if there are none.
     ///
