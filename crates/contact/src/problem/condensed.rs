@@ -239,8 +239,8 @@ impl<const D: usize> CondensedProblem<D> {
         4.0 * f64::EPSILON * terms * (stiffest * reach + self.load.amax()) + self.load_rounding
     }
 
-    /// Rounding of forces where displacements are sums with the origin \[N\]: beside a force that hardly presses, a slip that
-    /// is large shows.
+    /// Rounding of forces where displacements are found as sums with the origin \[N\]: it counts where a contact hardly presses
+    /// and slips far.
     pub(crate) fn rounding_of_origin(&self, t: &[Local<D>]) -> f64 {
         let bearing = t.iter().zip(&self.origin).filter(|(t, _)| t.amax() > 0.0);
         let reach = bearing.map(|(_, g)| g.amax()).fold(0.0, f64::max);

@@ -244,8 +244,8 @@ impl<const D: usize> Driver<D> {
             })
             .map_err(contact)?;
         system.timings.contact += clock.elapsed();
-        // On a path the stiffness is not that of the structure alone.
-        counts.criticality = (border.is_none())
+        // On a path, or held, the stiffness is not that of the structure alone.
+        counts.criticality = (border.is_none() && linearised.proximal == 0.0)
             .then(|| condensation.problem.criticality(&solution.status))
             .flatten();
         let x = condensation.interface(&solution.motion);

@@ -42,27 +42,39 @@ fn a_slender_cantilever_is_bent_as_a_beam_is() {
     }
 }
 
+/// An elastic strip of length 30 under a roll, and the step that bows it by its right end while the roll goes down.
+fn bowed(
+    (young, mu): (f64, f64),
+    (height, cells): (f64, usize),
+    (at, radius): (f64, f64),
+    (by, down): (f64, f64),
+) -> (Driver<2>, Step<2>) {
+    let (x, y) = (uniform(0.0, 30.0, cells), uniform(0.0, height, 2));
+    let mesh = block2("b", CellKind::Quad8, &x, &y).expect("valid");
+    let law = Elastic::new(young, 0.3).expect("valid");
+    let roll = Ball::new([at, height + radius], radius).expect("valid");
+    let model = Model::with_large_strains(mesh, PlaneStrain::default())
+        .material("b", law, Integration::Reduced)
+        .and_then(|m| m.tool("roll", roll))
+        .and_then(|m| m.contact("b.top", "roll", Coulomb::new(mu).expect("valid")))
+        .expect("valid");
+    let bow = Step::new("bow")
+        .fix("b.left", &[Axis::X])
+        .displace("b.right", Axis::X, -by)
+        .displace("b.right", Axis::Y, 0.0)
+        .tool("roll", [0.0, -down]);
+    let driver = Driver::new(model, Settings::default()).expect("valid");
+    (driver, bow)
+}
+
 /// A thin strip, bowed by its end and pressed by a roll, snaps away from under it on the way. Without friction the
 /// equilibrium at the end is that of the elastic energy, whatever the increments, and one that lasts: steps of Newton's
 /// method beyond the limit point, which lead up to one that does not, are turned downhill.
 #[test]
 fn what_snaps_comes_to_rest_where_it_stays() {
     let ends = [5, 20].map(|increments| {
-        let (x, y) = (uniform(0.0, 30.0, 20), uniform(0.0, 0.1, 2));
-        let mesh = block2("b", CellKind::Quad8, &x, &y).expect("valid");
-        let law = Elastic::new(2000.0, 0.3).expect("valid");
-        let roll = Ball::new([13.334157, 3.1], 3.0).expect("valid");
-        let model = Model::with_large_strains(mesh, PlaneStrain::default())
-            .material("b", law, Integration::Reduced)
-            .and_then(|m| m.tool("roll", roll))
-            .and_then(|m| m.contact("b.top", "roll", Coulomb::new(0.0).expect("valid")))
-            .expect("valid");
-        let bow = Step::new("bow")
-            .fix("b.left", &[Axis::X])
-            .displace("b.right", Axis::X, -0.818)
-            .displace("b.right", Axis::Y, 0.0)
-            .tool("roll", [0.0, -3.944]);
-        let mut driver = Driver::new(model, Settings::default()).expect("valid");
+        let (strip, roll) = ((0.1, 20), (13.334157, 3.0));
+        let (mut driver, bow) = bowed((2000.0, 0.0), strip, roll, (0.818, 3.944));
         let reports = driver.run(&bow, increments, |_, _| {});
         let reports = reports.unwrap_or_else(|e| panic!("{increments}: {e}"));
         let iterations: usize = reports.iter().map(|r| r.newton_iterations).sum();
@@ -80,26 +92,13 @@ fn what_snaps_comes_to_rest_where_it_stays() {
 /// on from there. Let go it is as it was.
 #[test]
 fn a_bowed_strip_springs_back() {
-    let (x, y) = (uniform(0.0, 30.0, 40), uniform(0.0, 1.0, 2));
-    let mesh = block2("b", CellKind::Quad8, &x, &y).expect("valid");
-    let law = Elastic::new(70_000.0, 0.3).expect("valid");
-    let roll = Ball::new([9.195664, 2.0], 1.0).expect("valid");
-    let model = Model::with_large_strains(mesh, PlaneStrain::default())
-        .material("b", law, Integration::Reduced)
-        .and_then(|m| m.tool("roll", roll))
-        .and_then(|m| m.contact("b.top", "roll", Coulomb::new(0.2).expect("valid")))
-        .expect("valid");
-    let bow = Step::new("bow")
-        .fix("b.left", &[Axis::X])
-        .displace("b.right", Axis::X, -1.733)
-        .displace("b.right", Axis::Y, 0.0)
-        .tool("roll", [0.0, -1.371]);
+    let (strip, roll) = ((1.0, 40), (9.195664, 1.0));
+    let (mut driver, bow) = bowed((70_000.0, 0.2), strip, roll, (1.733, 1.371));
     let back = Step::new("back")
         .fix("b.left", &[Axis::X])
         .displace("b.right", Axis::X, 0.0)
         .displace("b.right", Axis::Y, 0.0)
         .tool("roll", [0.0, 1.922]);
-    let mut driver = Driver::new(model, Settings::default()).expect("valid");
     let mut iterations = 0;
     for (step, increments) in [(bow, 5), (back, 2)] {
         let reports = driver.run(&step, increments, |_, _| {}).expect("converges");
