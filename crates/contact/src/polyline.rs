@@ -217,10 +217,12 @@ impl Polyline {
                 let what = "radius of the profile";
                 return refused(what, radius, "one whose arc leaves room for its neighbours");
             }
-            if left_over > COINCIDENT * segment.length {
+            // What prolongs the line is straight, also where an arc takes all of it.
+            let is_end = k == 0 || k + 1 == segments.len();
+            if is_end || left_over > COINCIDENT * segment.length {
                 pieces.push(Piece {
                     start: segment.at(taken),
-                    length: left_over,
+                    length: left_over.max(0.0),
                     ..*segment
                 });
             }
@@ -548,6 +550,12 @@ mod tests {
         for radii in [&[][..], &[-0.1], &[3.5], &[f64::NAN], &[0.1, 0.1]] {
             let points = [[-3.0, 0.0], [0.0, 0.0], [0.0, -3.0]];
             assert!(Polyline::rounded(&points, radii).is_err(), "{radii:?}");
+        }
+        // Beyond arcs that take all of their segments the line goes on straight.
+        let whole = Polyline::rounded(&[[0.0, 0.0], [1.0, 0.0], [1.0, -1.0]], &[1.0]);
+        let whole = whole.expect("valid");
+        for (x, distance) in [([-5.0, 0.5], 0.5), ([1.3, -4.0], 0.3), ([0.0, 1.0], 1.0)] {
+            assert!((whole.distance(&x.into()) - distance).abs() < 1e-14);
         }
         let step = [[-1.0, 0.0], [0.0, 0.0], [0.0, -1.0], [1.0, -1.0]];
         assert!(Polyline::rounded(&step, &[0.5, 0.5]).is_ok());

@@ -50,6 +50,8 @@ pub(crate) struct State<const D: usize> {
     pub(crate) largest_force: f64,
     /// Last solution of the contact problem, to start the next from.
     pub(crate) solution: Option<ContactSolution<D>>,
+    /// Whether the last equilibrium was unstable.
+    pub(crate) unstable: bool,
 }
 
 /// Components of contacts at most of which the problem is condensed where it cannot be solved tied.
@@ -72,8 +74,6 @@ pub struct Driver<const D: usize> {
     pub(crate) guessed: Option<Vec<f64>>,
     /// What the increment under way has counted on ways that led to no balance.
     pub(crate) spent: Counts,
-    /// Whether the last equilibrium was unstable.
-    pub(crate) unstable: bool,
     pub(crate) measure: Box<dyn Measure<D>>,
     pub(crate) contacts: Vec<Contact>,
     materials: Vec<usize>,
@@ -123,6 +123,7 @@ impl<const D: usize> Driver<D> {
             farthest: 0.0,
             largest_force: 0.0,
             solution: None,
+            unstable: false,
         };
         let blocks = model.take_blocks();
         let mut driver = Self {
@@ -143,12 +144,27 @@ impl<const D: usize> Driver<D> {
             system: None,
             guessed: None,
             spent: Counts::default(),
-            unstable: false,
         };
         driver.start();
         driver.check_laws()?;
         driver.pair(&Loading::default())?;
+        driver.adjust();
         Ok(driver)
+    }
+
+    /// Takes the gaps of paired bodies that are adjusted for none: see [`Model::adjust`].
+    fn adjust(&mut self) {
+        for (point, row) in self.points.iter_mut().zip(&self.footing.rows) {
+            let within = self.contacts[point.contact].adjusted;
+            let gap = row
+                .plane(&SVector::zeros())
+                .map(|(_, gap)| gap - point.offset);
+            if let (Some(within), Some(gap)) = (within, gap)
+                && gap.abs() <= within
+            {
+                point.offset += gap;
+            }
+        }
     }
 
     /// The process that holds each cell; `None` without a team.

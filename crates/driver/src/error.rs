@@ -36,6 +36,14 @@ pub enum ModelError {
         /// Group of the second material.
         group: String,
     },
+    /// A cell that expands in two ways.
+    #[error("cell {cell} of group {group:?} has an expansion already, and another")]
+    TwoExpansions {
+        /// The cell.
+        cell: usize,
+        /// Group of the second expansion.
+        group: String,
+    },
     /// A stress at the start that a law does not bear.
     #[error(
         "cell {cell} starts at {position:?} outside of its yield surface: von Mises' stress is {} and the mean stress {}, of \

@@ -19,7 +19,8 @@ pub struct Energies {
     pub stored: f64,
     /// Dissipated by plastic flow.
     pub plastic_dissipation: f64,
-    /// Dissipated by friction, Σ μ t_n ‖Δu_t‖.
+    /// Dissipated by friction, Σ μ t_n ‖Δu_t‖, with t_n the last pressure of an increment; under large strains the mean of
+    /// the first and the last.
     pub friction_dissipation: f64,
     /// Held by the springs of the penalty method; zero for the exact methods.
     pub penalty: f64,

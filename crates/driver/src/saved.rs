@@ -80,19 +80,18 @@ impl Numbers<'_> {
     /// A count.
     ///
     /// # Errors
-    /// See [`Numbers::values`].
+    /// See [`Numbers::values`], and [`ModelError::OutOfRange`] for a number that is none.
     pub fn count(&mut self, count: &mut usize) -> Result<(), ModelError> {
         let mut value = *count as f64;
         self.value(&mut value)?;
-        // A number that is no count becomes one that does not fit.
-        *count = value as usize;
+        *count = counted(value)?;
         Ok(())
     }
 
     /// Yes or no.
     ///
     /// # Errors
-    /// See [`Numbers::values`].
+    /// See [`Numbers::count`].
     pub fn flag(&mut self, flag: &mut bool) -> Result<(), ModelError> {
         let mut count = usize::from(*flag);
         self.count(&mut count)?;
@@ -163,12 +162,12 @@ impl Numbers<'_> {
     fn status(&mut self, status: &mut Status) -> Result<(), ModelError> {
         const STATUSES: [Status; 4] = [Status::Open, Status::Stick, Status::Slip, Status::Tied];
         let place = STATUSES.iter().position(|s| s == status);
-        let mut number = place.unwrap_or_default() as f64;
-        self.value(&mut number)?;
-        let known = STATUSES.get(number as usize);
+        let mut number = place.unwrap_or_default();
+        self.count(&mut number)?;
+        let known = STATUSES.get(number);
         *status = *known.ok_or(ModelError::OutOfRange {
             what: "a saved contact status".into(),
-            value: number,
+            value: number as f64,
             expected: "0, 1, 2 or 3",
         })?;
         Ok(())
@@ -182,9 +181,22 @@ impl Numbers<'_> {
         let mut list: Vec<f64> = pairs.flat_map(|(dof, v)| [dof as f64, v]).collect();
         self.list(&mut list)?;
         let pairs = list.chunks_exact(2);
-        *vector = pairs.map(|pair| (pair[0] as usize, pair[1])).collect();
+        let pairs = pairs.map(|pair| Ok((counted(pair[0])?, pair[1])));
+        *vector = pairs.collect::<Result<_, ModelError>>()?;
         Ok(())
     }
+}
+
+/// A number that is a count.
+fn counted(value: f64) -> Result<usize, ModelError> {
+    let is_count = value >= 0.0 && value.fract() == 0.0;
+    is_count
+        .then_some(value as usize)
+        .ok_or(ModelError::OutOfRange {
+            what: "a saved count".into(),
+            value,
+            expected: "a whole number that is not negative",
+        })
 }
 
 impl<const D: usize> Saved for Loading<D> {
@@ -195,8 +207,9 @@ impl<const D: usize> Saved for Loading<D> {
         let mut along = along;
         numbers.list(&mut dofs)?;
         numbers.list(&mut along)?;
-        let dofs = dofs.into_iter().map(|dof| dof as usize);
-        self.directions = Directions::from_numbers(D, dofs, &along);
+        let dofs = dofs.into_iter().map(counted);
+        let dofs = dofs.collect::<Result<Vec<_>, _>>()?;
+        self.directions = Directions::from_numbers(D, dofs.into_iter(), &along);
         numbers.sparse(&mut self.force)?;
         numbers.sparse(&mut self.pressure)?;
         numbers.list(&mut self.temperature.0)?;
@@ -224,6 +237,7 @@ impl<const D: usize> Saved for State<D> {
         numbers.count(&mut self.increment)?;
         numbers.value(&mut self.farthest)?;
         numbers.value(&mut self.largest_force)?;
+        numbers.flag(&mut self.unstable)?;
         numbers.known(DOFS, &mut self.displacement)?;
         numbers.known(DOFS, &mut self.internal)?;
         numbers.sparse(&mut self.contact)?;

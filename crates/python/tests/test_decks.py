@@ -218,9 +218,15 @@ def test_a_function_of_friction_is_sampled():
     keys["material"][0]["young"] = "= modulus"
     assert load(lambda p: 0.1 * p) == pytest.approx(load(0.1), rel=1e-9)
     assert len(mc.Deck({**keys, "contact": [{**keys["contact"][0], "friction": lambda p: 0.1 * p}]}).text) < 3000
+    # A cohesion, and what rounding makes of the slopes beside it.
+    assert load(lambda p: 20.0 + 0.1 * p) != pytest.approx(load(0.1), rel=1e-3)
+    assert load(lambda p: 20.0 * (1.0 - np.exp(-p / 200.0))) == pytest.approx(
+        load(lambda p: min(0.1 * p, 20.0 * (1.0 - np.exp(-p / 200.0)))), rel=1e-6
+    )
     for curve, words in [
         (lambda p: 0.1 * p if p < 100.0 else 5.0, "falls at the pressure"),
         (lambda p: 0.1 * p + 1e-5 * p * p, "expected a concave function"),
+        (lambda p: 0.1 * p if p < 100.0 else 0.2 * p - 10.0, "rises faster from the pressure (9|10)[0-9]"),
         (lambda p: 0.1 * p - 1.0, "at no pressure"),
     ]:
         with pytest.raises(mc.DeckError, match=words):

@@ -99,7 +99,9 @@ pub fn solve_tied<const D: usize>(
     // closed once more.
     let mut again = true;
     let mut progress = Progress::default();
+    let mut made = 0;
     for iterations in 0..=tolerance.iterations {
+        made = iterations;
         let target = newton.target(&now, tolerance, progress.stalls(now.residual));
         if now.residual <= target.max(PARTS[0] * enough) {
             if newton.part == 0 && newton.rounds_off(&now) > ROUNDED * target {
@@ -161,7 +163,9 @@ pub fn solve_tied<const D: usize>(
             None => break,
         };
     }
-    Err(newton.failure(&now, tolerance))
+    // Residuals are told at the α that they are judged at.
+    now = newton.with_part(0, now);
+    Err(newton.failure(&now, made, tolerance))
 }
 
 impl<const D: usize> Tied<'_, '_, D> {
@@ -187,13 +191,13 @@ impl<const D: usize> Tied<'_, '_, D> {
         }
     }
 
-    fn failure(&self, now: &At<D>, tolerance: Tolerance) -> ContactError {
+    fn failure(&self, now: &At<D>, iterations: usize, tolerance: Tolerance) -> ContactError {
         if !self.factor.propped.is_empty() {
             return ContactError::Singular;
         }
         ContactError::NotConverged {
             solver: "semismooth Newton through the factor",
-            iterations: tolerance.iterations,
+            iterations,
             residual: now.residual,
             tolerance: tolerance.relative * self.force_scale(now),
         }

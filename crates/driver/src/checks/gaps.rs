@@ -78,8 +78,8 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// The node of either surface of a pair that is deepest within the other body, how deep, and how many
-    /// are within; `None` on a tool.
+    /// The node of either surface of a pair that is deepest within the other body, how much deeper than where the contact
+    /// lets it touch, and how many are within; `None` on a tool.
     fn overlap(&self, contact: usize) -> Option<(usize, f64, usize)> {
         self.contacts[contact].pairing?;
         let nodes = 0..self.mesh.nodes().len();
@@ -88,6 +88,9 @@ impl<const D: usize> Driver<D> {
         let sides = [(surface, opposite), (opposite, surface)];
         let overlaps = sides.map(|s| self.mesh.overlap(&positions, s));
         let deepest = overlaps.into_iter().flatten();
+        let own = self.points.iter().filter(|p| p.contact == contact);
+        let into = own.fold(0.0, |most: f64, p| most.max(-p.offset));
+        let deepest = deepest.map(|(node, depth, inside)| (node, depth - into, inside));
         deepest.max_by(|a, b| a.1.total_cmp(&b.1))
     }
 

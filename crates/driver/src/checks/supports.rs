@@ -10,7 +10,8 @@ use crate::error::ModelError;
 use crate::model::load::{Axis, Condition, Loading, Step, axis_letter, unit};
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, turned};
-use moreau_laws::Status;
+use moreau_contact::ContactSolution;
+use moreau_laws::{Local, Status};
 use nalgebra::SVector;
 
 /// A rigid motion of a body.
@@ -157,6 +158,22 @@ impl<const D: usize> Driver<D> {
         !self.resisted(loading, |_, _| 0).free().is_empty()
     }
 
+    /// Whether the contacts of a solution that press by more than rounding \[N\] resist every rigid motion: a surface that
+    /// touches without a force may as well be left.
+    pub(crate) fn is_held_by(
+        &self,
+        loading: &Loading<D>,
+        solution: &ContactSolution<D>,
+        rounding: f64,
+    ) -> bool {
+        let pairs = solution.status.iter().zip(&solution.force);
+        let of = |(&status, t): (&Status, &Local<D>)| match status {
+            Status::Stick | Status::Slip if t.norm() <= rounding => Status::Open,
+            _ => status,
+        };
+        self.is_held(loading, &pairs.map(of).collect::<Vec<_>>())
+    }
+
     /// Whether contacts of these statuses resist every rigid motion: what touches by its normal, and by its
     /// tangents where it sticks.
     pub(crate) fn is_held(&self, loading: &Loading<D>, status: &[Status]) -> bool {
@@ -200,11 +217,27 @@ impl<const D: usize> Driver<D> {
         self.rows(held, loading, components)
     }
 
-    /// The rigid motions that nothing resists in the committed state, in words: of what touches, the
+    /// Whether the committed forces of the contacts leave a rigid motion to none of them, so that nothing decides where the
+    /// body is.
+    pub(crate) fn is_let_go(&self) -> bool {
+        let loading = &self.state.loading;
+        self.floats(loading) && !self.resisted(loading, Self::resisting).free().is_empty()
+    }
+
+    /// Components in which a contact point resists a motion in the committed state: none where its force is rounding.
+    fn resisting(&self, point: usize) -> usize {
+        let contact = &self.state.contacts[point];
+        let rounding = self.settings.tolerance * self.state.largest_force;
+        match self.points[point].law.is_tie() || contact.t.norm() > rounding {
+            true => resists::<D>(contact.status),
+            false => 0,
+        }
+    }
+
+    /// The rigid motions that nothing resists in the committed state, in words: of what presses, the
     /// normals, and the tangents where it sticks.
     pub fn free_motions(&self) -> Vec<String> {
-        let status = |driver: &Self, k: usize| resists::<D>(driver.state.contacts[k].status);
-        let rows = self.resisted(&self.state.loading, status);
+        let rows = self.resisted(&self.state.loading, Self::resisting);
         let whose = |body: usize| match body.checked_sub(rows.cells.len()) {
             Some(k) => format!("tool {:?}", self.tools[rows.tools[k]].name),
             None => format!("the body of cell {}", rows.cells[body]),

@@ -30,6 +30,53 @@ impl<const D: usize> Driver<D> {
         Ok(())
     }
 
+    /// What the contact points stand on after displacement increments, in the increment that [`Driver::pair`] has begun, where
+    /// large strains move it.
+    pub(crate) fn follow_surfaces(
+        &mut self,
+        loading: &Loading<D>,
+        d_u: &[f64],
+    ) -> Result<(), ModelError> {
+        match self.repairs() {
+            true => self.pair_at(loading, d_u),
+            false => self.stretch_areas(d_u),
+        }
+    }
+
+    /// Under large strains the areas that face tools are those of the surfaces as they are after displacement increments.
+    fn stretch_areas(&mut self, d_u: &[f64]) -> Result<(), ModelError> {
+        if !self.has_large_strains() || self.points.iter().all(|p| p.tool.is_none()) {
+            return Ok(());
+        }
+        let positions = self.positions_after(d_u);
+        for (k, contact) in self.contacts.iter().enumerate() {
+            let faces_tool = |p: &ContactPoint<D>| p.contact == k && p.tool.is_some();
+            let pairs = self.points.iter().zip(&mut self.footing.rows);
+            let mut own = pairs.filter(|(p, _)| faces_tool(p)).peekable();
+            if own.peek().is_none() {
+                continue;
+            }
+            let facets = self.mesh.facet_group(&contact.surface)?;
+            let shares = self.measure.shares_on_tool(&self.mesh, &positions, facets);
+            let areas: BTreeMap<usize, f64> = (shares.iter())
+                .map(|s| (s.share.node, s.share.area.max(0.0)))
+                .collect();
+            for (point, row) in own {
+                row.area = areas.get(&point.node).copied().unwrap_or(row.area);
+            }
+        }
+        Ok(())
+    }
+
+    /// The positions of all nodes after displacement increments \[mm\].
+    fn positions_after(&self, d_u: &[f64]) -> Vec<[f64; D]> {
+        let position = |a: usize| {
+            let moved = SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
+            (self.position(a) + moved).into()
+        };
+        (0..self.mesh.nodes().len()).map(position).collect()
+    }
+
     /// The same after displacement increments, in the increment that [`Driver::pair`] has begun.
     pub(crate) fn pair_at(&mut self, loading: &Loading<D>, d_u: &[f64]) -> Result<(), ModelError> {
         let on_tool = |p: &ContactPoint<D>| match p.tool {
@@ -39,11 +86,7 @@ impl<const D: usize> Driver<D> {
         let mut rows: Vec<RelativeMotionRow<D>> = self.points.iter().map(on_tool).collect();
         let mut redistributed = Vec::new();
         if self.points.iter().any(|p| p.tool.is_none()) {
-            let position = |a: usize| {
-                let moved = SVector::from_column_slice(&d_u[D * a..D * a + D]);
-                (self.position(a) + moved).into()
-            };
-            let positions: Vec<[f64; D]> = (0..self.mesh.nodes().len()).map(position).collect();
+            let positions = self.positions_after(d_u);
             for (k, contact) in self.contacts.iter().enumerate() {
                 let Some(pairing) = contact.pairing else {
                     if let Ok(surface) = self.mesh.facet_group(&contact.surface) {
@@ -84,7 +127,7 @@ impl<const D: usize> Driver<D> {
         self.footing.rows = rows;
         self.footing.redistributed = redistributed;
         self.footing.at = d_u.to_vec();
-        Ok(())
+        self.stretch_areas(d_u)
     }
 
     /// Hands over multipliers as [`Driver::redistribute_multipliers`]; the points that have given theirs.

@@ -57,9 +57,8 @@ pub(crate) struct System {
     engine: Box<dyn Engine>,
     /// What other processes hold of K.
     others: Option<Others>,
-    /// Why the engine of a team has no factor, where that is no fault of the matrix.
+    /// Why the engine has no factor, where that is no fault of the matrix.
     gave_up: Option<EngineError>,
-    is_of_a_team: bool,
     /// Whether the factor held is that of the elastic stiffness.
     elastic_factor: bool,
     /// Whether the values are those that the factor was made of.

@@ -7,8 +7,8 @@ use crate::vector::SparseVector;
 use moreau_laws::{BulkLaw, InPlaneStress};
 use moreau_mesh::{
     Axisymmetric, CellKind, Element, Facet, Hex8, Hex20, Hex27, Hypothesis, Integration, Mesh,
-    MortarRow, Pairing, PlaneStrain, PlaneStress, Pressed, Quad4, Quad8, Quad9, Share, Solid, Tet4,
-    Tet10, Tri3, Tri6,
+    MortarRow, Pairing, PlaneStrain, PlaneStress, PositiveShare, Pressed, Quad4, Quad8, Quad9,
+    Share, Solid, Tet4, Tet10, Tri3, Tri6,
 };
 
 /// A hypothesis together with the elements that it can be used with.
@@ -130,6 +130,14 @@ analysis!(Solid, 3, space, solid);
 /// What the driver still asks of the hypothesis once the blocks are built.
 pub(crate) trait Measure<const D: usize>: Send + Sync {
     fn facet_shares(&self, mesh: &Mesh<D>, facets: &[Facet]) -> Vec<Share<D>>;
+    /// Shares of a surface that faces a tool under large strains, with the nodes of the mesh at these positions: in the plane
+    /// at nodes themselves, whose places are what large strains ask of; on the axis one may bear nothing.
+    fn shares_on_tool(
+        &self,
+        mesh: &Mesh<D>,
+        positions: &[[f64; D]],
+        facets: &[Facet],
+    ) -> Vec<PositiveShare<D>>;
     fn volume_shares(&self, mesh: &Mesh<D>, cells: &[usize]) -> Vec<(usize, f64)>;
     /// [`Mesh::press`] of the entries of [`Loading::pressure`](crate::Loading::pressure).
     fn press(
@@ -152,6 +160,21 @@ pub(crate) trait Measure<const D: usize>: Send + Sync {
 impl<const D: usize, H: Hypothesis<D>> Measure<D> for H {
     fn facet_shares(&self, mesh: &Mesh<D>, facets: &[Facet]) -> Vec<Share<D>> {
         mesh.facet_shares(facets, self)
+    }
+
+    fn shares_on_tool(
+        &self,
+        mesh: &Mesh<D>,
+        positions: &[[f64; D]],
+        facets: &[Facet],
+    ) -> Vec<PositiveShare<D>> {
+        match D {
+            2 => {
+                let nodal = mesh.facet_shares_at(positions, facets, self);
+                nodal.into_iter().map(PositiveShare::of_node).collect()
+            }
+            _ => mesh.positive_shares_at(positions, facets, self),
+        }
     }
 
     fn volume_shares(&self, mesh: &Mesh<D>, cells: &[usize]) -> Vec<(usize, f64)> {

@@ -1,7 +1,7 @@
 //! Tools of a model, and which surfaces touch; not the kinematics of contact points.
 
 use crate::error::ModelError;
-use crate::model::analysis::Analysis;
+use crate::model::analysis::{Analysis, Measure};
 use crate::model::points::{ALONG_NORMAL, ContactPoint, Tool, tool_index};
 use crate::model::{Model, out_of_range};
 use moreau_contact::Obstacle;
@@ -18,6 +18,8 @@ pub(crate) struct Contact {
     pub(crate) opposite: String,
     /// How the surfaces of two bodies are paired; `None` on a tool, and of a tie.
     pub(crate) pairing: Option<Pairing>,
+    /// [`Model::adjust`], where bodies are not paired yet \[mm\].
+    pub(crate) adjusted: Option<f64>,
 }
 
 impl<const D: usize, H: Analysis<D>> Model<D, H> {
@@ -86,6 +88,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             surface: surface.into(),
             opposite: opposite.into(),
             pairing: None,
+            adjusted: None,
         });
         Ok(self)
     }
@@ -127,6 +130,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             surface: surface.into(),
             opposite: opposite.into(),
             pairing: Some(pairing),
+            adjusted: None,
         });
         Ok(self)
     }
@@ -140,12 +144,11 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         tool: Option<usize>,
     ) -> Result<(), ModelError> {
         let facets = self.mesh.facet_group(surface)?;
-        let mut shares = self.mesh.positive_shares(facets, &self.hypothesis);
-        if self.large && D == 2 && tool.is_some() {
-            // At nodes themselves, whose places are what large strains ask of: on the axis one may bear nothing.
-            let nodal = self.mesh.facet_shares(facets, &self.hypothesis);
-            shares = nodal.into_iter().map(PositiveShare::of_node).collect();
-        }
+        let (mesh, hypothesis) = (&self.mesh, &self.hypothesis);
+        let shares = match self.large && tool.is_some() {
+            true => hypothesis.shares_on_tool(mesh, mesh.nodes(), facets),
+            false => mesh.positive_shares(facets, hypothesis),
+        };
         let meets = |p: &&ContactPoint<D>| self.contacts[p.contact].opposite == opposite;
         let taken: BTreeMap<usize, usize> = (self.points.iter().filter(meets))
             .map(|p| (p.node, p.contact))
@@ -236,7 +239,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
 
     /// Takes the nodes of the contact added last, as far as their gap or penetration is at most the
     /// tolerance \[mm\], to touch where they are: each gets an offset of its own, and neither moves
-    /// nor is strained.
+    /// nor is strained. Between bodies the gap is that of the virgin state.
     ///
     /// # Errors
     /// [`ModelError::OutOfRange`] for a tolerance that is negative or not finite.
@@ -249,8 +252,12 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 expected,
             ));
         }
-        let last = self.contacts.len();
-        for point in self.points.iter_mut().filter(|p| p.contact + 1 == last) {
+        let count = self.contacts.len();
+        let pair = self.contacts.last_mut().filter(|c| c.pairing.is_some());
+        if let Some(contact) = pair {
+            contact.adjusted = Some(tolerance);
+        }
+        for point in self.points.iter_mut().filter(|p| p.contact + 1 == count) {
             let Some(tool) = point.tool else { continue };
             let obstacle = self.tools[tool].obstacle.as_ref();
             let gap = point.gap(obstacle, |a| self.mesh.nodes()[a].into());

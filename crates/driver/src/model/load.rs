@@ -197,7 +197,7 @@ impl<const D: usize> Step<D> {
         })
     }
 
-    /// A force \[N\], shared equally by the nodes of a group.
+    /// A force \[N\] on a group: of facets as a traction that is the same everywhere, of nodes alone shared equally by them.
     pub fn force(self, on: &str, force: [f64; D]) -> Self {
         self.with(Condition::Force {
             on: on.into(),

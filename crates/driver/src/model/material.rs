@@ -131,7 +131,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     /// is logarithmic: they grow by the factor e^{α ΔT}. One that is negative shrinks.
     ///
     /// # Errors
-    /// An unknown group, a number that is not finite.
+    /// An unknown group, a number that is not finite, [`ModelError::TwoExpansions`].
     pub fn expansion(mut self, group: &str, per_kelvin: f64) -> Result<Self, ModelError> {
         if !per_kelvin.is_finite() {
             let what = format!("expansion of {group:?}");
@@ -139,7 +139,14 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         }
         self.expansion.resize(self.mesh.cell_count(), 0.0);
         for &cell in self.mesh.cell_group(group)? {
-            self.expansion[cell] = per_kelvin;
+            let own = &mut self.expansion[cell];
+            if *own != 0.0 && *own != per_kelvin {
+                return Err(ModelError::TwoExpansions {
+                    cell,
+                    group: group.into(),
+                });
+            }
+            *own = per_kelvin;
         }
         Ok(self)
     }

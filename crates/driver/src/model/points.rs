@@ -6,7 +6,7 @@ use crate::vector::subspace::Subspace;
 use moreau_contact::{Obstacle, frame};
 use moreau_laws::{Friction, Local, Status};
 use moreau_mesh::{NodeKind, nearest};
-use nalgebra::{Rotation3, SMatrix, SVector, Vector3};
+use nalgebra::{Rotation3, SMatrix, SVector, UnitQuaternion, Vector3};
 
 /// A rigid tool.
 pub(crate) struct Tool<const D: usize> {
@@ -54,6 +54,16 @@ pub(crate) fn turned<const D: usize>(v: SVector<f64, D>, turn: &Turn) -> SVector
     }
 }
 
+/// The turn that leads from one to another, R_after R_beforeᵀ: about one axis their difference.
+pub(crate) fn turn_between(before: &Turn, after: &Turn) -> Turn {
+    let difference = after - before;
+    if before.cross(after).norm() <= PARALLEL * before.norm() * after.norm() {
+        return difference;
+    }
+    let [before, after] = [before, after].map(|t| UnitQuaternion::from_scaled_axis(*t));
+    (after * before.inverse()).scaled_axis()
+}
+
 /// Index of a tool by its name.
 pub(crate) fn tool_index<const D: usize>(
     tools: &[Tool<D>],
@@ -90,6 +100,9 @@ pub(crate) struct ContactPoint<const D: usize> {
     /// What it is tied to, by weights of the undeformed bodies.
     pub(crate) tied: Option<RelativeMotionRow<D>>,
 }
+
+/// Sine of the angle between two axes that are one.
+const PARALLEL: f64 = 1e-12;
 
 /// Least cosine between normals of a tool over an edge that is one smooth surface there.
 const SMOOTH: f64 = 0.9;

@@ -51,6 +51,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             surface: surface.into(),
             opposite: to.into(),
             pairing: None,
+            adjusted: None,
         });
         Ok(self)
     }

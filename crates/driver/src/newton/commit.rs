@@ -6,7 +6,7 @@ use crate::error::IncrementError;
 use crate::interface::kinematics::NO_SLIP;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
-use crate::model::points::{ContactPoint, Kinematics, in_space, turned};
+use crate::model::points::{ContactPoint, Kinematics, Turn, in_space, turn_between, turned};
 use crate::newton::iterate::Candidate;
 use crate::report::counts::Counts;
 use crate::report::{ContactRecord, Energies, IncrementReport};
@@ -50,11 +50,15 @@ impl<const D: usize> Driver<D> {
         let forces: Vec<Local<D>> = contacts.iter().map(|c| c.t).collect();
         let obeying: Vec<Local<D>> = contacts.iter().map(|c| c.u + c.spring).collect();
         let laws: Vec<_> = kinematics.iter().map(|k| k.law).collect();
-        let certificate = Certificate::new(&laws, &obeying, &forces);
+        let mut certificate = Certificate::new(&laws, &obeying, &forces);
+        // The springs of a penalty give way, and what they give way is a penetration.
+        let sunk = contacts.iter().filter(|c| c.spring[0] > 0.0);
+        let sunk = sunk.fold(0.0, |most: f64, c| most.max(-c.u[0]));
+        certificate.penetration = certificate.penetration.max(sunk);
         let contact = self.contact_forces(&kinematics, &forces);
         let work = self.external_work((start, end), &d_u, &internal, &contact)
-            + self.closing_work((start, end), &kinematics, &contacts, &d_u)
-            + self.turning_work((start, end), &d_u, &contacts);
+            + self.closing_work(end, &kinematics, &contacts, &d_u)
+            + self.turning_work(end, &d_u, &contacts);
         let (mut energies, plastic_fraction) = self.energies_after(work, &kinematics, &contacts);
         all_finite(&energies, &certificate, &d_u)?;
         let free = self.free_strains(end);
@@ -87,6 +91,7 @@ impl<const D: usize> Driver<D> {
             farthest: moved.max(self.state.farthest),
             largest_force: force.max(self.state.largest_force),
             solution: Some(solution),
+            unstable: counts.negative > 0,
         };
         let verdict = (plastic_fraction, certificate);
         Ok(self.report(verdict, corners, out_of_balance, counts))
@@ -293,16 +298,22 @@ impl<const D: usize> Driver<D> {
         Some(turned(normal, &self.state.loading.turn_of(tool)))
     }
 
-    /// Work of turning tools over the increment, by the trapezoidal rule.
-    fn turning_work(
-        &self,
-        (start, end): (&Loading<D>, &Loading<D>),
-        d_u: &[f64],
-        contacts: &[ContactRecord<D>],
-    ) -> f64 {
+    /// By how much a tool has turned in the increment, about the axis of that turn.
+    fn turned_by(&self, tool: usize, end: &Loading<D>, d_u: &[f64]) -> Turn {
+        turn_between(
+            &self.state.loading.turn_of(tool),
+            &self.turn_at(tool, end, d_u),
+        )
+    }
+
+    /// Work of tools that are told to turn over the increment, by the trapezoidal rule; that of moments is one of forces.
+    fn turning_work(&self, end: &Loading<D>, d_u: &[f64], contacts: &[ContactRecord<D>]) -> f64 {
         let rest = vec![0.0; d_u.len()];
         let of = |tool: usize| {
-            let by = end.turn_of(tool) - start.turn_of(tool);
+            if end.axle_of(tool).is_some() {
+                return 0.0;
+            }
+            let by = self.turned_by(tool, end, d_u);
             let [before, after] = match by.norm() > 0.0 {
                 true => [
                     self.moment(tool, &rest, &self.state.contacts),
@@ -321,16 +332,14 @@ impl<const D: usize> Driver<D> {
     /// those beside the tool, which a turn θ moves by θ × r.
     fn closing_work(
         &self,
-        (start, end): (&Loading<D>, &Loading<D>),
+        end: &Loading<D>,
         kinematics: &[Kinematics<D>],
         contacts: &[ContactRecord<D>],
         d_u: &[f64],
     ) -> f64 {
         let rest = vec![0.0; d_u.len()];
         let tools = 0..self.tools.len();
-        let turns: Vec<_> = tools
-            .map(|tool| self.turn_at(tool, end, d_u) - start.turn_of(tool))
-            .collect();
+        let turns: Vec<_> = tools.map(|tool| self.turned_by(tool, end, d_u)).collect();
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
         let large = self.has_large_strains();
         let points = self.points.iter().zip(&self.footing.rows).zip(kinematics);

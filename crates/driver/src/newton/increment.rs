@@ -36,7 +36,7 @@ const STRAYING: usize = 4;
 
 /// An increment on its way from one loading to another.
 pub(crate) struct Increment<'a, 'c, const D: usize> {
-    start: &'a Loading<D>,
+    pub(crate) start: &'a Loading<D>,
     /// Under control a guess, as the displacements are.
     end: Cow<'a, Loading<D>>,
     control: Option<&'a mut Control<'c, D>>,
@@ -214,9 +214,7 @@ impl<const D: usize> Driver<D> {
         self.check_laws()?;
         let arrived = increment.has_arrived();
         let (iterate, end) = (&mut increment.iterate, &*increment.end);
-        if self.repairs() {
-            self.pair_at(end, &iterate.d_u)?;
-        }
+        self.follow_surfaces(end, &iterate.d_u)?;
         let kinematics = if arrived {
             self.kinematics(system, end, &iterate.d_u)
         } else {

@@ -142,7 +142,7 @@ impl<const D: usize> Driver<D> {
             solve_tied(&mut problem, guess, (tolerance, enough), factor)
         };
         let determined = |(s, z): (ContactSolution<D>, DVector<f64>)| match floats
-            && !self.is_held(loading, &s.status)
+            && !self.is_held_by(loading, &s, linearised.rounding)
         {
             true => Err(ContactError::Singular),
             false => Ok((s, z)),
@@ -153,7 +153,7 @@ impl<const D: usize> Driver<D> {
             .and_then(determined)
             .or_else(|error| {
                 counts.undetermined |= error == ContactError::Singular;
-                nearest(error, stiffest, |c| {
+                nearest(error, (stiffest, linearised.rounding), |c| {
                     let (solution, z) = solve(guess, c, 0.0)?;
                     let scale = largest_of(&solution.force, given);
                     Ok((solution, z, scale))
@@ -221,28 +221,37 @@ impl<const D: usize> Driver<D> {
         let method = &self.settings.contact;
         let from =
             |guessed: bool| method.approach(problem, guess.filter(|_| guessed), linearised.enough);
-        let solution = nearer(self.reach(kinematics), farthest, from)
-            .or_else(|error| {
-                // Where stresses make the structure unstable there may be none.
-                if !self.has_large_strains() {
-                    return Err(error);
-                }
-                let is_free = border.is_none() && linearised.proximal == 0.0;
-                let approach = |p: &_| method.approach(p, guess, linearised.enough).ok();
-                let held = is_free.then(|| stabilised(problem, approach)).flatten();
-                held.or_else(|| method.step(problem, &force)).ok_or(error)
-            })
-            .or_else(|error| {
-                counts.undetermined = true;
-                let found = nearest(error, system.shift(), |c| {
+        let found = nearer(self.reach(kinematics), farthest, from).or_else(|error| {
+            // Where stresses make the structure unstable there may be none.
+            if !self.has_large_strains() {
+                return Err(error);
+            }
+            let is_free = border.is_none() && linearised.proximal == 0.0;
+            let approach = |p: &_| method.approach(p, guess, linearised.enough).ok();
+            let held = is_free.then(|| stabilised(problem, approach)).flatten();
+            held.or_else(|| method.step(problem, &force)).ok_or(error)
+        });
+        let (loading, rounding) = (linearised.loading, linearised.rounding);
+        let is_held = |s: &ContactSolution<D>| self.is_held_by(loading, s, rounding);
+        let error = match &found {
+            Ok(found) if system.floats && !is_held(found) => Some(ContactError::Singular),
+            Ok(_) => None,
+            Err(error) => Some(error.clone()),
+        };
+        let solution = match error {
+            None => found,
+            Some(error) => {
+                counts.undetermined |= error == ContactError::Singular;
+                let nearest = nearest(error, (system.shift(), rounding), |c| {
                     problem.hold(c);
                     let solution = method.solve(problem, guess)?;
                     let scale = problem.force_scale(&solution.force);
                     Ok((solution, (), scale))
                 });
-                found.map(|(solution, ())| solution)
-            })
-            .map_err(contact)?;
+                nearest.map(|(solution, ())| solution).or(found)
+            }
+        };
+        let solution = solution.map_err(contact)?;
         system.timings.contact += clock.elapsed();
         // On a path, or held, the stiffness is not that of the structure alone.
         counts.criticality = (border.is_none() && linearised.proximal == 0.0)
@@ -314,10 +323,11 @@ fn stabilised<const D: usize>(
 /// A contact problem that is singular, as where all that touches slips or nothing is left to press: of its
 /// solutions, which differ by a rigid motion, the one nearest to where the bodies are, found with a proximal
 /// term c. There is none where a body falls or slides away: what holds it here would have to carry its
-/// load, of which `scale` tells the size. What a surface pushes away moves as far whatever holds it.
+/// load, of which `scale` tells the size, if that is more than `rounding` \[N\]. What a surface pushes away moves as far
+/// whatever holds it.
 fn nearest<const D: usize, T>(
     error: ContactError,
-    stiffest: f64,
+    (stiffest, rounding): (f64, f64),
     mut solve: impl FnMut(f64) -> Result<(ContactSolution<D>, T, f64), ContactError>,
 ) -> Result<(ContactSolution<D>, T), ContactError> {
     if error != ContactError::Singular {
@@ -329,7 +339,7 @@ fn nearest<const D: usize, T>(
             continue;
         };
         let motion = farthest(&solution);
-        if c * motion <= CARRIED * scale {
+        if c * motion <= (CARRIED * scale).max(rounding) {
             return Ok((solution, other));
         }
         let is_pushed = |s: &ContactSolution<D>| farthest(s) > PUSHED * motion;
@@ -362,18 +372,22 @@ mod tests {
     /// surface pushes goes as far as the surface, and the solution that counts is the last.
     #[test]
     fn a_body_that_falls_has_no_place_and_one_that_is_pushed_has() {
-        let found = |motion: &dyn Fn(f64) -> f64, scale: f64| {
+        let within = |rounding: f64, motion: &dyn Fn(f64) -> f64, scale: f64| {
             let mut last = 0.0;
-            let found = nearest(ContactError::Singular, 1e5, |c| {
+            let found = nearest(ContactError::Singular, (1e5, rounding), |c| {
                 last = c;
                 Ok((moved(motion(c)), (), scale))
             });
             found.map(|(s, ())| (farthest(&s), last == SOFT[0] * 1e5))
         };
+        let found = |motion: &dyn Fn(f64) -> f64, scale: f64| within(0.0, motion, scale);
         assert_eq!(found(&|_| 1e-3, 1.0), Ok((1e-3, true)));
         assert_eq!(found(&|c| 0.5 / c, 1.0), Err(ContactError::Singular));
         assert_eq!(found(&|c| 0.5e-6 / c, 1e-6), Err(ContactError::Singular));
         assert_eq!(found(&|_| 1e-3, 1e-8), Ok((1e-3, true)));
+        // A load that is rounding may be carried.
+        let drift = 1e-12 / (SOFT[0] * 1e5);
+        assert_eq!(within(1e-11, &|c| 1e-12 / c, 1e-12), Ok((drift, true)));
     }
 
     /// The nearer one, and always the one that was solved last.

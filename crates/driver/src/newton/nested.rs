@@ -256,7 +256,10 @@ impl<const D: usize> Driver<D> {
                 tangent: true,
                 allowed: self.allowed(&[worst]),
             };
-            self.search(system, end, &step, iterate);
+            let part = self.search(system, end, &step, iterate);
+            if part < 1.0 && step.arrives {
+                increment.missing = self.missing(increment.start, end, &iterate.d_u);
+            }
         }
     }
 }

@@ -20,7 +20,7 @@ impl<const D: usize> Driver<D> {
     /// resist nothing: the tangent is that of a surface without friction that is loaded by them.
     ///
     /// Where contacts are tied in the factor that counts itself, if its ties are those of the statuses; else they are
-    /// made so, by one factorisation.
+    /// made so, by one factorisation. Where that leaves a motion without stiffness, none is known and none is counted.
     pub(crate) fn negative_eigenvalues(
         &self,
         system: &mut System,
@@ -31,10 +31,9 @@ impl<const D: usize> Driver<D> {
             return 0;
         }
         if system.is_tied() {
-            if !held.factor.holds_just(status) {
-                self.hold_statuses(system, (kinematics, status), held);
-            }
-            return system.negative();
+            let holds = held.factor.holds_just(status)
+                || self.hold_statuses(system, (kinematics, status), held);
+            return if holds { system.negative() } else { 0 };
         }
         let free = self.free(system, kinematics, status);
         system.negative() + free.map_or(0, |free| free.negative())

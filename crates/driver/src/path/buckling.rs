@@ -71,7 +71,8 @@ impl<const D: usize> Driver<D> {
             true => self.nearest_instability(&mut system),
             false => None,
         };
-        // As it was found: the next increment does the same, buckling asked for or not.
+        // As it was found: the next increment does the same, buckling asked for or not. The pivot of a collapse is chosen
+        // anew in any case.
         if !elastic {
             system.forget_factor();
         }

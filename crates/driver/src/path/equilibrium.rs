@@ -44,13 +44,11 @@ impl<const D: usize> Driver<D> {
         self.check_bodies(&candidate.d_u)?;
         self.check_snap(system, (start, end), &candidate, watch)?;
         candidate.counts = std::mem::take(&mut self.spent).with(candidate.counts);
-        let unstable = candidate.counts.negative > 0;
-        let mode = match unstable && !self.unstable {
+        let mode = match candidate.counts.negative > 0 && !self.state.unstable {
             true => self.unstable_mode(system, &candidate),
             false => None,
         };
         let report = self.commit(start, end, candidate)?;
-        self.unstable = unstable;
         Ok(IncrementReport { mode, ..report })
     }
 
@@ -135,9 +133,7 @@ impl<const D: usize> Driver<D> {
         // What is committed is the last that was evaluated.
         let none = SparseVector::default();
         self.assemble(system, end, (&candidate.d_u, &none), Stiffness::None);
-        if self.repairs() {
-            self.pair_at(end, &candidate.d_u)?;
-        }
+        self.follow_surfaces(end, &candidate.d_u)?;
         Ok(())
     }
 
@@ -171,9 +167,7 @@ impl<const D: usize> Driver<D> {
             let mut increment = self.begin_increment(system, (start, &here), d_u, None);
             increment.patience = patience;
             if let Some(last) = &last {
-                if self.repairs() {
-                    self.pair_at(&here, &last.d_u)?;
-                }
+                self.follow_surfaces(&here, &last.d_u)?;
                 increment.iterate.contact =
                     self.contact_forces(&last.kinematics, &last.solution.force);
                 increment.solution = Some(last.solution.clone());

@@ -29,6 +29,14 @@ impl<const D: usize> Driver<D> {
                 }
                 Condition::DisplaceAlong { .. } => {}
                 Condition::Force { on, force } => {
+                    if let Ok(facets) = mesh.facet_group(on) {
+                        let shares = self.measure.facet_shares(mesh, facets);
+                        let area: f64 = shares.iter().map(|s| s.area).sum();
+                        for s in shares {
+                            loading.push(s.node, s.area / area, force);
+                        }
+                        continue;
+                    }
                     let nodes = mesh.node_group(on)?;
                     for &node in &nodes {
                         loading.push(node, 1.0 / nodes.len() as f64, force);

@@ -12,7 +12,8 @@ const SMOOTH: f64 = 0.1;
 
 impl<const D: usize> Driver<D> {
     /// First guess of the displacement increments: that of [`Driver::guess`], or the last increment again, as far as the load
-    /// goes on in the same direction, and by as much more as the path bends; else nothing.
+    /// goes on in the same direction, and by as much more as the path bends; else nothing, and nothing of a body that was let
+    /// go: it stays where it is.
     ///
     /// Through the last three equilibria goes a parabola. With increments Δu₋ and Δu under loadings of the lengths 1 and r,
     /// the next under q r is q (Δu + (1 + q)/(1 + 1/r) (Δu − r Δu₋)).
@@ -25,7 +26,8 @@ impl<const D: usize> Driver<D> {
             return zero();
         };
         let ratio = end.increment_from(start).ratio(before);
-        if !(end.moves_the_same_as(before) && ratio > 0.0 && ratio <= FARTHER) {
+        let goes_on = end.moves_the_same_as(before) && ratio > 0.0 && ratio <= FARTHER;
+        if !goes_on || self.is_let_go() {
             return zero();
         }
         match &self.state.bend {

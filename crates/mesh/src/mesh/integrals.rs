@@ -79,12 +79,22 @@ impl<const D: usize> Mesh<D> {
         facets: &[Facet],
         hypothesis: &H,
     ) -> Vec<Share<D>> {
+        self.facet_shares_at(&self.nodes, facets, hypothesis)
+    }
+
+    /// The same with the nodes at other positions \[mm\].
+    pub fn facet_shares_at<H: Hypothesis<D>>(
+        &self,
+        positions: &[[f64; D]],
+        facets: &[Facet],
+        hypothesis: &H,
+    ) -> Vec<Share<D>> {
         let mut samples = BTreeMap::new();
         let mut shares = BTreeMap::new();
         for &facet in facets {
             let kind = self.facet_kind(facet);
             let nodes = self.facet_nodes(facet);
-            let positions: Vec<_> = nodes.clone().map(|node| self.nodes[node]).collect();
+            let positions: Vec<_> = nodes.clone().map(|node| positions[node]).collect();
             for sample in samples.entry(kind).or_insert_with(|| facet_samples(kind)) {
                 let vector = sample.area_vector(&positions);
                 let area = dot(&vector, &vector).sqrt();

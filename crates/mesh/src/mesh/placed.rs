@@ -1,26 +1,9 @@
-//! A mesh put elsewhere, and one whose groups have a name in common; not what stands beside it.
+//! A mesh whose groups have a name in common; not what stands beside it.
 
 use super::Mesh;
 use super::groups::Group;
-use crate::MeshError;
-use crate::geometry::diagonal;
 
 impl<const D: usize> Mesh<D> {
-    /// The mesh with its nodes where a map brings them, which may turn and stretch it.
-    ///
-    /// # Errors
-    ///
-    /// [`MeshError::NotFinite`]; [`MeshError::InvertedCell`] for a map that mirrors,
-    /// [`MeshError::DegenerateCell`] for one that flattens.
-    pub fn mapped(mut self, map: impl Fn([f64; D]) -> [f64; D]) -> Result<Self, MeshError> {
-        for node in &mut self.nodes {
-            *node = map(*node);
-        }
-        self.size = diagonal(&self.nodes);
-        self.check_geometry()?;
-        Ok(self)
-    }
-
     /// The mesh with groups called `NAME.GROUP`, and with one of all cells that is called `NAME`, as a block has them.
     pub fn named(mut self, name: &str) -> Self {
         let groups = std::mem::take(&mut self.groups);
@@ -43,7 +26,7 @@ mod tests {
     #[test]
     fn a_mesh_is_turned_and_named() {
         let mesh = block()
-            .mapped(|[x, y]| [10.0 - 2.0 * y, 2.0 * x])
+            .map(|[x, y]| [10.0 - 2.0 * y, 2.0 * x])
             .expect("a turn");
         assert_eq!(mesh.bounds(), ([8.0, 2.0], [10.0, 8.0]));
         assert!((mesh.size() - 40f64.sqrt()).abs() < 1e-12);
@@ -57,17 +40,17 @@ mod tests {
 
     #[test]
     fn mirrors_and_what_is_not_finite_are_refused() {
-        let mirrored = block().mapped(|[x, y]| [-x, y]).map(|_| ());
+        let mirrored = block().map(|[x, y]| [-x, y]).map(|_| ());
         assert!(
             matches!(mirrored, Err(MeshError::InvertedCell { .. })),
             "{mirrored:?}"
         );
-        let flat = block().mapped(|[x, _]| [x, 0.0]).map(|_| ());
+        let flat = block().map(|[x, _]| [x, 0.0]).map(|_| ());
         assert!(
             matches!(flat, Err(MeshError::DegenerateCell { .. })),
             "{flat:?}"
         );
-        let far = block().mapped(|[x, y]| [x * f64::MAX, y]).map(|_| ());
+        let far = block().map(|[x, y]| [x * f64::MAX, y]).map(|_| ());
         assert!(matches!(far, Err(MeshError::NotFinite { .. })), "{far:?}");
     }
 }

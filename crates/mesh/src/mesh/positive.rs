@@ -53,13 +53,23 @@ impl<const D: usize> Mesh<D> {
         facets: &[Facet],
         hypothesis: &H,
     ) -> Vec<PositiveShare<D>> {
+        self.positive_shares_at(&self.nodes, facets, hypothesis)
+    }
+
+    /// The same, in the same basis, with the nodes at other positions \[mm\].
+    pub fn positive_shares_at<H: Hypothesis<D>>(
+        &self,
+        positions: &[[f64; D]],
+        facets: &[Facet],
+        hypothesis: &H,
+    ) -> Vec<PositiveShare<D>> {
         let mut edges: BTreeMap<usize, [usize; 2]> = BTreeMap::new();
         for &facet in facets {
             let nodes: Vec<usize> = self.facet_nodes(facet).collect();
             let change = self.change(facet, hypothesis).0.into_iter();
             edges.extend(change.map(|(m, corners)| (nodes[m], corners.map(|c| nodes[c]))));
         }
-        let mut shares = self.facet_shares(facets, hypothesis);
+        let mut shares = self.facet_shares_at(positions, facets, hypothesis);
         let index: BTreeMap<usize, usize> = shares.iter().map(|s| s.node).zip(0..).collect();
         for (midside, corners) in &edges {
             let from = index[midside];

@@ -6,7 +6,7 @@ use super::tree::Tree;
 use crate::geometry::diagonal;
 
 use crate::mesh::{Change, Facet, Mesh};
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 impl<const D: usize> Mesh<D> {
     /// The node of a surface that is deepest within the bodies of the surface opposite, both at the given
@@ -26,22 +26,30 @@ impl<const D: usize> Mesh<D> {
         if cells.is_empty() {
             return None;
         }
-        let faces = |&cell: &usize| -> Vec<Face<D>> {
-            let sides = 0..self.kind(cell).facets().len();
-            let facets = sides.map(|facet| Facet { cell, facet });
-            facets.map(|f| self.plain_face(f, positions)).collect()
+        let size = diagonal(positions);
+        let boundary: HashSet<Facet> = self.boundary_facets().into_iter().collect();
+        // On a side between two cells a point is within, on the surface of the body it is not.
+        let is_behind = |x: &[f64; D], side: Facet| {
+            let least = match boundary.contains(&side) {
+                true => ROUNDING * size,
+                false => -ROUNDING * size,
+            };
+            below(x, &self.plain_face(side, positions)) > least
         };
         let around = |cell: &usize| {
             let x = self.cell_nodes(*cell).iter().map(|&a| positions[a]);
             face::hull(x, 0.0)
         };
         let tree = Tree::new(cells.iter().map(around).collect());
-        let size = diagonal(positions);
         let within = |x: &[f64; D]| {
             let candidates = tree.within(&(*x, *x));
             candidates.into_iter().any(|k| {
-                let inside = |f: &Face<D>| below(x, f) > ROUNDING * size;
-                faces(&cells[k]).iter().all(inside)
+                let sides = 0..self.kind(cells[k]).facets().len();
+                let mut sides = sides.map(|facet| Facet {
+                    cell: cells[k],
+                    facet,
+                });
+                sides.all(|side| is_behind(x, side))
             })
         };
         let opposite: Vec<Face<D>> = opposite

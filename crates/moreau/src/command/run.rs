@@ -199,7 +199,7 @@ fn conclude(outcome: &Outcome, manner: &Manner, directory: &Path) -> u8 {
             NOT_CONVERGED
         }
         RunStatus::Collapsed(_) => {
-            eprintln!("if that is what the step is for, give it until = \"collapse\"");
+            tell!("if that is what the step is for, give it until = \"collapse\"");
             NOT_CONVERGED
         }
         RunStatus::Interrupted(increment) => {

@@ -367,11 +367,10 @@ fn lists(conditions: &[ConditionEntry], dimension: usize) -> [(&'static str, Vec
         };
         lists[list].1.push(match &condition.table {
             None => item,
-            Some(table) => format!(
-                "{}, table = {:?} }}",
-                item.trim_end_matches(" }"),
-                table.value
-            ),
+            Some(table) => {
+                let open = item.strip_suffix(" }").unwrap_or(&item);
+                format!("{open}, table = {:?} }}", table.value)
+            }
         });
     }
     lists
@@ -388,15 +387,12 @@ fn tail(deck: &Deck, out: &mut String) -> fmt::Result {
         ),
         Method::Penetration(part) => format!("{{ penetration = {:?} }}", part.value),
     };
-    let nesting = if deck.solver.outside {
-        "outside"
-    } else {
-        "inside"
-    };
-    writeln!(
-        out,
-        "\n[solver]\ncontact = {method}\nnesting = \"{nesting}\""
-    )?;
+    writeln!(out, "\n[solver]")?;
+    match deck.solver.outside {
+        // Uzawa's method, and no other.
+        true => writeln!(out, "nesting = \"outside\"")?,
+        false => writeln!(out, "contact = {method}\nnesting = \"inside\"")?,
+    }
     writeln!(out, "threads = {}", deck.solver.threads)?;
     writeln!(out, "tolerance = {:?}", deck.solver.tolerance)?;
     writeln!(out, "\n[output]")?;

@@ -12,7 +12,8 @@ use std::collections::BTreeMap;
 pub fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
     let records = driver.contacts();
     let last = records.iter().map(|c| c.contact).max()?;
-    let index: BTreeMap<usize, i64> = (0..).zip(records).map(|(k, c)| (c.node, k)).collect();
+    let of = |(k, c): (i64, &ContactRecord<D>)| ((c.contact, c.node), k);
+    let index: BTreeMap<(usize, usize), i64> = (0..).zip(records).map(of).collect();
     let mesh = driver.mesh();
     let mut cells = Vec::new();
     let mut contact = Vec::new();
@@ -21,11 +22,13 @@ pub fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
             .facet_group(driver.contact_name(k).0)
             .unwrap_or_default();
         for &facet in facets {
-            let nodes = mesh
-                .facet_nodes(facet)
-                .filter_map(|n| index.get(&n).copied());
-            cells.push((nodes.collect(), facet_type(mesh.facet_kind(facet))));
-            contact.push(k as f64);
+            let nodes = mesh.facet_nodes(facet);
+            let points = nodes.map(|n| index.get(&(k, n)).copied());
+            // Beyond what it is tied to, a surface has no points.
+            if let Some(points) = points.collect() {
+                cells.push((points, facet_type(mesh.facet_kind(facet))));
+                contact.push(k as f64);
+            }
         }
     }
     let array = |name: &str, values: Vec<Vec<f64>>| Array {

@@ -216,9 +216,9 @@ impl<'a> Run<'a> {
             }
             let log = &mut self.out.log;
             let mut broken = None;
-            let started = self.started;
+            let (before, started) = (self.before, self.started);
             let outcome = self.simulation.advance(&mut |step, iteration| {
-                let line = log::line(step, iteration, started.elapsed().as_secs_f64());
+                let line = log::line(step, iteration, before + started.elapsed().as_secs_f64());
                 watch.iterated(&line);
                 broken = log.line(&line).err();
                 match broken {

@@ -8,7 +8,7 @@ use crate::mesh::NodeKind;
 use crate::table::{Column, Table, Values};
 
 /// The columns of `contact.csv`, in their order.
-pub(super) const COLUMNS: [Described; 22] = [
+pub(super) const COLUMNS: [Described; 23] = [
     Described::new("step", Unit::Count, "Number of the step, from 1."),
     Described::new(
         "increment",
@@ -19,6 +19,11 @@ pub(super) const COLUMNS: [Described; 22] = [
         "contact",
         Unit::None,
         "Name of the surface that the point is on.",
+    ),
+    Described::new(
+        "against",
+        Unit::None,
+        "Name of the tool or surface opposite.",
     ),
     Described::new(
         "node",
@@ -112,8 +117,8 @@ pub(super) fn table<const D: usize>(driver: &Driver<D>, units: Units, stage: usi
     let text = |of: &dyn Fn(usize) -> &'static str| {
         Values::Texts((0..records.len()).map(|k| of(k).to_owned()).collect())
     };
-    let surfaces = records.iter().map(|c| driver.contact_name(c.contact).0);
-    let surfaces = surfaces.map(str::to_owned).collect();
+    let names = records.iter().map(|c| driver.contact_name(c.contact));
+    let (surfaces, opposites) = names.map(|(a, b)| (a.to_owned(), b.to_owned())).unzip();
     // Three components, those that the plane does not have zero.
     let vector = |of: &dyn Fn(&ContactRecord<D>, &Touch<D>) -> [f64; D]| {
         let vectors = records.iter().zip(&touches).map(|(c, t)| of(c, t));
@@ -131,6 +136,7 @@ pub(super) fn table<const D: usize>(driver: &Driver<D>, units: Units, stage: usi
         count(&|_| stage),
         count(&|_| driver.increments()),
         Values::Texts(surfaces),
+        Values::Texts(opposites),
         count(&|c| c.node),
     ];
     values.extend(vector(&|c, _| c.position));

@@ -12,6 +12,7 @@ use crate::plot::{Chart, Mark, MeshPicture, Style, below_each_other};
 use crate::simulation::status_name;
 use crate::table::Table;
 use crate::vtu::Array;
+use std::collections::{BTreeMap, BTreeSet};
 use tools::outlines;
 
 /// What happens over time: the forces; where there are none, as under loads alone that nothing but
@@ -60,9 +61,9 @@ fn columns(
     (!chart.series.is_empty()).then_some(chart)
 }
 
-/// A contact surface and the arc length along which it is drawn.
+/// A contact and the arc length of its surface along which it is drawn.
 pub(crate) struct ContactLine {
-    /// The surface.
+    /// The surface, and what is opposite where it has several contacts.
     pub(crate) name: String,
     /// Arc length at its points, increasing.
     pub(crate) at: Vec<f64>,
@@ -76,22 +77,28 @@ pub(crate) const TRACTIONS: [&str; 2] = ["pressure", "shear"];
 /// Tractions along the surfaces in one increment of a table, over the arc length.
 pub(crate) fn contact_lines(contacts: &Table, increment: usize) -> Vec<ContactLine> {
     let wanted = increment as f64;
-    let (rows, surfaces) = (contacts.numbers("increment"), contacts.texts("contact"));
+    let rows = contacts.numbers("increment");
+    let [surfaces, opposites] = ["contact", "against"].map(|name| contacts.texts(name));
     let place = contacts.numbers("s");
     let values = ["p_n", "p_1"].map(|name| contacts.numbers(name));
     let own: Vec<usize> = (0..rows.len()).filter(|&k| rows[k] == wanted).collect();
+    let names: BTreeSet<(&str, &str)> = own.iter().map(|&k| (surfaces[k], opposites[k])).collect();
+    let name = |k: usize| match names.iter().filter(|(s, _)| *s == surfaces[k]).count() {
+        1 => surfaces[k].to_owned(),
+        _ => format!("{} against {}", surfaces[k], opposites[k]),
+    };
     let line = |own: &[usize]| {
         let mut line = own.to_vec();
         line.sort_by(|&a, &b| place[a].total_cmp(&place[b]));
         ContactLine {
-            name: surfaces[own[0]].to_owned(),
+            name: name(own[0]),
             at: line.iter().map(|&k| place[k]).collect(),
             tractions: values
                 .each_ref()
                 .map(|v| line.iter().map(|&k| v[k]).collect()),
         }
     };
-    own.chunk_by(|&a, &b| surfaces[a] == surfaces[b])
+    own.chunk_by(|&a, &b| (surfaces[a], opposites[a]) == (surfaces[b], opposites[b]))
         .map(line)
         .collect()
 }
@@ -277,6 +284,22 @@ pub(crate) fn contact<const D: usize>(
     }
 }
 
+/// Of the rows of a table, that of each node; of those of a node with several contacts the one that presses most.
+pub(crate) fn foremost(
+    rows: impl Iterator<Item = usize>,
+    node: &[f64],
+    pressure: &[f64],
+) -> BTreeMap<usize, usize> {
+    let mut of_node = BTreeMap::new();
+    for row in rows {
+        let first = of_node.entry(node[row] as usize).or_insert(row);
+        if pressure[row] > pressure[*first] {
+            *first = row;
+        }
+    }
+    of_node
+}
+
 /// The contact surfaces of a solid in one increment, each seen against its mean normal with its pressure and the
 /// statuses of its points, below each other; where they are then if strains are large.
 fn surfaces<const D: usize>(
@@ -303,7 +326,8 @@ fn surfaces<const D: usize>(
         }
         drawn.push(name);
         let facets = mesh.facet_group(name).ok()?.to_vec();
-        let points: Vec<usize> = own.iter().copied().filter(|&k| names[k] == name).collect();
+        let points = own.iter().copied().filter(|&k| names[k] == name);
+        let points: Vec<usize> = foremost(points, &node, &pressure).into_values().collect();
         let mut values = vec![f64::NAN; mesh.nodes().len()];
         for &k in &points {
             *values.get_mut(node[k] as usize)? = pressure[k];

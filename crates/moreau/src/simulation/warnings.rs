@@ -72,8 +72,8 @@ const DIGITS: usize = 4;
 /// strained at the corners of a punch.
 const LOCAL: f64 = 0.1;
 
-/// Part of what is stored and dissipated by which the balance of energies may be out. Friction counts its slip at
-/// the last pressure, which is twice too much where it first slips: a tenth in a dozen increments.
+/// Part of what is stored and dissipated by which the balance of energies may be out. Under small strains friction
+/// counts its slip at the last pressure, which is twice too much where it first slips: a tenth in a dozen increments.
 const CLOSED: f64 = 0.2;
 
 /// The balance of energies where it is worst.

@@ -57,8 +57,8 @@ fn the_history_has_its_columns_and_the_force_of_the_library() {
 
     let contact = fs::read_to_string(results.join("contact.csv")).expect("contacts");
     assert_eq!(contact.lines().count(), 1 + 20 * 21);
-    assert!(contact.starts_with("step,increment,contact,node,x [mm],"));
-    assert!(contact.lines().all(|l| l.split(',').count() == 22));
+    assert!(contact.starts_with("step,increment,contact,against,node,x [mm],"));
+    assert!(contact.lines().all(|l| l.split(',').count() == 23));
     let json = fs::read_to_string(results.join("run.json")).expect("a summary");
     let json: serde_json::Value = serde_json::from_str(&json).expect("json");
     assert_eq!(json["status"], "done");

@@ -66,7 +66,7 @@ fn a_run_is_drawn_again_from_its_files() {
         let field = |line: &str, k: usize| line.split(',').nth(k).map(str::to_owned);
         let own = (frame + 1).to_string();
         let found = rows.lines().filter(|l| field(l, 1) == Some(own.clone()));
-        let pressures = found.filter_map(|l| field(l, 14)?.parse::<f64>().ok());
+        let pressures = found.filter_map(|l| field(l, 15)?.parse::<f64>().ok());
         let found = pressures.reduce(f64::max).expect("a pressure");
         let shown = most(frame).expect("a number");
         assert!((shown / found - 1.0).abs() < 1e-12, "{shown} {found}");
@@ -127,10 +127,10 @@ fn a_contact_surface_in_space_is_in_the_report() {
             let field = &contact["frames"][frame][name];
             ["low", "high"].map(|key| field[key].as_f64().expect("a number"))
         };
-        let shear = |r: &[&str]| number(r, 15).hypot(number(r, 16));
+        let shear = |r: &[&str]| number(r, 16).hypot(number(r, 17));
         for (name, found) in [
-            ("gap", of(frame, &|r| number(r, 8))),
-            ("pressure", of(frame, &|r| number(r, 14))),
+            ("gap", of(frame, &|r| number(r, 9))),
+            ("pressure", of(frame, &|r| number(r, 15))),
             ("shear", of(frame, &shear)),
         ] {
             for (shown, found) in shown(name).into_iter().zip(found) {

@@ -158,7 +158,7 @@ step = [{ name = "press", increments = 1, move = [{ on = "top, [mm] high", u = {
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let read = |name: &str| fs::read_to_string(out.join(name)).expect("a file");
     assert!(read("history.csv").contains(",\"force.top, [mm] high.y [N]\","));
-    assert!(read("contact.csv").contains("\n1,1,\"floor, rough\",0,"));
+    assert!(read("contact.csv").contains("\n1,1,\"floor, rough\",plate,0,"));
     // Drawn from the files: the force over time, and the pressure along the surface.
     assert!(read("history.svg").contains("top, [mm] high.y"));
     assert!(

@@ -187,7 +187,7 @@ fn a_penetration_is_kept() {
     let (status, _, err, results) = run("penetration", &deck, &[]);
     assert_eq!(status, 0, "{err}");
     let contact = fs::read_to_string(results.join("contact.csv")).expect("contacts");
-    let gap = |line: &str| line.split(',').nth(8)?.parse::<f64>().ok();
+    let gap = |line: &str| line.split(',').nth(9)?.parse::<f64>().ok();
     let depth = contact
         .lines()
         .skip(1)
@@ -195,6 +195,10 @@ fn a_penetration_is_kept() {
         .fold(0.0, f64::max);
     // Cells of 5 mm.
     assert!(depth > 1e-4 * 5.0 && depth <= 1e-3 * 5.0, "{depth}");
+    // The certificate tells the same.
+    let told = column(&results, "penetration");
+    let told = told.into_iter().fold(0.0, f64::max);
+    assert!((told - depth).abs() <= 1e-12, "{told} {depth}");
     let force = last(&results, "force.punch.y");
     assert!((force / -10519.53783 - 1.0).abs() < 1e-2, "{force}");
 }

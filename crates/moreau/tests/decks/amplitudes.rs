@@ -1,7 +1,7 @@
 //! Tables over the time of a step.
 
-use super::{says, shown};
-use moreau::deck::{Given, open};
+use super::{DECK, folder, says, shown};
+use moreau::deck::{Given, open, open_in};
 use moreau::simulation::Simulation;
 use std::ops::ControlFlow;
 
@@ -129,4 +129,28 @@ load = [{ on = "b.top", pressure = 3.0, table = [[0, 0], [0.5, 2], [1, -1]] }]
     for (found, share) in last.iter().zip([1.0, 2.0, 0.5, -1.0]) {
         assert!((found - 6.0 * share).abs() < 1e-9, "{forces:?}");
     }
+}
+
+/// A deck that is written out is the deck again, where a table varies what has a table of its own.
+#[test]
+fn a_motion_with_a_table_is_written_out_whole() {
+    let text = DECK.replacen(MOVE, &with("[[0, 0], [0.5, 1], [1, 0.5]]"), 1);
+    let (deck, problem, findings) = open_in(&text, &folder("docs/examples"));
+    assert!(
+        problem.is_some(),
+        "{}",
+        findings.render("deck.toml", &text, false)
+    );
+    let once = deck.resolved();
+    assert!(
+        once.contains("table = [[0.0, 0.0], [0.5, 1.0], [1.0, 0.5]] }"),
+        "{once}"
+    );
+    let (again, problem, findings) = open_in(&once, &folder("docs/examples"));
+    assert!(
+        problem.is_some(),
+        "{}",
+        findings.render("deck.toml", &once, false)
+    );
+    assert_eq!(again.resolved(), once);
 }

@@ -39,7 +39,7 @@ fn meshes() -> PathBuf {
         &lower.joined(upper.clone()).expect("other names"),
     );
     let (s, c) = 30f64.to_radians().sin_cos();
-    let away = upper.mapped(|[x, y]| {
+    let away = upper.map(|[x, y]| {
         let (x, y) = (1e3 * x, 1e3 * (y - 2.0));
         [c * x - s * y, s * x + c * y]
     });

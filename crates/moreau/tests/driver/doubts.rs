@@ -394,12 +394,17 @@ fn the_least_gap_of_a_tool_is_its_distance() {
     }
 }
 
-/// Bodies that overlap, less deep than a facet is long and deeper, and bodies apart.
+/// Bodies that overlap, less deep than a facet is long and deeper, and bodies apart; with nodes within the cells of the
+/// other one, and on the lines between them.
 #[test]
 fn overlapping_bodies_are_told_by_their_depth() {
-    for (bottom, met) in [(10.5, true), (9.8, true), (8.0, false)] {
+    let places = [(10.5, true), (9.8, true), (8.0, false)];
+    for ((bottom, met), columns) in places.into_iter().flat_map(|p| [(p, 7), (p, 10)]) {
         let lower = grid(CellKind::Quad8, [20.0, 10.0], [20, 10]);
-        let (x, y) = (uniform(5.0, 15.0, 7), uniform(bottom, bottom + 7.0, 4));
+        let (x, y) = (
+            uniform(5.0, 15.0, columns),
+            uniform(bottom, bottom + 7.0, 4),
+        );
         let upper = block2("up", CellKind::Quad8, &x, &y).expect("valid");
         let model = Model::new(
             lower.joined(upper).expect("two bodies"),

@@ -3,7 +3,7 @@
 use moreau_contact::Plane;
 use moreau_driver::{Axis, Driver, Model, Seam, Settings, Step};
 use moreau_laws::{AnisotropicCoulomb, Coulomb, Elastic, Friction, Tresca};
-use moreau_mesh::{CellKind, Mesh, PlaneStrain, Solid, block2, block3, uniform};
+use moreau_mesh::{CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform};
 
 const FRICTION: f64 = 0.3;
 /// Of the block, on a length of 4 mm.
@@ -334,5 +334,41 @@ fn friction_on_an_incline_bears_on_what_is_free() {
                 WEIGHT * expected
             );
         }
+    }
+}
+
+/// A block drawn to twice its length on a floor that then slides below it: a shear of a given limit acts on the surface as
+/// it is, and the areas of the contact points are those of that.
+#[test]
+fn shears_on_tools_act_on_surfaces_as_they_are() {
+    let drawn = |kind: CellKind| {
+        let (x, y) = (uniform(0.0, 10.0, 2), uniform(0.0, 5.0, 1));
+        let mesh = block2("block", kind, &x, &y).expect("valid");
+        let model = Model::with_large_strains(mesh, PlaneStrain::default())
+            .material(
+                "block",
+                Elastic::new(1000.0, 0.3).expect("valid"),
+                Integration::Full,
+            )
+            .and_then(|m| m.tool("floor", Plane::new([0.0; 2], [0.0, 1.0]).expect("valid")))
+            .and_then(|m| m.contact("block.bottom", "floor", Tresca::new(5.0).expect("valid")))
+            .expect("valid");
+        let mut driver = Driver::new(model, Settings::default()).expect("valid");
+        let step = |floor: f64| {
+            Step::new("draw")
+                .fix("block.left", &[Axis::X])
+                .displace("block.right", Axis::X, 10.0)
+                .displace("block.top", Axis::Y, -2.5)
+                .tool("floor", [floor, 0.0])
+        };
+        driver.run(&step(0.0), 10, |_, _| {}).expect("converges");
+        driver.run(&step(-20.0), 2, |_, _| {}).expect("converges");
+        let area: f64 = driver.contacts().iter().map(|c| c.area).sum();
+        (area, driver.tool_force("floor").expect("there")[0])
+    };
+    for kind in [CellKind::Quad4, CellKind::Quad8] {
+        let (area, shear) = drawn(kind);
+        assert!((area - 20.0).abs() < 1e-9, "{area}");
+        assert!((shear.abs() - 5.0 * 20.0).abs() < 1e-6, "{shear}");
     }
 }

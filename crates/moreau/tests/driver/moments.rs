@@ -509,3 +509,75 @@ fn a_flap_does_the_work_that_the_block_takes() {
         assert!(errors[2] < 1e-3 && is_right, "{is_large}, {mu}: {errors:?}");
     }
 }
+
+/// A plate that a force presses and a moment tilts does the work that the block stores, in as many increments as one likes:
+/// no turn of the increments before counts once more.
+#[test]
+fn a_tilted_plate_does_the_work_that_the_block_stores() {
+    for increments in [1, 2, 10] {
+        let (x, y) = (uniform(0.0, 10.0, 4), uniform(0.0, 4.0, 2));
+        let mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
+        let law = Elastic::new(1000.0, 0.3).expect("valid");
+        let plate = Plane::new([5.0, 4.0], [0.0, -1.0]).expect("valid");
+        let model = Model::new(mesh, PlaneStrain::default())
+            .material("block", law, Integration::Reduced)
+            .and_then(|m| m.tool("plate", plate))
+            .and_then(|m| m.contact("block.top", "plate", Coulomb::new(0.0).expect("valid")))
+            .expect("valid");
+        let mut driver = Driver::new(model, Settings::default()).expect("valid");
+        let step = Step::new("press")
+            .fix("block.bottom", &[Axis::X, Axis::Y])
+            .push("plate", Axis::Y, -100.0)
+            .moment("plate", Z, 100.0);
+        run(&mut driver, &step, increments);
+        let [moment, turn] = about(&driver, "plate", Z);
+        assert!(
+            (moment - 100.0).abs() < 1e-6 && turn > 1e-3,
+            "{moment} {turn}"
+        );
+        let energies = driver.energies();
+        let error = energies.external_work / energies.stored - 1.0;
+        assert!(error.abs() < 1e-9, "{increments}: {error}");
+    }
+}
+
+/// A ball that rubs a block about one axis and then about another does the work that friction takes, but for an error that
+/// vanishes with the increments.
+#[test]
+fn a_ball_that_turns_about_two_axes_does_its_work() {
+    let error = |increments: usize| {
+        let (x, y) = (uniform(-3.0, 3.0, 4), uniform(0.0, 2.0, 1));
+        let mesh = block3("block", CellKind::Hex8, &x, &y, &x).expect("valid");
+        let law = Elastic::new(1000.0, 0.3).expect("valid");
+        let ball = Ball::new([0.0, 12.0, 0.0], 10.0).expect("valid");
+        let model = Model::new(mesh, Solid)
+            .material("block", law, Integration::Full)
+            .and_then(|m| m.tool("ball", ball))
+            .and_then(|m| m.contact("block.top", "ball", Coulomb::new(0.3).expect("valid")))
+            .expect("valid");
+        let mut driver = Driver::new(model, Settings::default()).expect("valid");
+        let step = |name| {
+            Step::new(name)
+                .fix("block.bottom", &[Axis::X, Axis::Y, Axis::Z])
+                .tool("ball", [0.0, -0.15, 0.0])
+        };
+        run(&mut driver, &step("press"), 2);
+        let by = 60f64.to_radians();
+        run(
+            &mut driver,
+            &step("spin").turn("ball", [0.0, 1.0, 0.0], by),
+            increments,
+        );
+        let before = driver.energies();
+        run(
+            &mut driver,
+            &step("roll").turn("ball", [1.0, 0.0, 0.0], by),
+            increments,
+        );
+        let after = driver.energies();
+        (after.external_work - before.external_work) / (after.taken() - before.taken()) - 1.0
+    };
+    let errors = [8, 16].map(error);
+    let [few, many] = errors.map(f64::abs);
+    assert!(many < 0.05 && many < 0.6 * few, "{errors:?}");
+}

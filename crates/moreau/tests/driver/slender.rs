@@ -143,12 +143,12 @@ fn a_sheet_let_go_between_rolls_comes_to_rest() {
         back[0].cuts == 0 && back[0].newton_iterations < 100,
         "{back:?}"
     );
+    // None beyond what balance leaves.
+    let none = back[0].out_of_balance.max(1e-9 * peak);
+    assert!(none < 1e-6 * peak, "{back:?}");
     for tool in ["left", "right", "roll"] {
         let force = driver.tool_force(tool).expect("exists");
-        assert!(
-            force.iter().all(|f| f.abs() < 1e-9 * peak),
-            "{tool}: {force:?}"
-        );
+        assert!(force.iter().all(|f| f.abs() <= none), "{tool}: {force:?}");
     }
     let bent = driver
         .displacements()

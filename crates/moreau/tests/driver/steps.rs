@@ -3,10 +3,13 @@
 
 use moreau_contact::{Ball, Penalty, Plane};
 use moreau_driver::{
-    Axis, Driver, Increments, Model, ModelError, Nesting, Numbers, Saved, Settings, Step,
+    Axis, Driver, Increments, Model, ModelError, Nesting, Numbers, Saved, Seam, Settings, Step,
 };
 use moreau_laws::{Coulomb, Elastic, Status, VonMises};
-use moreau_mesh::{CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform};
+use moreau_mesh::{
+    Axisymmetric, CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform,
+};
+use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 const YOUNG: f64 = 210e3;
@@ -358,6 +361,12 @@ fn a_state_that_is_read_back_goes_on_to_the_bit() {
         assert!(matches!(error, ModelError::Saved { .. }), "{error}");
         let half = &saved[0][..saved[0].len() / 2];
         assert!(virgin().read(&mut Numbers::Read(half)).is_err());
+        // The first is a count.
+        for wrong in [f64::NAN, -1.0, 0.5] {
+            let mut numbers = saved[0].clone();
+            numbers[0] = wrong;
+            assert!(virgin().read(&mut Numbers::Read(&numbers)).is_err());
+        }
     }
 }
 
@@ -402,4 +411,128 @@ fn gap_offsets_and_adjusted_gaps_move_nothing() {
     assert_eq!(far.tool_force("floor").expect("exists").norm(), 0.0);
     assert!(model(0.0).gap_offset(f64::NAN).is_err());
     assert!(model(0.0).adjust(-1.0).is_err());
+}
+
+/// Bodies that overlap a little, or do not quite meet, and whose contact is adjusted, touch without stress: pressed
+/// together they carry what bodies do that meet.
+#[test]
+fn adjusted_bodies_touch_where_they_are() {
+    let pressed = |gap: f64, adjusted: Option<f64>| {
+        let (x, y) = (uniform(0.0, 4.0, 4), uniform(0.0, 2.0, 2));
+        let lower = block2("lower", CellKind::Quad8, &x, &y).expect("valid");
+        let (x, y) = (uniform(0.0, 4.0, 3), uniform(2.0 + gap, 4.0 + gap, 2));
+        let upper = block2("upper", CellKind::Quad8, &x, &y).expect("valid");
+        let model = Model::new(lower.joined(upper).expect("valid"), PlaneStrain::default())
+            .material("lower", steel(), Integration::Reduced)
+            .and_then(|m| m.material("upper", steel(), Integration::Reduced))
+            .and_then(|m| m.contact("upper.bottom", "lower.top", coulomb(0.2)))
+            .and_then(|m| match adjusted {
+                Some(within) => m.adjust(within),
+                None => Ok(m),
+            });
+        let mut driver = Driver::new(model.expect("valid"), Settings::default()).expect("valid");
+        let found = driver.least_gaps()[0].gap;
+        let step = Step::new("press")
+            .fix("lower.bottom", &[Axis::X, Axis::Y])
+            .fix("upper.left", &[Axis::X])
+            .displace("upper.top", Axis::Y, -0.001);
+        driver.run(&step, 1, |_, _| {}).expect("converges");
+        (found, driver.reaction("upper.top").expect("exists")[1])
+    };
+    let (_, flush) = pressed(0.0, None);
+    assert!(flush < 0.0);
+    for gap in [-0.01, 0.01] {
+        let (found, force) = pressed(gap, Some(0.02));
+        assert!(found.abs() < 1e-12, "{found}");
+        assert!((force / flush - 1.0).abs() < 1e-3, "{force} {flush}");
+        let (found, far) = pressed(gap, Some(0.005));
+        assert!((found - gap).abs() < 1e-12, "{found}");
+        assert!((far / flush - 1.0).abs() > 0.5, "{far}");
+    }
+}
+
+/// A block on a floor, pressed by a roll that is lifted again: once nothing presses it stays where it is, whatever the roll
+/// does, and the motion that no force decides is told.
+#[test]
+fn what_is_let_go_stays_behind() {
+    for (large, seam) in [
+        (false, Seam::Condensed),
+        (false, Seam::Tied),
+        (true, Seam::Condensed),
+        (true, Seam::Tied),
+    ] {
+        let (x, y) = (uniform(0.0, 40.0, 8), uniform(0.0, 20.0, 4));
+        let mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
+        let model = match large {
+            true => Model::with_large_strains(mesh, PlaneStrain::default()),
+            false => Model::new(mesh, PlaneStrain::default()),
+        };
+        let model = model
+            .material("block", steel(), Integration::Reduced)
+            .and_then(|m| m.tool("roll", Ball::new([0.0, 40.0], 20.0).expect("valid")))
+            .and_then(|m| m.tool("floor", Plane::new([0.0; 2], [0.0, 1.0]).expect("valid")))
+            .and_then(|m| m.contact("block.top", "roll", coulomb(0.1)))
+            .and_then(|m| m.contact("block.bottom", "floor", coulomb(0.1)))
+            .expect("valid");
+        let settings = Settings {
+            seam,
+            ..Settings::default()
+        };
+        let mut driver = Driver::new(model, settings).expect("valid");
+        let step = |y: f64| {
+            Step::new("move")
+                .fix("block.left", &[Axis::X])
+                .tool("roll", [0.0, y])
+        };
+        driver.run(&step(-0.1), 5, |_, _| {}).expect("converges");
+        let at = |driver: &Driver<2>| driver.displacement(0)[1];
+        let mut seen = Vec::new();
+        let reports = driver.run(&step(0.3), 20, |driver, report| {
+            let force = driver.tool_force("roll").expect("there").norm();
+            seen.push((force, at(driver), report.free_motions.len()));
+        });
+        let what = format!("{large} {seam:?}: {seen:?}");
+        assert!(
+            reports.expect("converges").iter().all(|r| r.cuts == 0),
+            "{what}"
+        );
+        let free = seen.iter().position(|s| s.0 < 1e-6).expect("it is let go");
+        assert!((1..10).contains(&free), "{what}");
+        for (_, u, motions) in &seen[free..] {
+            assert!((u - seen[free].1).abs() < 1e-6 && *motions == 1, "{what}");
+        }
+    }
+}
+
+/// A force on facets is a traction that is the same everywhere: what it pulls stretches evenly.
+#[test]
+fn a_force_on_facets_pulls_evenly() {
+    let lines = [0.0, 1.0, 3.0, 4.0];
+    let law = Elastic::new(1000.0, 0.0).expect("valid");
+    let mesh = block2("bar", CellKind::Quad8, &lines, &lines).expect("valid");
+    let model = Model::new(mesh, Axisymmetric)
+        .material("bar", law, Integration::Reduced)
+        .expect("valid");
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    let step = Step::new("pull").fix("bar.bottom", &[Axis::Y]);
+    let step = step.force("bar.top", [0.0, 10.0 * PI * 16.0]);
+    driver.run(&step, 1, |_, _| {}).expect("converges");
+    let nodes = driver.mesh().nodes().iter().enumerate();
+    let even = |(a, x): (usize, &[f64; 2])| (driver.displacement(a)[1] - 0.01 * x[1]).abs() < 1e-12;
+    assert!(nodes.clone().all(even));
+
+    let mesh = block3("bar", CellKind::Hex20, &lines, &lines, &lines).expect("valid");
+    let model = Model::new(mesh, Solid)
+        .material("bar", law, Integration::Reduced)
+        .expect("valid");
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    let step = Step::new("pull")
+        .fix("bar.bottom", &[Axis::Y])
+        .fix("bar.left", &[Axis::X])
+        .fix("bar.back", &[Axis::Z])
+        .force("bar.top", [0.0, 160.0, 0.0]);
+    driver.run(&step, 1, |_, _| {}).expect("converges");
+    let nodes = driver.mesh().nodes().iter().enumerate();
+    let even = |(a, x): (usize, &[f64; 3])| (driver.displacement(a)[1] - 0.01 * x[1]).abs() < 1e-12;
+    assert!(nodes.clone().all(even));
 }

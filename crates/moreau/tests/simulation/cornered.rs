@@ -153,4 +153,29 @@ tools = [{{ name = "roll", move = [0, -0.05] }}]
             assert!((a - b).abs() < 1e-6, "{name}: {a} {b}");
         }
     }
+    // In the table and in the grid each contact has its own.
+    let contacts = all.contacts();
+    let pressing = |tool: &str| {
+        let rows = contacts
+            .numbers("t_n")
+            .into_iter()
+            .zip(contacts.texts("against"));
+        rows.filter(|&(t_n, against)| t_n > 0.0 && against == tool)
+            .count()
+    };
+    let [table, roll] = ["table", "roll"].map(pressing);
+    assert!(table >= 13 && (1..8).contains(&roll), "{table} {roll}");
+    let grid = all.surface().expect("contacts");
+    let field = |name: &str| grid.point_data.iter().find(|a| a.name == name);
+    let pressures = &field("pressure").expect("there").values;
+    let places: Vec<[f64; 3]> = grid.points.clone();
+    let pressed = |contact: f64| {
+        let cells = grid.cells.iter().zip(&grid.cell_data[0].values);
+        let own = cells.filter(move |&(_, &k)| k == contact);
+        let points = own.flat_map(|((points, _), _)| points);
+        let points = points.filter(|&&p| pressures[p as usize] > 0.0);
+        points.map(|&p| places[p as usize][1]).collect::<Vec<f64>>()
+    };
+    assert!(!pressed(0.0).is_empty() && pressed(0.0).iter().all(|&y| y == 0.0));
+    assert!(!pressed(1.0).is_empty() && pressed(1.0).iter().all(|&y| y == 4.0));
 }

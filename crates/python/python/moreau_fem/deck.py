@@ -21,9 +21,11 @@ from .tables import frame
 # Equivalent plastic strains at which a function of hardening is sampled.
 _SAMPLES = np.concatenate([[0.0], np.geomspace(1e-6, 3.0, 500)])
 
-
 # Pressures at which a function of friction is sampled: all that metals, soils and tissues know, in any unit.
 _PRESSURES = np.concatenate([[0.0], np.geomspace(1e-6, 1e15, 1200)])
+
+# Part of a shear that is rounding, of functions too that take the difference of large numbers.
+_ROUNDING = 1e-6
 
 
 class Deck:
@@ -93,8 +95,8 @@ class Deck:
                 plain[name] = [_dashed(_sampled(material)) for material in value]
             elif name == "contact":
                 plain[name] = [_dashed(_bounded(contact)) for contact in value]
-            elif name == "expect":
-                # Its keys are the names of columns.
+            elif name in ("expect", "parameters"):
+                # Their keys are names of columns, and of the user's own.
                 plain[name] = value
             else:
                 plain[name] = _dashed(value)
@@ -149,8 +151,6 @@ class Deck:
             at: Any = keys
             for part in parents:
                 at = at[part]
-            if isinstance(at, dict):
-                at = _Renamed(at)
             at[last] = copy.deepcopy(value)
         changed = Deck(keys, folder=self.folder)
         changed.file = self.file
@@ -198,18 +198,12 @@ class Deck:
         return self.text
 
 
-class _Renamed:
-    """A table whose keys may be written with ``_``."""
-
-    def __init__(self, table: dict[str, Any]) -> None:
-        self.table = table
-
-    def __setitem__(self, name: str, value: Any) -> None:
-        self.table[name.replace("_", "-")] = value
-
-
 def _parts(path: str) -> list[Any]:
-    return [int(part) if part.isdigit() else part.replace("_", "-") for part in path.split(".")]
+    parts = path.split(".")
+    # What users name is what they name it.
+    if parts[0] == "parameters":
+        return parts
+    return [int(part) if part.isdigit() else part.replace("_", "-") for part in parts]
 
 
 def _dashed(value: Any) -> Any:
@@ -262,6 +256,19 @@ def _softening(message: str) -> Finding:
     return Finding("error", "values", message, "hardening", None, 0, 0)
 
 
+def _above(x: np.ndarray[Any, Any], y: np.ndarray[Any, Any]) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """The corners of the least concave line above points: all that bend it, none that lie on it or below."""
+    kept: list[int] = []
+    for k in range(len(x)):
+        while len(kept) > 1:
+            a, b = kept[-2:]
+            if (y[b] - y[a]) * (x[k] - x[a]) > (y[k] - y[a]) * (x[b] - x[a]):
+                break
+            kept.pop()
+        kept.append(k)
+    return x[kept], np.maximum.accumulate(y[kept])
+
+
 def _bounded(contact: Mapping[str, Any]) -> dict[str, Any]:
     """A contact with a function of friction as a table, up to a pressure that no contact reaches."""
     given = {name.replace("_", "-"): value for name, value in contact.items()}
@@ -271,22 +278,20 @@ def _bounded(contact: Mapping[str, Any]) -> dict[str, Any]:
     pressures = _PRESSURES
     shear = _values(friction, pressures)
     on = given.get("surface")
-    slopes = np.diff(shear) / np.diff(pressures)
+    corners = _above(pressures, shear)
+    bent = np.interp(pressures, *corners) - shear > _ROUNDING * shear
+    parts = (pressures[1:-1] - pressures[:-2]) / (pressures[2:] - pressures[:-2])
+    rises = shear[:-2] + parts * (shear[2:] - shear[:-2]) - shear[1:-1] > _ROUNDING * shear[1:-1]
+    falls = np.diff(shear) < -_ROUNDING * shear[:-1]
     if not np.isfinite(shear).all() or shear[0] < 0.0:
         message = f"friction of {on!r} is {shear[0]} at no pressure, expected a shear >= 0 and finite numbers"
-    elif (slopes < -1e-9 * slopes[0]).any():
-        at = pressures[1 + int(np.flatnonzero(slopes < -1e-9 * slopes[0])[0])]
+    elif falls.any():
+        at = pressures[1 + int(np.flatnonzero(falls)[0])]
         message = f"friction of {on!r} falls at the pressure {at:.4g}, expected a shear that does not fall"
-    elif (np.diff(slopes) > 1e-9 * abs(slopes[0])).any():
-        at = pressures[1 + int(np.flatnonzero(np.diff(slopes) > 1e-9 * abs(slopes[0]))[0])]
+    elif bent.any():
+        at = pressures[1 + int(np.flatnonzero(rises)[0])] if rises.any() else pressures[int(np.flatnonzero(bent)[0])]
         message = f"friction of {on!r} rises faster from the pressure {at:.4g} on, expected a concave function"
     else:
-        # Without what rounding adds.
-        slopes = np.maximum(np.minimum.accumulate(slopes), 0.0)
-        shear = shear[0] + np.concatenate([[0.0], np.cumsum(slopes * np.diff(pressures))])
-        # Nor what is on a line with its neighbours.
-        bends = np.concatenate([[True], np.diff(slopes) < -1e-12 * slopes[0], [True]])
-        rows = zip(pressures[bends].tolist(), shear[bends].tolist())
-        given["friction"] = {"table": [list(row) for row in rows]}
+        given["friction"] = {"table": [list(row) for row in zip(*(c.tolist() for c in corners))]}
         return given
     raise DeckError(message, [Finding("error", "values", message, "friction", None, 0, 0)])

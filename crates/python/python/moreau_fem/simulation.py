@@ -146,9 +146,9 @@ class Simulation:
         if refused is not None:
             raise DeckError(refused, errors.findings(found))
         errors.warn(errors.findings(found))
-        meshes = self.deck.meshes
-        self.deck = Deck(self._core.resolved(), folder=self.deck.folder)
-        self.deck.meshes = meshes
+        before = self.deck
+        self.deck = Deck(self._core.resolved(), folder=before.folder)
+        self.deck.file, self.deck.meshes = before.file, before.meshes
 
     step = property(
         None,

@@ -46,8 +46,8 @@ impl Progress {
         merit.max(CLEARLY * worst)
     }
 
-    /// Merits of another α are no measure.
+    /// Merits and residuals of another α are no measure.
     pub(super) fn forget(&mut self) {
-        self.merits.clear();
+        *self = Self::default();
     }
 }

@@ -366,7 +366,6 @@ impl System {
             keeps_elastic: is_definite && others.is_none() && pattern.entries() <= KEPT,
             others,
             gave_up: None,
-            is_of_a_team: team.is_some(),
             matrix: Matrix::new(pattern),
             coarse,
             tied: is_tied.then(Vec::new),

@@ -62,7 +62,7 @@ impl System {
                 error,
                 EngineError::NotPositiveDefinite { .. } | EngineError::Singular { .. }
             );
-            self.gave_up = (!is_of_the_matrix && self.is_of_a_team).then_some(*error);
+            self.gave_up = (!is_of_the_matrix).then_some(*error);
         })
         .map_err(|error| {
             let dofs = self.coarse.as_ref().map_or(&self.dofs, |c| &c.dofs);
@@ -70,7 +70,6 @@ impl System {
                 EngineError::NotPositiveDefinite { row } | EngineError::Singular { row, .. } => {
                     dofs[row]
                 }
-                EngineError::NotFinite { column } => dofs[column],
                 _ => dofs.last().copied().unwrap_or(0),
             }
         })?;
@@ -81,7 +80,7 @@ impl System {
         Ok(())
     }
 
-    /// Why the engine of a team has no factor, where that is no fault of the matrix.
+    /// Why the engine has no factor, where that is no fault of the matrix.
     pub(crate) fn gave_up(&self) -> Option<EngineError> {
         self.gave_up
     }

@@ -2,6 +2,7 @@
 
 use super::Stage;
 use super::groups::Groups;
+use crate::deck::At;
 use crate::deck::entries::{Action, Deck, FieldEntry, TurnEntry};
 use crate::deck::finding::Findings;
 use crate::driver::{Axis, LeastGap, Step};
@@ -223,7 +224,11 @@ pub(super) fn inner_surfaces<const D: usize>(
         .iter()
         .flat_map(|s| &s.conditions)
         .filter(|c| matches!(c.action, Action::Pressure(_) | Action::Traction(_)));
-    let surfaces = deck.contacts.iter().map(|c| &c.surface);
+    // A tool that is called as a group is one: see `Model::contact`.
+    let is_tool = |on: &&At<String>| deck.tools.iter().any(|t| t.name.value == on.value);
+    let opposites = deck.contacts.iter().map(|c| &c.against);
+    let opposites = opposites.filter(|on| !is_tool(on));
+    let surfaces = deck.contacts.iter().map(|c| &c.surface).chain(opposites);
     let ties = deck.ties.iter().flat_map(|t| [&t.surface, &t.to]);
     for on in surfaces.chain(ties).chain(loads.map(|c| &c.on)) {
         let facets = groups.mesh.facet_group(&on.value).unwrap_or_default();

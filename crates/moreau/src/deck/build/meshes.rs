@@ -159,7 +159,7 @@ fn put<const D: usize>(mesh: Mesh<D>, part: &FileEntry) -> Result<Mesh<D>, MeshE
                 Some(r) => array::from_fn(|i| (0..D).map(|j| r[(i, j)] * x[j]).sum()),
                 None => x,
             };
-            mesh.mapped(|x| {
+            mesh.map(|x| {
                 let x: [f64; D] = turned(x.map(|x| part.scale * x));
                 array::from_fn(|i| part.position[i] + x[i])
             })?

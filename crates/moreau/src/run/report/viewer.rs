@@ -11,13 +11,13 @@ use crate::run::RunError;
 use crate::run::files::contact_table;
 use crate::run::vtu::{bodies, read_point_data};
 use crate::simulation::pictures::{
-    ContactLine, TRACTIONS, contact_labels, contact_lines, field, fields, label, usual_field,
-    usual_magnification,
+    ContactLine, TRACTIONS, contact_labels, contact_lines, field, fields, foremost, label,
+    usual_field, usual_magnification,
 };
 use crate::simulation::status_name;
 use crate::vtu::Array;
 use serde_json::{Map, json};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Values of all frames that a page holds at most, so that it stays below some tens of megabytes.
@@ -202,9 +202,8 @@ fn contact_surface<const D: usize>(
     if faces.is_empty() {
         return Ok(json!(null));
     }
-    let node = table.numbers("node").into_iter();
-    let node: Vec<usize> = node.map(|n| n as usize).collect();
-    let touching: BTreeSet<usize> = node.iter().copied().collect();
+    let node = table.numbers("node");
+    let touching: BTreeSet<usize> = node.iter().map(|&n| n as usize).collect();
     let seen: BTreeSet<usize> = faces.iter().flatten().copied().collect();
     let seen: Vec<usize> = seen
         .into_iter()
@@ -230,7 +229,7 @@ fn contact_surface<const D: usize>(
     let rows = table.numbers("increment");
     let frame = |increment: &usize| {
         let own = (0..rows.len()).filter(|&k| rows[k] == *increment as f64);
-        let row: BTreeMap<usize, usize> = own.map(|k| (node[k], k)).collect();
+        let row = foremost(own, &node, &pressure);
         let values = |column: &[f64]| {
             let at = |p: &usize| row.get(&points[*p]).map_or(f64::NAN, |&k| column[k]);
             packed(&seen.iter().map(at).collect::<Vec<_>>())
