@@ -57,9 +57,11 @@ pub use finding::{At, Class, Finding, Findings, Severity};
 pub use units::Units;
 
 use crate::algebra::SharedTeam;
+use crate::files::read_bytes;
 use crate::laws::PanelLaw;
 pub(crate) use columns::{columns, history_columns};
 pub(crate) use described::{Described, Unit};
+use flate2::Crc;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf, absolute};
 use std::sync::Arc;
@@ -110,6 +112,8 @@ pub fn open_with(text: &str, folder: &Path, given: &Given) -> (Deck, Option<Prob
         found.map(|(_, bytes)| bytes.as_slice())
     };
     let files: Vec<Option<&[u8]>> = deck.mesh_files.iter().map(at_hand).collect();
+    deck.found_checksum = checksum(&deck, &files);
+    check_checksum(&deck, &mut findings);
     let mut problem = build::build(&mut deck, &files, given, &mut findings);
     if let Some(problem) = &problem {
         let columns = match problem {
@@ -136,4 +140,43 @@ pub fn open_with(text: &str, folder: &Path, given: &Given) -> (Deck, Option<Prob
         None => {}
     }
     (deck, problem.filter(|_| findings.errors() == 0), findings)
+}
+
+/// The checksum of the files that a deck reads, of which some are at hand; none without files, or where one cannot be read.
+fn checksum(deck: &Deck, at_hand: &[Option<&[u8]>]) -> Option<String> {
+    let mut crc = Crc::new();
+    for (entry, bytes) in deck.mesh_files.iter().zip(at_hand) {
+        match bytes {
+            Some(bytes) => crc.update(bytes),
+            None => crc.update(&read_bytes(&entry.file.value).ok()?),
+        }
+    }
+    let surfaces = deck
+        .tools
+        .iter()
+        .filter_map(|tool| match &tool.shape.value {
+            Shape::Triangles(entry) => Some(&entry.file),
+            _ => None,
+        });
+    for file in surfaces {
+        crc.update(&read_bytes(file).ok()?);
+    }
+    (crc.amount() > 0).then(|| format!("{:08x}", crc.sum()))
+}
+
+/// The files of a deck that tells their checksum must have it.
+fn check_checksum(deck: &Deck, findings: &mut Findings) {
+    if let (Some(told), Some(found)) = (&deck.checksum, &deck.found_checksum)
+        && told.value != *found
+    {
+        let message = format!(
+            "the checksum of the files that the deck reads is \"{found}\", expected \"{}\": a mesh or the surface of a tool \
+             has changed",
+            told.value
+        );
+        let help =
+            "a run goes on with the files that it began with; run the deck anew with the others";
+        let finding = findings.error_with(&told.span, message, "what they were", help);
+        finding.about(Class::Meshes);
+    }
 }

@@ -100,7 +100,7 @@ fn ending(path: &Path) -> String {
 /// [`FileError`], with the file of the folder whose name is nearest if there is no such file.
 pub fn read_mesh<const D: usize>(path: &Path) -> Result<(Mesh<D>, Vec<Loss>), FileError> {
     known(path)?;
-    mesh_of(path, &bytes(path)?)
+    mesh_of(path, &read_bytes(path)?)
 }
 
 /// An error for a file that is not read by its name, whatever is in it.
@@ -148,13 +148,17 @@ pub fn read_skin(path: &Path, group: Option<&str>) -> Result<Skin, FileError> {
             });
         }
     };
-    read(&bytes(path)?, group).map_err(|source| FileError::Mesh {
+    read(&read_bytes(path)?, group).map_err(|source| FileError::Mesh {
         path: path.into(),
         source,
     })
 }
 
-fn bytes(path: &Path) -> Result<Vec<u8>, FileError> {
+/// The content of a file.
+///
+/// # Errors
+/// [`FileError::Read`], [`FileError::TooLarge`].
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
     let size = fs::metadata(path).map(|m| m.len());
     if let Ok(bytes @ LARGEST..) = size {
         let path = path.into();

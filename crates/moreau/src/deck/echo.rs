@@ -89,6 +89,9 @@ fn head(deck: &Deck, out: &mut String) -> fmt::Result {
 
 /// The mesh files: one as it is, or each a part.
 fn files(deck: &Deck, out: &mut String) -> fmt::Result {
+    if let Some(checksum) = &deck.found_checksum {
+        writeln!(out, "checksum = \"{checksum}\"")?;
+    }
     let dimension = deck.analysis.dimension();
     for (k, part) in deck.mesh_files.iter().enumerate() {
         // What is written stands in another folder than the deck.

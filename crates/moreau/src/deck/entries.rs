@@ -625,6 +625,10 @@ pub struct Deck {
     pub thickness: At<f64>,
     /// Mesh files.
     pub mesh_files: Vec<FileEntry>,
+    /// Checksum that the files it reads are to have.
+    pub checksum: Option<At<String>>,
+    /// That which they have, those of meshes and of the surfaces of tools; none without files.
+    pub found_checksum: Option<String>,
     /// Blocks.
     pub blocks: Vec<BlockEntry>,
     /// Groups.

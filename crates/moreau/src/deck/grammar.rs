@@ -162,6 +162,8 @@ fn deck(root: &Table<'_>) -> Deck {
             "remove this key, or use analysis = \"plane-strain\" or \"plane-stress\"",
         );
     }
+    let checksum = root.get("checksum");
+    let checksum = checksum.and_then(|v| reader::text(v, "checksum", log));
     let before = log.borrow().errors();
     let mesh = mesh::read(root, dimension);
     let mesh_understood = log.borrow().errors() == before;
@@ -196,6 +198,8 @@ fn deck(root: &Table<'_>) -> Deck {
         finite: finite.filter(|f| f.value),
         thickness: thickness.unwrap_or(At::new(1.0, 0..0)),
         mesh_files: mesh.files,
+        checksum,
+        found_checksum: None,
         blocks: mesh.blocks,
         groups: mesh.groups,
         mesh_understood,

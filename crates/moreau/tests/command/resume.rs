@@ -1,6 +1,6 @@
 //! Runs that were interrupted and go on from a checkpoint, to the bit.
 
-use super::{directory, moreau, punched, run, text};
+use super::{directory, examples, moreau, punched, run, text};
 use std::fs;
 use std::path::{Path, PathBuf};
 #[cfg(unix)]
@@ -210,4 +210,38 @@ fn results_need_no_included_file() {
     let run = moreau(&["run", &deck.to_string_lossy(), "--out", &to]);
     assert_eq!(run.status.code(), Some(1));
     assert!(text(&run.stderr).contains("cannot read the included file"));
+}
+
+/// A run goes on, and is drawn again, with the mesh that it began with and with no other.
+#[test]
+fn results_belong_to_their_mesh() {
+    let at = directory("remeshed");
+    fs::create_dir_all(&at).expect("a directory");
+    let read = |name: &str| fs::read_to_string(examples().join(name)).expect("an example");
+    let deck = read("punch-on-gmsh-mesh.toml").replace("increments = 20", "increments = 2");
+    let deck = deck.split("[expect]").next().expect("a deck").to_owned();
+    let mesh = at.join("punch-on-gmsh-mesh.msh");
+    fs::write(at.join("deck.toml"), deck + "[output]\ncheckpoint = 1\n").expect("a deck");
+    fs::write(&mesh, read("punch-on-gmsh-mesh.msh")).expect("a mesh");
+    let out = at.join("out");
+    let to = out.to_string_lossy();
+    let run = moreau(&["run", &at.join("deck.toml").to_string_lossy(), "--out", &to]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let history = || fs::read(out.join("history.csv")).expect("a history");
+    let before = history();
+    assert_eq!(moreau(&["plot", &to]).status.code(), Some(0));
+    // As many nodes, elsewhere.
+    let changed = read("punch-on-gmsh-mesh.msh").replacen("\n50 0 0\n", "\n51 0 0\n", 1);
+    assert!(changed != read("punch-on-gmsh-mesh.msh"));
+    fs::write(&mesh, changed).expect("a mesh");
+    for command in ["resume", "plot"] {
+        let other = moreau(&[command, &to]);
+        assert_eq!(other.status.code(), Some(1), "{command}");
+        let told = text(&other.stderr);
+        assert!(
+            told.contains("a mesh or the surface of a tool has changed"),
+            "{told}"
+        );
+    }
+    assert!(history() == before);
 }
