@@ -32,6 +32,12 @@ pub trait Obstacle<const D: usize>: Send + Sync {
         SVector::zeros()
     }
 
+    /// The parts between its sharp concave corners, in which a node touches more than one; empty of an obstacle that has
+    /// no such corners. None goes on where it would come out of the obstacle again.
+    fn parts(&self) -> Vec<Box<dyn Obstacle<D>>> {
+        Vec::new()
+    }
+
     /// The sharp convex corner that x is straight ahead of, or at, within `tolerance` \[mm\] sideways:
     /// the normal there is any of a cone. A smooth obstacle has none.
     fn corner(&self, _x: &SVector<f64, D>, _tolerance: f64) -> Option<Corner<D>> {
@@ -51,6 +57,10 @@ pub struct Corner<const D: usize> {
 }
 
 impl<const D: usize, T: Obstacle<D> + ?Sized> Obstacle<D> for Box<T> {
+    fn parts(&self) -> Vec<Box<dyn Obstacle<D>>> {
+        (**self).parts()
+    }
+
     fn distance(&self, x: &SVector<f64, D>) -> f64 {
         (**self).distance(x)
     }

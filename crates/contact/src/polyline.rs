@@ -3,6 +3,7 @@
 
 use crate::{ContactError, Corner, Obstacle};
 use nalgebra::{Matrix2, Vector2};
+use std::ops::Range;
 
 /// A rigid obstacle bounded by an open polyline, in the plane, that lies on the right of it; corners may be
 /// rounded by arcs.
@@ -11,11 +12,23 @@ use nalgebra::{Matrix2, Vector2};
 /// slides past its last point does not fall off. Seen from a sharp convex corner the normal turns
 /// continuously from that of one segment to that of the next; at the corner itself it halves the
 /// angle. In a sharp concave corner it jumps where both segments are equally near; there the first one
-/// is taken.
+/// is taken. A node that lies in such a corner touches both: its [`parts`](Obstacle::parts) end there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polyline {
     first: Vector2<f64>,
     pieces: Vec<Piece>,
+    /// How far the first and the last piece go on \[mm\].
+    beyond: [f64; 2],
+    /// The line that it is a part of.
+    of: Option<Box<Whole>>,
+}
+
+/// A line of which another is a part.
+#[derive(Debug, Clone, PartialEq)]
+struct Whole {
+    line: Polyline,
+    /// The pieces that the part has.
+    pieces: Range<usize>,
 }
 
 /// A piece of constant curvature.
@@ -42,6 +55,15 @@ struct Foot {
 /// A corner nearer than this part of the length of a segment has no direction to the point, and one of a
 /// smaller sine is none.
 const COINCIDENT: f64 = 1e-12;
+
+/// Angle of a concave corner from which on a node in it touches both sides \[rad\]; those of arcs made of chords are less.
+const HOLLOW: f64 = 0.35;
+
+/// Parts of a line at most: one that has more is rough, and no node lies in its corners.
+const MOST_PARTS: usize = 8;
+
+/// Part of the way through the body to where it comes out again that a part is prolonged.
+const HIDDEN: f64 = 0.5;
 
 /// Angle between points of an arc that are drawn \[rad\].
 const DRAWN: f64 = 0.05;
@@ -165,6 +187,8 @@ impl Polyline {
         let line = Self {
             first: points[0],
             pieces: segments,
+            beyond: [f64::INFINITY; 2],
+            of: None,
         };
         line.check_crossings()?;
         line.round(radii)
@@ -239,7 +263,28 @@ impl Polyline {
         Ok(Self {
             first: self.first,
             pieces,
+            beyond: self.beyond,
+            of: None,
         })
+    }
+
+    /// Whether a node may lie in the corner between a piece and the one before, on both.
+    fn is_hollow(&self, k: usize) -> bool {
+        let (before, after) = (self.pieces[k - 1].along, self.pieces[k].along);
+        self.is_sharp(k) && before.perp(&after).atan2(before.dot(&after)) > HOLLOW
+    }
+
+    /// How far a part goes on from a corner into the body that the rest of the line bounds.
+    fn hidden(&self, from: Vector2<f64>, along: Vector2<f64>) -> f64 {
+        let crossed = self.pieces.iter().filter_map(|piece| {
+            let chord = Piece::segment(piece.at(0.0), piece.at(piece.length));
+            let between = chord.start - from;
+            let det = along.perp(&chord.along);
+            let (s, t) = (between.perp(&chord.along) / det, between.perp(&along) / det);
+            let meets = (-COINCIDENT..=1.0 + COINCIDENT).contains(&(t / chord.length));
+            (meets && s.is_finite() && s > COINCIDENT * chord.length).then_some(s)
+        });
+        HIDDEN * crossed.fold(f64::INFINITY, f64::min)
     }
 
     /// Its points, with some on every arc.
@@ -255,12 +300,12 @@ impl Polyline {
 
     /// Part of a piece nearest to `s`: within its length, but for the ends of the line.
     fn clamped(&self, k: usize, s: f64) -> f64 {
-        let low = if k == 0 { f64::NEG_INFINITY } else { 0.0 };
-        let high = match k + 1 == self.pieces.len() {
-            true => f64::INFINITY,
-            false => self.pieces[k].length,
+        let low = if k == 0 { -self.beyond[0] } else { 0.0 };
+        let more = match k + 1 == self.pieces.len() {
+            true => self.beyond[1],
+            false => 0.0,
         };
-        s.clamp(low, high)
+        s.clamp(low, self.pieces[k].length + more)
     }
 
     /// Where segment j is crossed by segment k, in parts of j.
@@ -308,11 +353,51 @@ impl Polyline {
         }
     }
 
-    /// Signed distance and normal.
+    /// Signed distance and normal. Of a part, what is behind it counts where it is the nearest part, or at the corner with
+    /// the nearest: elsewhere the line has another side in between.
     fn measured(&self, x: &Vector2<f64>) -> (f64, Vector2<f64>) {
+        let (distance, normal) = self.alone(x);
+        let Some(whole) = self.of.as_ref().filter(|_| distance < 0.0) else {
+            return (distance, normal);
+        };
+        let (own, nearest) = (&whole.pieces, whole.line.nearest(x).piece);
+        if whole.line.alone(x).0 > 0.0 {
+            return (-distance, -normal);
+        }
+        if own.contains(&nearest) {
+            return (distance, normal);
+        }
+        let is_before = nearest < own.start;
+        let mut between = match is_before {
+            true => nearest + 1..own.start,
+            false => own.end + 1..nearest + 1,
+        };
+        let (piece, low, high) = match (self.pieces.as_slice(), is_before) {
+            ([first, ..], true) => (first, -self.beyond[0], first.length),
+            ([.., last], false) => (last, 0.0, last.length + self.beyond[1]),
+            ([], _) => return (distance, normal),
+        };
+        let s = piece.perpendicular(x);
+        let (behind, across) = piece.straight_ahead(x, s);
+        let is_next = !between.any(|k| whole.line.is_hollow(k));
+        match is_next && behind < 0.0 && (low..=high).contains(&s) {
+            true => (behind, across),
+            false => (-distance, -normal),
+        }
+    }
+
+    /// The same of a line that is no part.
+    fn alone(&self, x: &Vector2<f64>) -> (f64, Vector2<f64>) {
         let foot = self.nearest(x);
         let Some(k) = foot.corner else {
-            return self.pieces[foot.piece].straight_ahead(x, foot.s);
+            let piece = &self.pieces[foot.piece];
+            let is_past = foot.s < 0.0 && foot.s == -self.beyond[0]
+                || foot.s > piece.length && foot.s == piece.length + self.beyond[1];
+            // Past its end there is nothing of it.
+            return match x - piece.at(foot.s) {
+                from if is_past && from.norm() > 0.0 => (from.norm(), from.normalize()),
+                _ => piece.straight_ahead(x, foot.s),
+            };
         };
         let bisector = left(self.pieces[k - 1].along) + left(self.pieces[k].along);
         let from = x - self.pieces[k].start;
@@ -361,6 +446,38 @@ impl Obstacle<2> for Polyline {
 
     fn reference(&self) -> Vector2<f64> {
         self.first
+    }
+
+    fn parts(&self) -> Vec<Box<dyn Obstacle<2>>> {
+        let count = self.pieces.len();
+        let hollow = (1..count).filter(|&k| self.is_hollow(k));
+        let bounds: Vec<usize> = [0].into_iter().chain(hollow).chain([count]).collect();
+        if !(3..=MOST_PARTS + 1).contains(&bounds.len()) {
+            return Vec::new();
+        }
+        let part = |ends: &[usize]| -> Box<dyn Obstacle<2>> {
+            let pieces = self.pieces[ends[0]..ends[1]].to_vec();
+            let (first, last) = (pieces[0], pieces[pieces.len() - 1]);
+            let backward = match ends[0] {
+                0 => f64::INFINITY,
+                _ => self.hidden(first.start, -first.along),
+            };
+            let end = last.at(last.length);
+            let forward = match ends[1] == count {
+                true => f64::INFINITY,
+                false => self.hidden(end, last.direction(last.length)),
+            };
+            Box::new(Self {
+                first: self.first,
+                pieces,
+                beyond: [backward, forward],
+                of: Some(Box::new(Whole {
+                    line: self.clone(),
+                    pieces: ends[0]..ends[1],
+                })),
+            })
+        };
+        bounds.windows(2).map(part).collect()
     }
 
     fn corner(&self, x: &Vector2<f64>, tolerance: f64) -> Option<Corner<2>> {
@@ -532,6 +649,88 @@ mod tests {
                 prop_assert!((before - ends[1].along).norm() < 1e-12);
             }
         }
+    }
+
+    proptest! {
+        /// What is before a line is before all its parts, and what is a little behind it is so behind one of them.
+        #[test]
+        fn parts_are_behind_together_what_the_line_is(
+            points in prop::collection::vec(prop::array::uniform2(-3.0..3.0f64), 3..8),
+            x in prop::array::uniform2(-4.0..4.0f64),
+            (piece, part) in (0..7usize, 0.0..1.0f64),
+        ) {
+            let Ok(line) = Polyline::new(&points) else { return Ok(()) };
+            let (parts, x) = (line.parts(), Vector2::from(x));
+            if parts.is_empty() {
+                return Ok(());
+            }
+            let least = |x: &Vector2<f64>| {
+                let all = parts.iter().map(|p| p.distance(x));
+                all.fold(f64::INFINITY, f64::min)
+            };
+            if line.distance(&x) > 1e-9 {
+                prop_assert!(least(&x) > 0.0, "{} {}", line.distance(&x), least(&x));
+            }
+            let piece = &line.pieces[piece % line.pieces.len()];
+            let behind = piece.at(part * piece.length) - left(piece.along) * 1e-3;
+            let depth = line.distance(&behind);
+            prop_assert!(depth >= 0.0 || least(&behind) <= 0.999 * depth, "{depth} {}", least(&behind));
+            for part in &parts {
+                prop_assert!((part.normal(&x).norm() - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+
+    /// In the corner of a floor and a wall a node is behind both; the floor ends under a ridge, and the bottom of a cup is
+    /// not what is seen from within.
+    #[test]
+    fn a_concave_corner_has_two_sides() {
+        let corner = Polyline::new(&[[-5.0, 0.0], [2.0, 0.0], [2.0, 5.0]]).expect("valid");
+        let parts = corner.parts();
+        assert_eq!(parts.len(), 2);
+        let at = |x: [f64; 2]| [0, 1].map(|k| parts[k].distance(&x.into()));
+        assert_eq!(at([1.0, 3.0]), [3.0, 1.0]);
+        let [floor, wall] = at([2.1, -0.2]);
+        assert!((floor + 0.2).abs() < 1e-14 && (wall + 0.1).abs() < 1e-14);
+        // Floors on both sides of a ridge, one lower than the other.
+        let ridge = [
+            [-5.0, 0.0],
+            [0.0, 0.0],
+            [0.0, 2.0],
+            [1.0, 2.0],
+            [1.0, -1.0],
+            [5.0, -1.0],
+        ];
+        let parts = Polyline::new(&ridge).expect("valid").parts();
+        assert_eq!(parts.len(), 3);
+        assert!(
+            parts
+                .iter()
+                .all(|p| p.distance(&Vector2::new(1.5, -0.5)) > 0.0)
+        );
+        let cup = [
+            [-4.0, 6.0],
+            [-4.0, 0.0],
+            [4.0, 0.0],
+            [4.0, 6.0],
+            [3.0, 6.0],
+            [3.0, 1.0],
+            [-3.0, 1.0],
+            [-3.0, 6.0],
+        ];
+        let cup: Vec<[f64; 2]> = cup.into_iter().rev().collect();
+        let cup = Polyline::new(&cup).expect("valid");
+        for part in cup.parts() {
+            assert!(part.distance(&Vector2::new(0.0, 1.5)) > 0.0);
+            let depth = part.distance(&Vector2::new(0.0, 0.99));
+            assert!(depth > 0.0 || (depth + 0.01).abs() < 1e-14, "{depth}");
+        }
+        // Chords of an arc have no corners that hold a node.
+        let arc: Vec<[f64; 2]> = (0..20)
+            .map(|k| 0.15 * f64::from(k))
+            .map(|a| [-a.cos(), -a.sin()])
+            .collect();
+        assert!(Polyline::new(&arc).expect("valid").parts().is_empty());
     }
 
     /// A corner of a right angle, rounded, beside the circle that touches both sides.

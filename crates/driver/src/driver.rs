@@ -649,7 +649,7 @@ impl<const D: usize> Driver<D> {
             let most = |p: &ContactPoint<D>| {
                 let place = self.position(p.node) - self.displacement(node);
                 let turn = self.state.loading.turn_of(k);
-                let n = turned(tool.obstacle.normal(&tool.seen(place, &turn)), &turn);
+                let n = turned(tool.opposite(p).normal(&tool.seen(place, &turn)), &turn);
                 let spin = axle.cross(&in_space(&(place - tool.reference)));
                 [force, SVector::from_fn(|i, _| spin[i])].map(|drives| {
                     let along = n.dot(&drives);

@@ -47,9 +47,9 @@ impl<const D: usize> Driver<D> {
                     let turn = self.state.loading.turn_of(tool);
                     let tool = &self.tools[tool];
                     let seen = |a| tool.seen(self.position(a) - at, &turn);
-                    let node = tool.obstacle.distance(&seen(p.node)) - p.offset;
+                    let node = tool.opposite(p).distance(&seen(p.node)) - p.offset;
                     // In a changed basis the gap of a point has its neighbours in it.
-                    p.gap(tool.obstacle.as_ref(), seen).max(node)
+                    p.gap(tool.opposite(p), seen).max(node)
                 }
                 None => motion_row.plane(&SVector::zeros())?.1 - p.offset,
             };

@@ -25,7 +25,7 @@ impl<const D: usize> Driver<D> {
         let points = self.points.iter().enumerate();
         let gaps = points
             .filter(|(_, p)| p.tool == Some(tool))
-            .map(|(k, p)| (p.gap(body.obstacle.as_ref(), seen), k));
+            .map(|(k, p)| (p.gap(body.opposite(p), seen), k));
         gaps.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 

@@ -309,7 +309,7 @@ impl<const D: usize> Driver<D> {
                 .map(|(normal, _)| normal);
         };
         let normal = self.tools[tool]
-            .obstacle
+            .opposite(point)
             .normal(&self.seen(point, motion_row));
         Some(turned(normal, &self.state.loading.turn_of(tool)))
     }

@@ -125,7 +125,7 @@ impl<const D: usize> Driver<D> {
             let follows = self.follows(&turn, end, tool);
             let (number, at) = (tool, self.tool_position(tool, end, d_u));
             let tool = &self.tools[tool];
-            let obstacle = &tool.obstacle;
+            let obstacle = tool.opposite(p);
             let now = |a: usize| match a < self.mesh.nodes().len() {
                 true => self.position(a) + moved(a),
                 false => at,
@@ -138,7 +138,7 @@ impl<const D: usize> Driver<D> {
                 false => slip,
             };
             let Some(corner) = obstacle.corner(&x, AHEAD * size) else {
-                let gap = p.gap(obstacle.as_ref(), |a| tool.seen(now(a) - at, &turn));
+                let gap = p.gap(obstacle, |a| tool.seen(now(a) - at, &turn));
                 let n = turned(obstacle.normal(&x), &turn);
                 let mut kinematics = Kinematics::new(p, &n, gap, &slip, free);
                 if lever.is_none() && self.is_dragged(i, &kinematics, &slip, free) {

@@ -38,6 +38,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         self.tools.push(Tool {
             name: name.into(),
             reference: obstacle.reference(),
+            parts: obstacle.parts(),
             obstacle: Box::new(obstacle),
         });
         Ok(self)
@@ -153,19 +154,26 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         let taken: BTreeMap<usize, usize> = (self.points.iter().filter(meets))
             .map(|p| (p.node, p.contact))
             .collect();
-        for PositiveShare { share, own } in shares {
-            if let Some(&other) = taken.get(&share.node) {
-                return Err(ModelError::SharedContactNode {
-                    node: share.node,
-                    position: self.mesh.nodes()[share.node].to_vec(),
-                    first: self.contacts[other].surface.clone(),
-                    second: surface.into(),
-                    opposite: opposite.into(),
-                });
-            }
+        let twice = shares.iter().find_map(|s| {
+            let other = taken.get(&s.share.node)?;
+            Some((s.share.node, *other))
+        });
+        if let Some((node, other)) = twice {
+            return Err(ModelError::SharedContactNode {
+                node,
+                position: self.mesh.nodes()[node].to_vec(),
+                first: self.contacts[other].surface.clone(),
+                second: surface.into(),
+                opposite: opposite.into(),
+            });
+        }
+        let parts = tool.map_or(0, |tool| self.tools[tool].parts.len()).max(1);
+        let points = (0..parts).flat_map(|part| shares.iter().map(move |s| (part, s.clone())));
+        for (part, PositiveShare { share, own }) in points {
             self.points.push(ContactPoint {
                 node: share.node,
                 tool,
+                part,
                 contact: self.contacts.len(),
                 law,
                 axis: None,
@@ -259,7 +267,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         }
         for point in self.points.iter_mut().filter(|p| p.contact + 1 == count) {
             let Some(tool) = point.tool else { continue };
-            let obstacle = self.tools[tool].obstacle.as_ref();
+            let obstacle = self.tools[tool].opposite(point);
             let gap = point.gap(obstacle, |a| self.mesh.nodes()[a].into());
             if gap.abs() <= tolerance {
                 point.offset += gap;

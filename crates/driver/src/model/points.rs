@@ -12,6 +12,8 @@ use nalgebra::{Rotation3, SMatrix, SVector, UnitQuaternion, Vector3};
 pub(crate) struct Tool<const D: usize> {
     pub(crate) name: String,
     pub(crate) obstacle: Box<dyn Obstacle<D>>,
+    /// [`Obstacle::parts`], each of which has contact points of its own.
+    pub(crate) parts: Vec<Box<dyn Obstacle<D>>>,
     /// What it turns about, where it was first \[mm\].
     pub(crate) reference: SVector<f64, D>,
 }
@@ -27,6 +29,12 @@ fn rotation<const D: usize>(turn: &Turn) -> SMatrix<f64, D, D> {
 }
 
 impl<const D: usize> Tool<D> {
+    /// What a contact point may touch of it.
+    pub(crate) fn opposite(&self, point: &ContactPoint<D>) -> &dyn Obstacle<D> {
+        let part = self.parts.get(point.part);
+        part.map_or(self.obstacle.as_ref(), |part| part.as_ref())
+    }
+
     /// A place that has moved with the tool, but not turned, once that has turned: x_r + R (x − x_r).
     pub(crate) fn turned(&self, x: SVector<f64, D>, turn: &Turn) -> SVector<f64, D> {
         self.reference + turned(x - self.reference, turn)
@@ -84,6 +92,8 @@ pub(crate) struct ContactPoint<const D: usize> {
     pub(crate) node: usize,
     /// The tool opposite; `None` for the surface of a deformable body.
     pub(crate) tool: Option<usize>,
+    /// Which part of the tool.
+    pub(crate) part: usize,
     /// Index of the contact (surface and what is opposite) that it belongs to.
     pub(crate) contact: usize,
     /// Between tractions.
@@ -415,6 +425,7 @@ mod tests {
         ContactPoint {
             node: 0,
             tool: Some(0),
+            part: 0,
             contact: 0,
             law: Coulomb::new(0.1).expect("a coefficient").into(),
             axis: None,

@@ -293,7 +293,7 @@ impl<const D: usize> Driver<D> {
     ) -> Option<SVector<f64, D>> {
         let tool = point.tool?;
         let normal = self.tools[tool]
-            .obstacle
+            .opposite(point)
             .normal(&self.seen(point, motion_row));
         Some(turned(normal, &self.state.loading.turn_of(tool)))
     }

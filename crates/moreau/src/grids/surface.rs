@@ -12,8 +12,11 @@ use std::collections::BTreeMap;
 pub fn surface<const D: usize>(driver: &Driver<D>) -> Option<Grid> {
     let records = driver.contacts();
     let last = records.iter().map(|c| c.contact).max()?;
-    let of = |(k, c): (i64, &ContactRecord<D>)| ((c.contact, c.node), k);
-    let index: BTreeMap<(usize, usize), i64> = (0..).zip(records).map(of).collect();
+    // Of a node with several records in a contact, the one that presses most.
+    let mut order: Vec<usize> = (0..records.len()).collect();
+    order.sort_by(|&a, &b| records[a].t[0].total_cmp(&records[b].t[0]));
+    let of = |k: usize| ((records[k].contact, records[k].node), k as i64);
+    let index: BTreeMap<(usize, usize), i64> = order.into_iter().map(of).collect();
     let mesh = driver.mesh();
     let mut cells = Vec::new();
     let mut contact = Vec::new();

@@ -79,7 +79,7 @@ pub(crate) fn contact_lines(contacts: &Table, increment: usize) -> Vec<ContactLi
     let wanted = increment as f64;
     let rows = contacts.numbers("increment");
     let [surfaces, opposites] = ["contact", "against"].map(|name| contacts.texts(name));
-    let place = contacts.numbers("s");
+    let [place, node] = ["s", "node"].map(|name| contacts.numbers(name));
     let values = ["p_n", "p_1"].map(|name| contacts.numbers(name));
     let own: Vec<usize> = (0..rows.len()).filter(|&k| rows[k] == wanted).collect();
     let names: BTreeSet<(&str, &str)> = own.iter().map(|&k| (surfaces[k], opposites[k])).collect();
@@ -88,7 +88,8 @@ pub(crate) fn contact_lines(contacts: &Table, increment: usize) -> Vec<ContactLi
         _ => format!("{} against {}", surfaces[k], opposites[k]),
     };
     let line = |own: &[usize]| {
-        let mut line = own.to_vec();
+        let line = foremost(own.iter().copied(), &node, &values[0]);
+        let mut line: Vec<usize> = line.into_values().collect();
         line.sort_by(|&a, &b| place[a].total_cmp(&place[b]));
         ContactLine {
             name: name(own[0]),

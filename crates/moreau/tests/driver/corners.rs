@@ -290,3 +290,64 @@ fn a_tip_that_is_drawn_sideways_slides_off_its_node() {
         .expect("converges");
     assert!(slid);
 }
+
+/// A block in the corner of one tool, moved by its other sides: the same as between two tools, evenly stressed, whatever
+/// the cells, the strains and the way that contacts are solved; what a friction law asks of the corner, two tools ask too.
+#[test]
+fn a_concave_corner_of_one_tool_is_two_tools() {
+    let pressed = |kind: CellKind, mu: f64, large: bool, seam: Seam, one: bool| {
+        let lines = uniform(0.0, 10.0, 2);
+        let mut mesh = block2("b", kind, &lines, &lines).expect("valid");
+        let sides = ["b.left", "b.bottom"].map(|g| mesh.facet_group(g).expect("there"));
+        let sides = sides.concat();
+        mesh.add_facet_group("sides", sides).expect("a new name");
+        let model = match large {
+            true => Model::with_large_strains(mesh, PlaneStrain::default()),
+            false => Model::new(mesh, PlaneStrain::default()),
+        };
+        let law = Elastic::new(1000.0, 0.3).expect("valid");
+        let model = model.material("b", law, kind.integration()).expect("valid");
+        let line = |points: &[[f64; 2]]| Polyline::new(points).expect("valid");
+        let corner = [[20.0, 0.0], [0.0, 0.0], [0.0, 20.0]];
+        let model = match one {
+            true => model
+                .tool("die", line(&[corner[2], corner[1], corner[0]]))
+                .and_then(|m| m.contact("sides", "die", coulomb(mu)))
+                .expect("valid"),
+            false => model
+                .tool("floor", Plane::new([0.0; 2], [0.0, 1.0]).expect("valid"))
+                .and_then(|m| m.tool("wall", Plane::new([0.0; 2], [1.0, 0.0]).expect("valid")))
+                .and_then(|m| m.contact("sides", "wall", coulomb(mu)))
+                .and_then(|m| m.contact("sides", "floor", coulomb(mu)))
+                .expect("valid"),
+        };
+        let settings = Settings {
+            seam,
+            ..Settings::default()
+        };
+        let mut driver = Driver::new(model, settings).expect("valid");
+        let step = Step::new("press")
+            .displace("b.right", Axis::X, -0.1)
+            .displace("b.top", Axis::Y, -0.2);
+        driver.run(&step, 2, |_, _| {}).expect("converges");
+        ["b.right", "b.top"].map(|g| driver.reaction(g).expect("there"))
+    };
+    for kind in [CellKind::Quad4, CellKind::Quad8, CellKind::Tri6] {
+        for (mu, large) in [(0.0, false), (0.0, true), (0.2, false), (0.2, true)] {
+            for seam in [Seam::Condensed, Seam::Tied] {
+                let [one, two] = [true, false].map(|one| pressed(kind, mu, large, seam, one));
+                for (a, b) in one.iter().zip(&two) {
+                    assert!(
+                        (a - b).norm() < 1e-6 * b.norm(),
+                        "{kind:?} {mu} {large}: {a} {b}"
+                    );
+                }
+            }
+        }
+    }
+    let smooth = pressed(CellKind::Quad4, 0.0, false, Seam::Condensed, true);
+    // E / ((1 + ν)(1 − 2ν)) ((1 − ν) ε_x + ν ε_y) over a side of 10 mm.
+    let expected = [-250.0, -1000.0 / 0.52 * (0.7 * 0.02 + 0.3 * 0.01) * 10.0];
+    assert!((smooth[0][0] - expected[0]).abs() < 1e-6, "{smooth:?}");
+    assert!((smooth[1][1] - expected[1]).abs() < 1e-6, "{smooth:?}");
+}
