@@ -172,7 +172,7 @@ struct Manner {
     /// Fail with status 3 if an expectation of the deck is not met.
     #[arg(long)]
     verify: bool,
-    /// No progress and no summary.
+    /// No progress and no summary; doubts are told all the same.
     #[arg(long)]
     quiet: bool,
     /// Every iteration as a line of JSON on stdout, instead of progress and summary.

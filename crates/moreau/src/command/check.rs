@@ -361,6 +361,9 @@ fn conditions(deck: &Deck) {
                     let unit = deck.units.energy();
                     format!("tool is turned by the moment {} {unit}{axis}", m.value)
                 }
+                Action::Push(f, None) if f.iter().all(|f| *f == 0.0) => {
+                    "tool has no force and stays where it is".into()
+                }
                 Action::Push(f, None) => format!("tool is driven by {f:?} {force}"),
                 Action::Push(f, Some(u)) => {
                     format!("tool is driven by {f:?} {force}, else moves by {u:?} {length}")

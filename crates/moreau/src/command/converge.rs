@@ -209,9 +209,13 @@ fn table(deck: &Deck, own: &Outcome, all: &[(Finer, [Outcome; 3])]) {
                 finer.name()
             );
         }
+        let of = match all {
+            [_] => "on this mesh",
+            _ => "of both",
+        };
         match known {
-            true => say!("  of both      {}", shown(sum, DIGITS)),
-            false => say!("  of both      not seen: differences do not shrink steadily"),
+            true => say!("  {of:<12} {}", shown(sum, DIGITS)),
+            false => say!("  {of:<12} not seen: differences do not shrink steadily"),
         }
     }
 }

@@ -157,11 +157,13 @@ fn go(
     let Some(pool) = pool(manner.threads.unwrap_or(usual)) else {
         return INPUT_ERROR;
     };
+    // A limit load is one of small strains.
+    let finite = simulation.deck().finite.is_some();
     let mut progress = Progress::new(manner.quiet, manner.json_log, Signals::listen());
     let outcome = pool.install(|| solve(simulation, directory, &mut progress));
     progress.end();
     match outcome {
-        Ok(outcome) => conclude(&outcome, manner, directory.path()),
+        Ok(outcome) => conclude(&outcome, (manner, finite), directory.path()),
         Err(error) => {
             tell!("{error}");
             match error {
@@ -182,10 +184,15 @@ pub(super) fn pool(wanted: usize) -> Option<ThreadPool> {
     pool.map_err(|e| told(&e)).ok()
 }
 
-fn conclude(outcome: &Outcome, manner: &Manner, directory: &Path) -> u8 {
+fn conclude(outcome: &Outcome, (manner, finite): (&Manner, bool), directory: &Path) -> u8 {
     let place = directory.display();
     if !manner.quiet && !manner.json_log {
         say!("{outcome}  results       {place}");
+    }
+    if manner.quiet && !manner.json_log {
+        // Those of the deck were told when it was read.
+        let doubts = outcome.warnings.iter().skip(outcome.deck_warnings);
+        doubts.for_each(|doubt| tell!("warning: {doubt}"));
     }
     if let Some(error) = outcome.error() {
         tell!("{error}");
@@ -198,6 +205,7 @@ fn conclude(outcome: &Outcome, manner: &Manner, directory: &Path) -> u8 {
             }
             NOT_CONVERGED
         }
+        RunStatus::Collapsed(_) if finite => NOT_CONVERGED,
         RunStatus::Collapsed(_) => {
             tell!("if that is what the step is for, give it until = \"collapse\"");
             NOT_CONVERGED

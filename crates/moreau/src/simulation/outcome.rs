@@ -241,6 +241,8 @@ pub struct Outcome {
     pub collapse: Option<(String, Collapse)>,
     /// Doubts about the deck and the run.
     pub warnings: Vec<String>,
+    /// How many of them, the first, are about the deck.
+    pub deck_warnings: usize,
     /// Why it did not converge.
     pub diagnosis: Option<Diagnosis>,
 }
@@ -325,6 +327,7 @@ pub(super) fn conclude<const D: usize>(
         values,
         verdicts: deck.expectations.iter().map(verdict).collect(),
         warnings,
+        deck_warnings: setup.warnings.len(),
         contacts: [Status::Open, Status::Stick, Status::Slip].map(count),
         energies: driver.energies(),
         collapse: tally.collapse.map(|(stage, c)| {

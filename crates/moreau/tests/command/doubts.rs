@@ -326,8 +326,13 @@ fn a_resumed_run_tells_what_happened_before() {
     let deck = block("quad4", [-10.0, 10.0], [21, 4], tip, -0.3)
         + "[[step]]\nname = \"back\"\nincrements = 2\nfix = [{ on = \"b.bottom\", u = [\"x\", \"y\"] }]\ntools = [{ name = \"t\", move = [0, 5] }]\n";
     let deck = deck.replace("vtu = \"none\"", "vtu = \"none\"\ncheckpoint = 1");
-    let (_, _, _, results) = run("doubts-resumed", &deck, &["--quiet"]);
+    let (_, _, err, results) = run("doubts-resumed", &deck, &["--quiet"]);
     let whole = warnings(&results);
+    // Who wants no summary wants to know of these.
+    assert!(
+        !whole.is_empty() && whole.iter().all(|w| err.contains(w)),
+        "{err}"
+    );
     assert_eq!(whole.len(), 2, "{whole:?}");
     // From the checkpoint before the last increment: the tip is out again.
     let checkpoints = fs::read_dir(results.join("checkpoint")).expect("checkpoints");

@@ -56,6 +56,13 @@ fn text(bytes: &[u8]) -> String {
 }
 
 /// Runs a deck, given as text, into a directory; status, stdout and stderr.
+/// What is told but for the doubts of a run.
+fn errors(told: &[u8]) -> String {
+    let told = text(told);
+    let lines = told.lines().filter(|line| !line.starts_with("warning: "));
+    lines.map(|line| format!("{line}\n")).collect()
+}
+
 fn run(name: &str, deck: &str, more: &[&str]) -> (i32, String, String, PathBuf) {
     let at = directory(name);
     let file = at.join("deck.toml");

@@ -1,7 +1,7 @@
 //! Files and processes: one writer at a time, nothing overwritten that is not the run's own, runs that
 //! are ended or limited by the system, results that cannot be written.
 
-use super::{BALL, directory, examples, last, moreau, run, text};
+use super::{BALL, directory, errors, examples, last, moreau, run, text};
 use moreau::run::Directory;
 use std::fs;
 use std::path::Path;
@@ -32,7 +32,7 @@ fn two_writers(name: &str, times: usize) {
         let arguments = ["run", shown(&deck), "--out", shown(&both), "--quiet"];
         let ended = [start(&arguments), start(&arguments)]
             .map(|child| child.wait_with_output().expect("it ends"));
-        let mut told = ended.map(|e| (e.status.code(), text(&e.stderr)));
+        let mut told = ended.map(|e| (e.status.code(), errors(&e.stderr)));
         told.sort();
         assert_eq!(told[0], (Some(0), String::new()), "time {time}");
         let (status, err) = &told[1];
@@ -88,7 +88,7 @@ fn only_results_of_the_deck_itself_are_overwritten() {
         let mut arguments = vec!["run", shown(deck), "--out", shown(out), "--quiet"];
         arguments.extend(more);
         let output = moreau(&arguments);
-        (output.status.code(), text(&output.stderr))
+        (output.status.code(), errors(&output.stderr))
     };
     // Edited, and run again.
     fs::write(&deck, BALL.replace("friction = 0.3", "friction = 0.2")).expect("written");

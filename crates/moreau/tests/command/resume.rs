@@ -1,6 +1,6 @@
 //! Runs that were interrupted and go on from a checkpoint, to the bit.
 
-use super::{directory, examples, moreau, punched, run, text};
+use super::{directory, errors, examples, moreau, punched, run, text};
 use std::fs;
 use std::path::{Path, PathBuf};
 #[cfg(unix)]
@@ -67,7 +67,7 @@ fn resume(at: &Path, more: &[&str]) -> (i32, String) {
     let output = moreau(&arguments);
     (
         output.status.code().expect("a status"),
-        text(&output.stderr),
+        errors(&output.stderr),
     )
 }
 

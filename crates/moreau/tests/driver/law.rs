@@ -38,9 +38,8 @@ fn a_block_that_is_pushed_into_a_wall_stops_there() {
     let last = driver
         .contacts()
         .iter()
-        .find(|c| c.position == [10.0, 0.0])
-        .expect("a corner");
-    assert_ne!(last.status, Status::Open);
+        .find(|c| c.position == [10.0, 0.0] && c.status != Status::Open)
+        .expect("the corner touches the wall");
     assert!((driver.displacement(last.node)[0] - 2.0).abs() < 1e-12);
     assert!(driver.tool_force("groove").expect("exists")[0] < -1.0);
 }

@@ -133,16 +133,19 @@ pub(super) fn doubts<const D: usize>(deck: &Deck, gaps: &[LeastGap<D>], findings
         |name: &str| all().any(|c| c.on.value == name && size(&c.action).is_some_and(|s| s > 0.0));
     for condition in all().filter(|c| size(&c.action) == Some(0.0)) {
         // A load that returns to zero is an unloading.
-        let held = matches!(condition.action, Action::Move(_) | Action::MoveAlong(..));
-        if !held && !loaded(&condition.on.value) {
-            findings.warning(
-                &condition.span,
-                format!(
-                    "the load on \"{}\" is zero in all steps",
-                    condition.on.value
+        let held = matches!(
+            condition.action,
+            Action::Move(_) | Action::MoveAlong(..) | Action::Tool(..)
+        );
+        let on = &condition.on.value;
+        if !held && !loaded(on) {
+            let message = match condition.action {
+                Action::Push(..) => format!(
+                    "the force on \"{on}\" is zero in all steps: it drives the tool nowhere, which stays where it is"
                 ),
-                "zero",
-            );
+                _ => format!("the load on \"{on}\" is zero in all steps"),
+            };
+            findings.warning(&condition.span, message, "zero");
         }
     }
     // What begins within something else is loaded by that, as a ring on its shaft; or it begins under a stress.

@@ -128,7 +128,12 @@ fn idle_names<const D: usize>(
         });
         let mut parts = deck.mesh_files.iter().flat_map(|part| &part.name);
         let is_part = parts.any(|part| part.value == name);
-        of_block || is_part || deck.groups.iter().any(|g| g.name.value == name)
+        // Surfaces of several parts are groups of their own.
+        let contacts = deck.contacts.iter().map(|c| &c.surface);
+        let mut joined = contacts.chain(deck.ties.iter().flat_map(|t| [&t.surface, &t.to]));
+        let is_joined = joined.any(|on| on.value == name);
+        let is_group = || deck.groups.iter().any(|g| g.name.value == name);
+        of_block || is_part || is_joined || is_group()
     };
     let idle: Vec<String> = groups
         .names()
