@@ -529,18 +529,42 @@ impl<const D: usize> Driver<D> {
                 iterations,
             } => self.nested_increment(&mut system, &start, end, (tolerance, iterations), watch),
         };
-        let condenses = outcome.as_ref().is_err_and(|e| self.condenses(&system, e));
+        let other = match &outcome {
+            Err(error) => self.other_seam(&system, error, end)?,
+            Ok(_) => None,
+        };
+        let Some(mut other) = other else {
+            self.system = Some(system);
+            return outcome.map_err(|error| self.or_fault(error));
+        };
+        let watch = &mut |_: &Self, now: &Iteration<'_>| watch(now);
+        let again = self.increment(&mut other, &start, end, watch);
+        let (system, outcome) = match again {
+            // What nothing holds either way has the error of the first try, which names it.
+            Err(ref error) if other.is_tied() && !error.is_broken_off() => (system, outcome),
+            again => (other, again),
+        };
         self.system = Some(system);
-        match outcome.map_err(|error| self.or_fault(error)) {
-            Err(_) if condenses => {
-                let mut system = self.elastic_system(end, None, Seam::Condensed)?;
-                let watch = &mut |_: &Self, now: &Iteration<'_>| watch(now);
-                let outcome = self.increment(&mut system, &start, end, watch);
-                self.system = Some(system);
-                outcome.map_err(|error| self.or_fault(error))
-            }
-            outcome => outcome,
+        outcome.map_err(|error| self.or_fault(error))
+    }
+
+    /// The system for another try of an increment that ends so, where both seams are there to choose from: contacts that
+    /// nothing holds on a dense matrix may be held in the factor.
+    fn other_seam(
+        &mut self,
+        system: &System,
+        error: &IncrementError,
+        end: &Loading<D>,
+    ) -> Result<Option<System>, ModelError> {
+        if self.condenses(system, error) {
+            return self.elastic_system(end, None, Seam::Condensed).map(Some);
         }
+        let chosen = self.settings.seam == Seam::Cheaper && !system.is_tied();
+        if !(chosen && error.is_singular() && self.coupled(Seam::Tied, end).is_some()) {
+            return Ok(None);
+        }
+        let tied = self.elastic_system(end, None, Seam::Tied)?;
+        Ok(Some(tied).filter(System::is_tied))
     }
 
     /// Whether an increment that ends so with contacts tied in the factor is tried on a dense matrix, which costs more,

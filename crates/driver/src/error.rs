@@ -518,11 +518,11 @@ pub enum IncrementError {
         position: Vec<f64>,
     },
     /// A solve with the factor left more than rounding, also after a correction: memory or the
-    /// library of kernels is at fault, not the model.
+    /// library of kernels is at fault, or a stiffness that is all but singular.
     #[error(
         "the factorised stiffness leaves {found:.3e} N of a linear solve, expected at most \
-         {expected:.3e} N: the factor is corrupt, which is no fault of the model; run it again, or on \
-         another machine"
+         {expected:.3e} N: the factor is corrupt. Where something holds every body that is no fault of the \
+         model: run it again, or on another machine"
     )]
     Inaccurate {
         /// Largest residual \[N\].

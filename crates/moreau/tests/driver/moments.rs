@@ -581,3 +581,38 @@ fn a_ball_that_turns_about_two_axes_does_its_work() {
     let [few, many] = errors.map(f64::abs);
     assert!(many < 0.05 && many < 0.6 * few, "{errors:?}");
 }
+
+/// A block against a wall under a plate that turns freely: where the node in the corner belongs to both tools what holds the
+/// plate is not seen on a dense matrix, and is in the factor.
+#[test]
+fn a_plate_that_turns_freely_presses_a_block_in_a_corner() {
+    let (x, y) = (uniform(0.0, 10.0, 2), uniform(0.0, 8.0, 2));
+    let mesh = block2("block", CellKind::Quad4, &x, &y).expect("valid");
+    let law = Elastic::new(1000.0, 0.3).expect("valid");
+    let smooth = || Coulomb::new(0.0).expect("valid");
+    let plane = |point, normal| Plane::new(point, normal).expect("valid");
+    let model = Model::new(mesh, PlaneStrain::default())
+        .material("block", law, Integration::Full)
+        .and_then(|m| m.tool("plate", plane([5.0, 8.0], [0.0, -1.0])))
+        .and_then(|m| m.tool("wall", plane([0.0; 2], [1.0, 0.0])))
+        .and_then(|m| m.contact("block.top", "plate", smooth()))
+        .and_then(|m| m.contact("block.left", "wall", smooth()))
+        .expect("valid");
+    let mut driver = Driver::new(model, Settings::default()).expect("valid");
+    let step = Step::new("press")
+        .fix("block.bottom", &[Axis::Y])
+        .pressure("block.right", 7.5)
+        .push("plate", Axis::Y, -100.0)
+        .moment("plate", Z, 0.0);
+    let reports = run(&mut driver, &step, 1);
+    assert_eq!(reports[0].cuts, 0);
+    let force = |name: &str| driver.tool_force(name).expect("exists");
+    // But for the tilt by which the plate follows the centre of the block.
+    assert!((force("wall")[0] - 60.0).abs() < 0.05, "{}", force("wall"));
+    assert!(
+        (force("plate")[1] + 100.0).abs() < 1e-6,
+        "{}",
+        force("plate")
+    );
+    assert!(about(&driver, "plate", Z)[0].abs() < 1e-6);
+}
