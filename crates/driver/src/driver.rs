@@ -13,6 +13,7 @@ use crate::model::grip::Grip;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Tool, in_space, tool_index, turned};
+use crate::model::skin::{Skin, skin};
 use crate::report::counts::Counts;
 use crate::report::{ContactRecord, Energies, IncrementReport, Iteration};
 use crate::settings::{Nesting, Seam, Settings};
@@ -74,6 +75,8 @@ pub struct Driver<const D: usize> {
     pub(crate) guessed: Option<Vec<f64>>,
     /// What the increment under way has counted on ways that led to no balance.
     pub(crate) spent: Counts,
+    /// The nodes on the surfaces of the bodies, where there are tools.
+    pub(crate) skin: Skin<D>,
     pub(crate) measure: Box<dyn Measure<D>>,
     pub(crate) contacts: Vec<Contact>,
     materials: Vec<usize>,
@@ -128,6 +131,10 @@ impl<const D: usize> Driver<D> {
         let blocks = model.take_blocks();
         let mut driver = Self {
             team: model.team,
+            skin: match model.tools.is_empty() {
+                true => Skin::new(),
+                false => skin(&model.mesh),
+            },
             measure: Box::new(model.hypothesis),
             // All cells have one: it was checked.
             materials: model.material.into_iter().flatten().collect(),

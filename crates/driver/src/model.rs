@@ -9,6 +9,7 @@ pub(crate) mod load;
 pub(crate) mod material;
 pub(crate) mod motion_row;
 pub(crate) mod points;
+pub(crate) mod skin;
 pub(crate) mod temperature;
 pub(crate) mod ties;
 

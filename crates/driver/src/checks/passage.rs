@@ -122,7 +122,7 @@ impl<const D: usize> Driver<D> {
     }
 
     /// The mean length of a facet of both surfaces of a pair, and the largest motion of their nodes \[mm\].
-    fn facet_and_motion(&self, contact: usize, d_u: &[f64]) -> (f64, f64) {
+    pub(super) fn facet_and_motion(&self, contact: usize, d_u: &[f64]) -> (f64, f64) {
         let (surface, opposite) = self.surfaces(contact);
         let (mut sum, mut count, mut moved) = (0.0, 0.0f64, 0.0f64);
         for &facet in surface.iter().chain(opposite) {

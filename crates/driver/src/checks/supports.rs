@@ -158,20 +158,21 @@ impl<const D: usize> Driver<D> {
         !self.resisted(loading, |_, _| 0).free().is_empty()
     }
 
-    /// Whether the contacts of a solution that press by more than rounding \[N\] resist every rigid motion: a surface that
-    /// touches without a force may as well be left.
+    /// Whether the contacts of a solution that press by more than rounding \[N\] decide where every body is: a surface that
+    /// touches without a force may as well be left, and what slips under friction decides by how far, if `slips` tells so.
     pub(crate) fn is_held_by(
         &self,
         loading: &Loading<D>,
         solution: &ContactSolution<D>,
-        rounding: f64,
+        (rounding, slips): (f64, bool),
     ) -> bool {
-        let pairs = solution.status.iter().zip(&solution.force);
-        let of = |(&status, t): (&Status, &Local<D>)| match status {
+        let of = |(k, (&status, t)): (usize, (&Status, &Local<D>))| match status {
             Status::Stick | Status::Slip if t.norm() <= rounding => Status::Open,
+            Status::Slip if slips && self.points[k].law.resists_slip() => Status::Stick,
             _ => status,
         };
-        self.is_held(loading, &pairs.map(of).collect::<Vec<_>>())
+        let pairs = solution.status.iter().zip(&solution.force);
+        self.is_held(loading, &pairs.enumerate().map(of).collect::<Vec<_>>())
     }
 
     /// Whether contacts of these statuses resist every rigid motion: what touches by its normal, and by its
@@ -221,7 +222,11 @@ impl<const D: usize> Driver<D> {
     /// body is.
     pub(crate) fn is_let_go(&self) -> bool {
         let loading = &self.state.loading;
-        self.floats(loading) && !self.resisted(loading, Self::resisting).free().is_empty()
+        let pressing = |driver: &Self, k: usize| match driver.resisting(k) {
+            0 => 0,
+            _ => driver.may_resist(k),
+        };
+        self.floats(loading) && !self.resisted(loading, pressing).free().is_empty()
     }
 
     /// Components in which a contact point resists a motion in the committed state: none where its force is rounding.

@@ -142,7 +142,7 @@ impl<const D: usize> Driver<D> {
             solve_tied(&mut problem, guess, (tolerance, enough), factor)
         };
         let determined = |(s, z): (ContactSolution<D>, DVector<f64>)| match floats
-            && !self.is_held_by(loading, &s, linearised.rounding)
+            && !self.is_held_by(loading, &s, (linearised.rounding, false))
         {
             true => Err(ContactError::Singular),
             false => Ok((s, z)),
@@ -232,7 +232,7 @@ impl<const D: usize> Driver<D> {
             held.or_else(|| method.step(problem, &force)).ok_or(error)
         });
         let (loading, rounding) = (linearised.loading, linearised.rounding);
-        let is_held = |s: &ContactSolution<D>| self.is_held_by(loading, s, rounding);
+        let is_held = |s: &ContactSolution<D>| self.is_held_by(loading, s, (rounding, true));
         let error = match &found {
             Ok(found) if system.floats && !is_held(found) => Some(ContactError::Singular),
             Ok(_) => None,

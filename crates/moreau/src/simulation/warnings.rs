@@ -17,6 +17,8 @@ enum Kind {
     Inverted,
     /// A tool within a surface between its nodes.
     Between,
+    /// A body within a tool beside the surface that touches it.
+    Beside,
     /// Stresses near to, or beyond, those of buckling.
     Buckling,
     /// Nodes that are held inside of what they are in contact with.
@@ -33,11 +35,12 @@ enum Kind {
     Distorted,
 }
 
-const KINDS: [Kind; 11] = [
+const KINDS: [Kind; 12] = [
     Kind::Strain,
     Kind::Rotation,
     Kind::Inverted,
     Kind::Between,
+    Kind::Beside,
     Kind::Buckling,
     Kind::Held,
     Kind::Corner,
@@ -168,6 +171,11 @@ impl Warnings {
             let numbers = vec![depth, facet, pressed];
             let at = (contact, position.to_vec());
             self.note(Kind::Between, numbers, at, report.increment);
+        }
+        if let Some(beside) = driver.beside_contacts() {
+            let numbers = vec![beside.depth, beside.count as f64, beside.contact as f64];
+            let at = (beside.node, beside.position.to_vec());
+            self.note(Kind::Beside, numbers, at, report.increment);
         }
         self.undecided(driver, report);
     }
@@ -341,6 +349,7 @@ impl Worst {
                 shown(self.number(0), 9)
             ),
             Kind::Between => self.between(driver, deck),
+            Kind::Beside => self.beside(driver, deck),
             Kind::Held => self.held(driver, deck),
             Kind::Corner => self.corner(driver),
             Kind::Free => self.free(driver),
@@ -389,6 +398,19 @@ impl Worst {
             shown(self.number(0), 3),
             shown(self.number(1), 3),
             shown(self.number(2), 3)
+        )
+    }
+
+    fn beside<const D: usize>(&self, driver: &Driver<D>, deck: &Deck) -> String {
+        let length = deck.units.length();
+        let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
+        let (surface, tool) = driver.contact_name(self.number(2) as usize);
+        format!(
+            "{} nodes beside \"{surface}\" are within the tool \"{tool}\", node {index} at {at} by {} {length} in increment \
+             {when}: only the surface that is given touches, and what comes to lie on \"{tool}\" beside it passes through, \
+             which makes forces too small; add those sides, as in surface = [\"{surface}\", …]",
+            self.number(1),
+            shown(self.number(0), 3)
         )
     }
 

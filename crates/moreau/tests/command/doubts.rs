@@ -350,6 +350,7 @@ fn ordinary_runs_are_not_doubted() {
     let mut decks = Vec::new();
     for name in [
         "block-opening-sliding-sticking",
+        "block-pulled-across-grain",
         "cylinder-pressed-into-block",
         "punched-block",
     ] {

@@ -5,9 +5,9 @@ use moreau_contact::{Ball, Obstacle, Plane, Polyline};
 use moreau_driver::{
     Analysis, Axis, Buckling, Deformation, Driver, IncrementError, Model, Settings, Step,
 };
-use moreau_laws::{Coulomb, Elastic};
+use moreau_laws::{Coulomb, Elastic, VonMises};
 use moreau_mesh::{
-    Axisymmetric, CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform,
+    Axisymmetric, CellKind, Facet, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform,
 };
 use std::f64::consts::PI;
 
@@ -470,4 +470,44 @@ fn a_state_beyond_all_numbers_is_refused() {
     assert!(error.to_string().contains("beyond anything"), "{error}");
     assert_eq!(driver.increments(), 0);
     driver.run(&step(1e-3), 1, |_, _| {}).expect("converges");
+}
+
+/// The side of a billet that comes to lie on its platen passes through it where only the top has a contact, which is told;
+/// with a contact of the side too nothing is, nor of a top that is pressed in part by a platen that is told as a plane.
+#[test]
+fn sides_that_come_to_lie_on_a_tool_are_told() {
+    let upset = |sides: &[&str], width: f64, by: f64| {
+        let (x, y) = (uniform(0.0, 5.0, 8), uniform(0.0, 5.0, 8));
+        let mut mesh = block2("b", CellKind::Quad4, &x, &y).expect("valid");
+        let sides: Vec<Facet> = (sides.iter())
+            .flat_map(|g| mesh.facet_group(g).expect("there").to_vec())
+            .filter(|&f| mesh.facet_nodes(f).all(|a| mesh.nodes()[a][0] <= width))
+            .collect();
+        mesh.add_facet_group("pressed", sides).expect("a new name");
+        let steel = VonMises::new(70e3, 0.33, 100.0).and_then(|l| l.with_isotropic(100.0));
+        let model = Model::with_large_strains(mesh, Axisymmetric)
+            .material("b", steel.expect("valid"), Integration::BBar)
+            .and_then(|m| {
+                m.tool(
+                    "platen",
+                    Plane::new([0.0, 5.0], [0.0, -1.0]).expect("valid"),
+                )
+            })
+            .and_then(|m| m.contact("pressed", "platen", coulomb(0.4)))
+            .expect("valid");
+        let mut driver = Driver::new(model, Settings::default()).expect("valid");
+        let step = Step::new("upset")
+            .fix("b.left", &[Axis::X])
+            .fix("b.bottom", &[Axis::Y])
+            .tool("platen", [0.0, -by]);
+        driver.run(&step, 20, |_, _| {}).expect("converges");
+        driver.beside_contacts()
+    };
+    let told = upset(&["b.top"], 9.0, 2.5).expect("the side is told");
+    assert!(
+        told.contact == 0 && told.count > 0 && told.depth > 0.05,
+        "{told:?}"
+    );
+    assert_eq!(upset(&["b.top", "b.right"], 9.0, 2.5), None);
+    assert_eq!(upset(&["b.top"], 2.6, 0.3), None);
 }
