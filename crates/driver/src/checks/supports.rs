@@ -166,6 +166,15 @@ impl<const D: usize> Driver<D> {
         solution: &ContactSolution<D>,
         (rounding, slips): (f64, bool),
     ) -> bool {
+        let closed = |status: &Status| matches!(status, Status::Stick | Status::Slip);
+        let pairs = solution.status.iter().zip(&solution.force);
+        let mut touching = pairs.filter(|(s, _)| closed(s)).peekable();
+        let is_one_body = self.skin.values().all(|(body, _)| *body == 0);
+        let touches = touching.peek().is_some();
+        if slips && is_one_body && touches && touching.all(|(_, t)| t.norm() > rounding) {
+            // A problem that its solution does not decide was singular.
+            return true;
+        }
         let of = |(k, (&status, t)): (usize, (&Status, &Local<D>))| match status {
             Status::Stick | Status::Slip if t.norm() <= rounding => Status::Open,
             Status::Slip if slips && self.points[k].law.resists_slip() => Status::Stick,
