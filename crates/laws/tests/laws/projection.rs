@@ -172,7 +172,8 @@ fn jacobian<const D: usize>(mu: f64) -> Result<(), LawError> {
     let law = Coulomb::new(mu)?;
     if mu > 0.0 {
         for_all(&(smooth_point::<D>(mu), vector::<D>(1.0)), |(q, d)| {
-            let h = 1e-5;
+            // Beside the axis the cone bends within the distance of that.
+            let h = 3e-6;
             let difference = (law.project(&(q + h * d)) - law.project(&(q - h * d))) / (2.0 * h);
             prop_assert!((law.project_jacobian(&q) * d - difference).norm() <= 1e-8);
             Ok(())
