@@ -195,7 +195,7 @@ fn counted(value: f64) -> Result<usize, ModelError> {
         .ok_or(ModelError::OutOfRange {
             what: "a saved count".into(),
             value,
-            expected: "a whole number that is not negative",
+            expected: "a whole number that is not negative: these are numbers of another model",
         })
 }
 
