@@ -29,9 +29,11 @@ impl<const D: usize> Driver<D> {
                 }
                 Condition::DisplaceAlong { .. } => {}
                 Condition::Force { on, force } => {
-                    if let Ok(facets) = mesh.facet_group(on) {
-                        let shares = self.measure.facet_shares(mesh, facets);
-                        let area: f64 = shares.iter().map(|s| s.area).sum();
+                    let facets = mesh.facet_group(on).unwrap_or_default();
+                    let shares = self.measure.facet_shares(mesh, facets);
+                    let area: f64 = shares.iter().map(|s| s.area).sum();
+                    // Facets on the axis have none.
+                    if area > 0.0 {
                         for s in shares {
                             loading.push(s.node, s.area / area, force);
                         }

@@ -520,6 +520,12 @@ fn a_force_on_facets_pulls_evenly() {
     let nodes = driver.mesh().nodes().iter().enumerate();
     let even = |(a, x): (usize, &[f64; 2])| (driver.displacement(a)[1] - 0.01 * x[1]).abs() < 1e-12;
     assert!(nodes.clone().all(even));
+    // Facets on the axis have no area: their nodes share the force.
+    let axial = Step::new("axial").fix("bar.bottom", &[Axis::Y]);
+    let axial = axial.force("bar.left", [0.0, 7.0]);
+    driver.run(&axial, 1, |_, _| {}).expect("converges");
+    let reaction = driver.reaction("bar.bottom").expect("exists")[1];
+    assert!((reaction + 7.0).abs() < 1e-9, "{reaction}");
 
     let mesh = block3("bar", CellKind::Hex20, &lines, &lines, &lines).expect("valid");
     let model = Model::new(mesh, Solid)
