@@ -314,9 +314,9 @@ impl Polyline {
         let between = b.start - a.start;
         let det = a.along.perp(&b.along);
         let (s, t) = (between.perp(&b.along) / det, between.perp(&a.along) / det);
-        // Parallel segments do not cross: s and t are infinite or NaN.
-        (s.is_finite() && t.is_finite() && self.clamped(j, s) == s && self.clamped(k, t) == t)
-            .then_some(s / a.length)
+        // Segments that are parallel but for rounding do not cross.
+        let cross = det.abs() > COINCIDENT;
+        (cross && self.clamped(j, s) == s && self.clamped(k, t) == t).then_some(s / a.length)
     }
 
     /// Whether the line has a corner between a piece and the one before.
@@ -503,6 +503,7 @@ impl Obstacle<2> for Polyline {
 mod tests {
     use super::*;
     use crate::{Ball, Plane};
+    use nalgebra::Rotation2;
     use proptest::prelude::*;
     use std::f64::consts::PI;
 
@@ -797,6 +798,23 @@ mod tests {
         assert_eq!(line.distance(&Vector2::new(3.0, 4.0)), 5.0);
         // Beyond its last point the line goes on.
         assert_eq!(line.distance(&Vector2::new(2.0, -9.0)), 2.0);
+    }
+
+    /// A punch with upright walls, turned: its walls are parallel but for rounding, and never meet.
+    #[test]
+    fn parallel_walls_do_not_cross() {
+        for k in 0..72 {
+            let turn = Rotation2::new(f64::from(k).to_radians() * 5.0);
+            let points = [[0.3, 0.9], [0.1, 0.3], [1.1, 0.3], [1.3, 0.9]];
+            let upright = [[0.1, 0.9], [0.1, 0.3], [1.1, 0.3], [1.1, 0.9]];
+            for points in [points, upright] {
+                let turned = points.map(|p| (turn * Vector2::from(p)).into());
+                assert!(
+                    Polyline::new(&turned).is_ok(),
+                    "{points:?} turned {k} times"
+                );
+            }
+        }
     }
 
     #[test]

@@ -17,7 +17,8 @@ type Point = Vector3<f64>;
 /// places, normals there are means over the triangles around, and curved patches in place of the triangles join with
 /// one normal along every such edge, so that the normal is everywhere the gradient of the distance. Other edges are
 /// sharp. Points of a sphere or of a cylinder give their normals exactly, and the surface is off by a small multiple of
-/// the fourth power of the length of an edge over the radius; plane parts stay plane.
+/// the fourth power of the length of an edge over the radius. Plane parts stay plane, and beside a fillet the normals are
+/// those of what it rounds off: a flat face, or a wall of long triangles.
 ///
 /// Source of the normals: N. Max, *Journal of Graphics Tools* 4 (1999) 1-6.
 #[derive(Debug, Clone)]
@@ -228,6 +229,52 @@ impl Foot {
     }
 }
 
+/// Angle between normals that is rounding, of coordinates of single precision \[rad\].
+const ROUNDED: f64 = 1e-4;
+
+/// Least angle around a corner of what a fillet rounds off: half of a turn, less a corner of an outline \[rad\].
+const HALF: f64 = 2.6;
+
+/// How much longer than others the triangles of a wall are.
+const LONG: f64 = 4.0;
+
+/// The triangles around a corner that are in one plane.
+#[derive(Default)]
+struct Plane {
+    /// Sum of a × b/(|a|² |b|²) over them, with their edges a and b from the corner.
+    normal: Point,
+    /// Sum of the angles between those \[rad\].
+    angle: f64,
+    longest: f64,
+}
+
+impl Plane {
+    fn add(&mut self, a: Point, b: Point) {
+        self.normal += a.cross(&b) / (a.norm_squared() * b.norm_squared());
+        self.angle += a.angle(&b);
+        self.longest = self.longest.max(a.norm()).max(b.norm());
+    }
+}
+
+/// The mean normal of the planes around a corner, not of unit length. Of a plane that ends there, half around the corner,
+/// that of the plane, and of long triangles beside others the mean of theirs: these others are a fillet, tangent to them.
+fn mean_normal(mut planes: Vec<Plane>) -> Point {
+    let angle = |planes: &[Plane]| planes.iter().map(|p| p.angle).sum::<f64>();
+    let longest = planes.iter().map(|p| p.longest).fold(0.0, f64::max);
+    let halves = planes.iter().filter(|p| p.angle >= HALF).count();
+    if halves == 1 {
+        planes.retain(|p| p.angle >= HALF);
+    }
+    let (long, short): (Vec<Plane>, Vec<Plane>) = planes
+        .into_iter()
+        .partition(|p| p.longest * LONG >= longest);
+    let all = match angle(&long) >= HALF {
+        true => long,
+        false => long.into_iter().chain(short).collect(),
+    };
+    all.iter().map(|p| p.normal).sum()
+}
+
 /// The patches of faces, oriented outwards.
 fn smooth(at: &[Point], faces: &[[usize; 3]], sharp: f64) -> Result<Vec<Patch>, ContactError> {
     let mut normals = Vec::with_capacity(faces.len());
@@ -246,22 +293,34 @@ fn smooth(at: &[Point], faces: &[[usize; 3]], sharp: f64) -> Result<Vec<Patch>, 
     let opposite = across(at, faces)?;
     // Corner k of face f is 3 f + k; those that a smooth edge joins have one normal.
     let mut joined: Vec<usize> = (0..3 * faces.len()).collect();
-    let is_smooth = |f: usize, g: usize| normals[f].angle(&normals[g]) <= sharp;
+    let is_smooth = |f: usize, g: usize| normals[f].angle(&normals[g]) <= sharp + ROUNDED;
+    let mut flat = joined.clone();
     for (edge, &other) in opposite.iter().enumerate() {
         let (f, g) = (edge / 3, other / 3);
-        if is_smooth(f, g) {
-            join(&mut joined, edge, 3 * g + (other + 1) % 3);
-            join(&mut joined, 3 * f + (edge + 1) % 3, other);
+        let ends = [
+            (edge, 3 * g + (other + 1) % 3),
+            (3 * f + (edge + 1) % 3, other),
+        ];
+        for (own, beside) in ends {
+            if is_smooth(f, g) {
+                join(&mut joined, own, beside);
+            }
+            if normals[f].angle(&normals[g]) <= ROUNDED {
+                join(&mut flat, own, beside);
+            }
         }
     }
-    let mut sums: HashMap<usize, Point> = HashMap::new();
     let roots: Vec<usize> = (0..joined.len()).map(|k| root(&joined, k)).collect();
-    for (k, &root) in roots.iter().enumerate() {
+    let mut around: BTreeMap<usize, BTreeMap<usize, Plane>> = BTreeMap::new();
+    for (k, &own) in roots.iter().enumerate() {
         let face = &faces[k / 3];
         let [x, y, z] = [0, 1, 2].map(|i| at[face[(k + i) % 3]]);
-        let (a, b) = (y - x, z - x);
-        *sums.entry(root).or_default() += a.cross(&b) / (a.norm_squared() * b.norm_squared());
+        let planes = around.entry(own).or_default();
+        planes.entry(root(&flat, k)).or_default().add(y - x, z - x);
     }
+    let sums: HashMap<usize, Point> = (around.into_iter())
+        .map(|(root, planes)| (root, mean_normal(planes.into_values().collect())))
+        .collect();
     let normal = |k: usize| sums[&roots[k]].try_normalize(0.0);
     let normal = |k: usize| normal(k).unwrap_or(normals[k / 3]);
     let edge = |edge: usize| {

@@ -216,6 +216,53 @@ fn faces_of_a_cube_are_plane_wherever_it_stands() {
     }
 }
 
+/// A punch of revolution: a flat face of radius 8 at the bottom, a fillet of radius 2 in n steps, a wall and a lid, of 24
+/// sides. The flat face stays plane, and the wall upright where its sides are.
+#[test]
+fn what_a_fillet_rounds_off_keeps_its_shape() {
+    let (sides, n) = (24, 8);
+    let mut profile: Vec<[f64; 2]> = (0..=n)
+        .map(|k| {
+            let (s, c) = (PI / 2.0 * k as f64 / n as f64).sin_cos();
+            [8.0 + 2.0 * s, 2.0 - 2.0 * c]
+        })
+        .collect();
+    profile.push([10.0, 20.0]);
+    let mut points: Vec<[f64; 3]> = Vec::new();
+    for [r, z] in &profile {
+        points.extend((0..sides).map(|k| {
+            let (s, c) = (TAU * k as f64 / sides as f64).sin_cos();
+            [r * c, r * s, *z]
+        }));
+    }
+    let (low, high) = (points.len(), points.len() + 1);
+    points.extend([[0.0; 3], [0.0, 0.0, 20.0]]);
+    let mut faces = Vec::new();
+    for k in 0..sides {
+        let next = (k + 1) % sides;
+        faces.push([low, next, k]);
+        for ring in 0..profile.len() - 1 {
+            let [a, b] = [ring * sides + k, ring * sides + next];
+            faces.push([a, b, b + sides]);
+            faces.push([a, b + sides, a + sides]);
+        }
+        let last = (profile.len() - 1) * sides;
+        faces.push([high, last + k, last + next]);
+    }
+    let punch = surface(&(points, faces));
+    let mut most = [0.0f64; 2];
+    for k in 0..200 {
+        let angle = 0.1 + k as f64;
+        let (s, c) = angle.sin_cos();
+        let r = 7.5 * (k as f64 / 200.0).sqrt();
+        most[0] = most[0].max((punch.distance(&Point::new(r * c, r * s, -0.1)) - 0.1).abs());
+        let z = 2.5 + 17.0 * k as f64 / 200.0;
+        let out = punch.distance(&Point::new(10.1 * c, 10.1 * s, z)) - 0.1;
+        most[1] = most[1].max(out.abs());
+    }
+    assert!(most[0] < 1e-12 && most[1] < 2e-3, "{most:?}");
+}
+
 #[test]
 fn a_can_has_sharp_edges() {
     let off = |n: usize| {
