@@ -42,6 +42,12 @@ fn what_is_told_twice_is_pointed_at() {
         tools("{ name = \"foundation\", force = [0, 1] }, { name = \"foundation\", turn = 1 }")
     );
     assert!(!both.contains("error"), "{both}");
+    // Pressed by a force and moved, across it and along it.
+    let across = tools("{ name = \"foundation\", force = [0, 1], move = [0.1, 0] }");
+    assert!(!across.contains("error"), "{across}");
+    let along = tools("{ name = \"foundation\", force = [0, 1], move = [0.1, 0.1] }");
+    let expected = "a tool with a force and a motion along y, expected one of both";
+    assert!(along.contains(expected), "{along}");
     let point = shown("friction = 0.1", "friction = .1");
     assert!(
         point.contains("a number begins with a digit, as in 0.3"),

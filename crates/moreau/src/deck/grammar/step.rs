@@ -264,7 +264,22 @@ fn motion(name: Option<At<String>>, table: &Table<'_>, dimension: usize) -> Opti
     if let Some(force) = table.get("force") {
         let force = reader::vector(force, "force", dimension, log)?.value;
         let motion = match table.get("move") {
-            Some(value) => Some(motion(value)?),
+            Some(value) => {
+                let motion = motion(value)?;
+                let both = (force.iter().zip(&motion)).position(|(f, u)| *f != 0.0 && *u != 0.0);
+                if let Some(i) = both {
+                    log.borrow_mut().error(
+                        &value.span(),
+                        format!(
+                            "a tool with a force and a motion along {}, expected one of both",
+                            ["x", "y", "z"][i]
+                        ),
+                        "how far it goes follows from the force: 0 there, or the motion in a step before",
+                    );
+                    return None;
+                }
+                Some(motion)
+            }
             None => None,
         };
         return condition(name, Action::Push(force, motion), table);
