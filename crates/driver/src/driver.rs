@@ -451,14 +451,24 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Sum of the contact forces on the nodes of a group \[N\]: on either surface of a pair, the
-    /// force that the other exerts on it.
+    /// force that the other exerts on it. Of the surface opposite to a tie with what nodes behind it bear, which
+    /// bridges a distance.
     ///
     /// # Errors
     /// An unknown group.
     pub fn contact_force(&self, group: &str) -> Result<SVector<f64, D>, ModelError> {
         let mut sum = SVector::zeros();
-        for node in self.mesh.node_group(group)? {
+        let nodes = self.mesh.node_group(group)?;
+        for &node in &nodes {
             sum += self.nodal_contact_force(node);
+        }
+        let rows = self.footing.rows.iter().zip(&self.state.contacts);
+        for ((row, record), point) in rows.zip(&self.points) {
+            if point.tied.is_some() && self.contacts[point.contact].opposite == group {
+                let behind = row.opposite.iter();
+                let behind = behind.filter(|(b, _)| nodes.binary_search(b).is_err());
+                sum -= record.force * behind.map(|(_, w)| w).sum::<f64>();
+            }
         }
         Ok(sum)
     }
@@ -556,7 +566,8 @@ impl<const D: usize> Driver<D> {
     }
 
     /// The system for another try of an increment that ends so, where both seams are there to choose from: contacts that
-    /// nothing holds on a dense matrix may be held in the factor.
+    /// nothing holds on a dense matrix may be held in the factor, and so is a body that only they hold, where stresses let
+    /// it turn away.
     fn other_seam(
         &mut self,
         system: &System,
@@ -566,12 +577,25 @@ impl<const D: usize> Driver<D> {
         if self.condenses(system, error) {
             return self.elastic_system(end, None, Seam::Condensed).map(Some);
         }
-        let chosen = self.settings.seam == Seam::Cheaper && !system.is_tied();
-        if !(chosen && error.is_singular() && self.coupled(Seam::Tied, end).is_some()) {
+        let is_worth = error.is_singular() && self.may_tie(system, end);
+        if !(is_worth || self.ties(system, error, end)) {
             return Ok(None);
         }
         let tied = self.elastic_system(end, None, Seam::Tied)?;
         Ok(Some(tied).filter(System::is_tied))
+    }
+
+    /// Whether contacts on a dense matrix may as well be tied in the factor.
+    fn may_tie(&self, system: &System, end: &Loading<D>) -> bool {
+        let chosen = self.settings.seam == Seam::Cheaper && !system.is_tied();
+        chosen && self.coupled(Seam::Tied, end).is_some()
+    }
+
+    /// Whether an increment that ends so is tried with contacts tied in the factor at once: a body that nothing but them
+    /// holds, and that stresses turn away, comes to rest there in less than on the way in quarters.
+    pub(crate) fn ties(&self, system: &System, error: &IncrementError, end: &Loading<D>) -> bool {
+        let turns_away = system.floats && self.has_large_strains() && !error.is_broken_off();
+        turns_away && self.may_tie(system, end)
     }
 
     /// Whether an increment that ends so with contacts tied in the factor is tried on a dense matrix, which costs more,

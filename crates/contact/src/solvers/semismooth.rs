@@ -138,7 +138,7 @@ pub(super) fn newton<const D: usize>(
         for _ in 0..ATTEMPT {
             // The residual grows with α, at most in proportion: this bounds it for the common α.
             let target = newton.part * tolerance.relative * problem.force_scale(&now.t);
-            let target = target.max(problem.rounding(&now.x));
+            let target = target.max(problem.rounding(&now.x) + newton.rounding_of_sums(&now));
             if now.residual <= target.max(newton.part * enough) {
                 let exact = now.residual <= target;
                 return Ok(newton.solution(now, iterations, exact));
@@ -317,13 +317,20 @@ impl<const D: usize> Newton<'_, D> {
         }
     }
 
+    /// The projections of the forces of an iterate, which lie in the cone exactly; those of the last differ from its t by less
+    /// than the residual.
+    fn projected(now: &Iterate<D>) -> Vec<Local<D>> {
+        now.t.iter().zip(&now.map).map(|(t, map)| t - map).collect()
+    }
+
+    /// [`CondensedProblem::rounding_of_origin`] of what presses.
+    fn rounding_of_sums(&self, now: &Iterate<D>) -> f64 {
+        self.problem.rounding_of_origin(&Self::projected(now))
+    }
+
     fn solution(&self, now: Iterate<D>, iterations: usize, exact: bool) -> ContactSolution<D> {
         let p = self.problem;
-        // The projection of the last iterate lies in the cone exactly; it differs from t by less
-        // than the residual.
-        let force = (0..p.contacts())
-            .map(|i| now.t[i] - now.map[i])
-            .collect::<Vec<_>>();
+        let force = Self::projected(&now);
         let status = statuses(p.laws(), &now.irreversible, &now.t, |i| self.alpha(i));
         ContactSolution {
             residual: p.residual(&now.irreversible, &force),

@@ -1,19 +1,31 @@
 //! Where shears of given limits act as an increment goes on; not how large they are.
 
 use crate::driver::Driver;
+use crate::linear::system::System;
 use crate::model::grip::Grip;
+use crate::model::load::Loading;
 use moreau_laws::Local;
 
 /// Gap that is none, over the size of the mesh.
 const CLOSED: f64 = 1e-6;
 
 impl<const D: usize> Driver<D> {
-    /// At the start of an increment.
-    pub(crate) fn begin_grips(&mut self) {
-        let before = self.state.contacts.iter();
+    /// At the start of an increment: of the first where the undeformed bodies touch.
+    pub(crate) fn begin_grips(&mut self, system: &System, start: &Loading<D>) {
         let none = CLOSED * self.mesh.size();
-        let closed = before.map(|c| c.t[0] > 0.0 || c.u[0] <= none);
-        self.grips = closed.map(Grip::start).collect();
+        let before = self.state.contacts.iter();
+        self.grips = match self.state.increment {
+            0 => {
+                let rest = vec![0.0; self.state.displacement.len()];
+                let undeformed = self.kinematics(system, start, &rest);
+                let closed = undeformed.iter().map(|k| k.gap <= none);
+                closed.map(Grip::start).collect()
+            }
+            _ => {
+                let closed = before.map(|c| c.t[0] > 0.0 || c.u[0] <= none);
+                closed.map(Grip::start).collect()
+            }
+        };
     }
 
     /// Shears of given limits act where bodies have come to press.

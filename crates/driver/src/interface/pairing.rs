@@ -89,21 +89,10 @@ impl<const D: usize> Driver<D> {
             let positions = self.positions_after(d_u);
             for (k, contact) in self.contacts.iter().enumerate() {
                 let Some(pairing) = contact.pairing else {
-                    if let Ok(surface) = self.mesh.facet_group(&contact.surface) {
-                        redistributed.extend(self.hand_over(&mut rows, (k, surface), loading));
-                    }
                     continue;
                 };
-                let surfaces = match self.footing.folds.get(&k) {
-                    Some(Fold { non_mortar, mortar }) => (non_mortar.as_slice(), mortar.as_slice()),
-                    None => (
-                        self.mesh.facet_group(&contact.surface)?,
-                        self.mesh.facet_group(&contact.opposite)?,
-                    ),
-                };
-                let mortar_rows = self
-                    .measure
-                    .mortar_rows(&self.mesh, &positions, surfaces, pairing);
+                let mortar_rows =
+                    (self.measure).mortar_rows(&self.mesh, &positions, self.sides(k)?, pairing);
                 let index = |p: &ContactPoint<D>| p.contact == k;
                 let own = (0..self.points.len()).filter(|&i| index(&self.points[i]));
                 let at: BTreeMap<usize, usize> = own.map(|i| (self.points[i].node, i)).collect();
@@ -112,7 +101,18 @@ impl<const D: usize> Driver<D> {
                         rows[point] = RelativeMotionRow::on_surface(mortar_row, &positions);
                     }
                 }
-                redistributed.extend(self.hand_over(&mut rows, (k, surfaces.0), loading));
+            }
+            // The order in which points give way to others must not change with the iterates.
+            if self.footing.first.is_empty() {
+                let most = |row: &RelativeMotionRow<D>| {
+                    row.opposite.iter().map(|o| o.1).fold(0.0, f64::max)
+                };
+                self.footing.opposite = rows.iter().map(most).collect();
+            }
+            for k in 0..self.contacts.len() {
+                if let Ok((surface, _)) = self.sides(k) {
+                    redistributed.extend(self.hand_over(&mut rows, (k, surface), loading));
+                }
             }
             if self.repairs() {
                 let pairs = rows.iter_mut().zip(&self.points).enumerate();
@@ -128,6 +128,18 @@ impl<const D: usize> Driver<D> {
         self.footing.redistributed = redistributed;
         self.footing.at = d_u.to_vec();
         self.stretch_areas(d_u)
+    }
+
+    /// The surfaces of a contact, the non-mortar side first; both sides of one that may meet itself.
+    fn sides(&self, contact: usize) -> Result<(&[Facet], &[Facet]), ModelError> {
+        if let Some(Fold { non_mortar, mortar }) = self.footing.folds.get(&contact) {
+            return Ok((non_mortar, mortar));
+        }
+        let Contact {
+            surface, opposite, ..
+        } = &self.contacts[contact];
+        let other = self.mesh.facet_group(opposite).unwrap_or(&[]);
+        Ok((self.mesh.facet_group(surface)?, other))
     }
 
     /// Hands over multipliers as [`Driver::redistribute_multipliers`]; the points that have given theirs.

@@ -13,7 +13,7 @@ use crate::driver::Driver;
 use crate::interface::elimination::{Elimination, row};
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
-use crate::model::points::Kinematics;
+use crate::model::points::{ContactPoint, Kinematics};
 use crate::vector::subspace::Subspace;
 use moreau_mesh::Facet;
 use nalgebra::SVector;
@@ -35,12 +35,8 @@ impl<const D: usize> Driver<D> {
         loading: &Loading<D>,
     ) {
         let own = |c: usize| self.points[c].node;
-        // A node in two ties has a multiplier in the first alone, or the second would say what neighbours say.
-        let before = self.points.iter().take_while(|p| p.contact < contact);
-        let tied: BTreeSet<usize> = (before.filter(|p| p.tied.is_some()))
-            .map(|p| p.node)
-            .collect();
-        let crosses = |c: usize| self.points[c].tied.is_some() && tied.contains(&own(c));
+        let ties = self.ties_by_node();
+        let crosses = |c: usize| self.crosses(c, &motion_rows[c], &ties);
         let is_held = |&c: &usize| crosses(c) || loading.free_at(own(c)).dimension() < D;
         let meets = |c: &usize| self.points[*c].contact == contact;
         let all: Vec<usize> = (0..self.points.len())
@@ -74,7 +70,10 @@ impl<const D: usize> Driver<D> {
         kept.extend(stranded);
         // Those about which the others say all.
         loop {
-            let spare = self.spare(motion_rows, &kept, loading);
+            let (spare, narrowed) = self.spare(motion_rows, &kept, loading);
+            for c in narrowed {
+                motion_rows[c].as_own = true;
+            }
             if spare.is_empty() {
                 return;
             }
@@ -92,6 +91,37 @@ impl<const D: usize> Driver<D> {
                 }
             }
         }
+    }
+
+    /// The points of ties by the nodes that their rows move.
+    fn ties_by_node(&self) -> BTreeMap<usize, Vec<usize>> {
+        let mut ties: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (t, tie) in self.points.iter().enumerate() {
+            for (a, _) in tie.tied.iter().flat_map(|row| row.weights()) {
+                ties.entry(a).or_default().push(t);
+            }
+        }
+        ties
+    }
+
+    /// Whether a point says what a tie says already. A node in two ties has a multiplier in the first alone, or the second
+    /// would say what neighbours say; and the contact of bodies ends at the nodes that are tied, of either side.
+    fn crosses(
+        &self,
+        c: usize,
+        motion_row: &RelativeMotionRow<D>,
+        ties: &BTreeMap<usize, Vec<usize>>,
+    ) -> bool {
+        let point = &self.points[c];
+        let beside = ties.get(&point.node).filter(|_| point.tool.is_none());
+        let is_crossed = |tie: &ContactPoint<D>| match point.tied {
+            Some(_) => tie.contact < point.contact && tie.node == point.node,
+            None => {
+                let along = |row| motion_row.is_along(row, DISTINCT);
+                tie.node == point.node || tie.tied.as_ref().is_some_and(along)
+            }
+        };
+        beside.is_some_and(|ties| ties.iter().any(|&t| is_crossed(&self.points[t])))
     }
 
     /// Opens the points at which held nodes meet a driven tool, but for the one that each tool comes to
@@ -174,45 +204,55 @@ impl<const D: usize> Driver<D> {
 
     /// Points that are held, of which the relative displacement, as far as it is free, is determined
     /// by those of others: by the points with a freedom of their own first, then by those with one
-    /// opposite nearly to themselves.
+    /// opposite nearly to themselves. Beside them those of which only that is determined by others which is along the
+    /// directions in which they are held: ties, and contacts without friction, go on with the rest of it.
     fn spare(
         &self,
         motion_rows: &[RelativeMotionRow<D>],
         kept: &BTreeSet<usize>,
         loading: &Loading<D>,
-    ) -> Vec<usize> {
+    ) -> (Vec<usize>, Vec<usize>) {
         let is_free = |dof: usize| !loading.displacement.contains_key(&dof);
         let own = |c: usize| (0..D).map(move |i| D * self.points[c].node + i);
-        let alone = |c: usize| {
-            let opposite = motion_rows[c].opposite.iter().map(|o| o.1);
-            match own(c).all(is_free) {
-                true => f64::INFINITY,
-                false => opposite.fold(0.0, f64::max),
-            }
+        let alone = |c: usize| match own(c).all(is_free) {
+            true => f64::INFINITY,
+            false => self.footing.opposite[c],
         };
         let mut order: Vec<(f64, usize)> = kept.iter().map(|&c| (alone(c), c)).collect();
         order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let mut rows = Elimination::new(self.state.displacement.len());
-        let mut spare = Vec::new();
+        let (mut spare, mut narrowed) = (Vec::new(), Vec::new());
         for (alone, c) in order {
-            let motion_row = &motion_rows[c];
+            let (motion_row, point) = (&motion_rows[c], &self.points[c]);
             let Some((n, gap)) = motion_row.plane(&SVector::zeros()) else {
                 continue;
             };
-            let free = motion_row.free(self.points[c].node, |a| loading.free_at(a));
-            let k = Kinematics::new(&self.points[c], &n, gap, &SVector::zeros(), &free);
             let unknown = |dof: usize| is_free(dof).then_some(dof);
-            let active = (0..D).filter(|&j| k.active[j]);
-            let given = (motion_row, &loading.directions);
-            let all: Vec<_> = active
-                .map(|j| (D * c + j, row(given, &k, j, unknown)))
-                .collect();
-            let distinct = all
-                .iter()
-                .all(|(_, row)| rows.is_independent(row, DISTINCT));
-            if alone.is_finite() && !distinct {
-                spare.push(c);
-                continue;
+            let rows_in = |free: &Subspace<D>| -> Vec<(usize, BTreeMap<usize, f64>)> {
+                let k = Kinematics::new(point, &n, gap, &SVector::zeros(), free);
+                let given = (motion_row, &loading.directions);
+                let active = (0..D).filter(|&j| k.active[j]);
+                active
+                    .map(|j| (D * c + j, row(given, &k, j, unknown)))
+                    .collect()
+            };
+            let are_distinct = |all: &[(usize, BTreeMap<usize, f64>)], rows: &Elimination| {
+                let mut own = all.iter();
+                own.all(|(_, row)| rows.is_independent(row, DISTINCT))
+            };
+            let mut all = rows_in(&motion_row.free(point.node, |a| loading.free_at(a)));
+            if alone.is_finite() && !are_distinct(&all, &rows) {
+                let own = loading.free_at(point.node);
+                let parts = point.law.is_tie() && own.dimension() > 0
+                    || !point.law.resists_slip() && own.part(&n).norm() > DISTINCT;
+                if parts {
+                    all = rows_in(&own);
+                }
+                if !(parts && are_distinct(&all, &rows)) {
+                    spare.push(c);
+                    continue;
+                }
+                narrowed.push(c);
             }
             let own: Vec<usize> = own(c).collect();
             for (component, row) in all {
@@ -220,7 +260,7 @@ impl<const D: usize> Driver<D> {
                 rows.solve(component, &row, &own);
             }
         }
-        spare
+        (spare, narrowed)
     }
 }
 

@@ -17,6 +17,8 @@ pub(crate) struct Footing<const D: usize> {
     pub(crate) at: Vec<f64>,
     /// The rows at the start of the increment, where they are others.
     pub(crate) first: Vec<RelativeMotionRow<D>>,
+    /// The largest weight opposite to each point when the increment was begun, before multipliers were handed over.
+    pub(crate) opposite: Vec<f64>,
     /// The two sides at the start of the increment of each contact of a surface with itself.
     pub(crate) folds: BTreeMap<usize, Fold>,
 }

@@ -2,10 +2,10 @@
 
 use moreau_laws::Friction;
 
-/// Tresca's law limits a shear without regard to the pressure, and would shear what a tool does not touch. It holds
-/// where bodies press: in an increment at the points that are closed at its start and at those that come to press in it,
+/// A law that bounds the shear by more than nothing where there is no pressure, as Tresca's, would shear what a tool does not
+/// touch. It holds where bodies press: in an increment at the points that are closed at its start and at those that come to press in it,
 /// less those that balance is found to leave open. What presses without its shear and opens under it, time and again,
-/// keeps it.
+/// presses without it: its shear is something between, and none acts across a gap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Grip {
     acts: bool,
@@ -27,12 +27,15 @@ impl Grip {
 
     /// Of a point that presses.
     pub(crate) fn pressed(self) -> Self {
-        Self { acts: true, ..self }
+        Self {
+            acts: self.released < RELEASES,
+            ..self
+        }
     }
 
     /// Of a point that balance leaves open.
     pub(crate) fn open(self) -> Self {
-        match self.acts && self.released < RELEASES {
+        match self.acts {
             true => Self {
                 acts: false,
                 released: self.released + 1,
@@ -43,9 +46,9 @@ impl Grip {
 
     /// The area on which a limit of the shear acts, of that of the point.
     pub(crate) fn area(self, law: &Friction, area: f64) -> f64 {
-        match law {
-            Friction::Tresca(_) if !self.acts => 0.0,
-            _ => area,
+        match !self.acts && !law.is_tie() && law.bound(0.0) > 0.0 {
+            true => 0.0,
+            false => area,
         }
     }
 }

@@ -24,6 +24,9 @@ pub(crate) struct RelativeMotionRow<const D: usize> {
     plane: Option<(SVector<f64, D>, f64)>,
     /// Slip from the start of the increment to there, in space \[mm\].
     pub(crate) slipped: Option<SVector<f64, D>>,
+    /// Whether only that counts of it which is along the directions in which the node itself is free: the rest is said by
+    /// others.
+    pub(crate) as_own: bool,
 }
 
 impl<const D: usize> RelativeMotionRow<D> {
@@ -185,6 +188,16 @@ impl<const D: usize> RelativeMotionRow<D> {
         self.own.iter().copied().chain(opposite)
     }
 
+    /// Whether another row says the same, of either sign: as vectors of weights their sine is at most `sine`.
+    pub(crate) fn is_along(&self, other: &Self, sine: f64) -> bool {
+        let others: BTreeMap<usize, f64> = other.weights().collect();
+        let squared = |row: &Self| row.weights().map(|(_, w)| w * w).sum::<f64>();
+        let both: f64 = (self.weights())
+            .filter_map(|(a, w)| Some(w * others.get(&a)?))
+            .sum();
+        both * both > (1.0 - sine * sine) * squared(self) * squared(other)
+    }
+
     /// The nodes on both sides.
     pub(crate) fn nodes(&self) -> Vec<usize> {
         self.weights().map(|(a, _)| a).collect()
@@ -197,12 +210,12 @@ impl<const D: usize> RelativeMotionRow<D> {
     }
 
     /// Where the relative displacement is free, from where nodes are: as the own node is, and as all of those opposite
-    /// are.
+    /// are, unless only the own one counts.
     pub(crate) fn free(&self, node: usize, of: impl Fn(usize) -> Subspace<D>) -> Subspace<D> {
         let opposite = self.opposite.iter().map(|&(b, _)| of(b));
         match opposite.reduce(|all, other| all.common(&other)) {
-            Some(opposite) => of(node).with(&opposite),
-            None => of(node),
+            Some(opposite) if !self.as_own => of(node).with(&opposite),
+            _ => of(node),
         }
     }
 }
@@ -260,6 +273,7 @@ mod tests {
             area: 3.0,
             plane: plane(1.0, 0.1),
             slipped: None,
+            as_own: false,
         };
         let held = RelativeMotionRow {
             own: vec![(1, 1.0)],
@@ -267,6 +281,7 @@ mod tests {
             area: 2.0,
             plane: plane(1.0, 0.5),
             slipped: None,
+            as_own: false,
         };
         motion_row.take_over(&held, 0.5);
         assert_eq!(motion_row.area, 4.0);

@@ -114,6 +114,9 @@ pub(crate) struct ContactPoint<const D: usize> {
 /// Sine of the angle between two axes that are one.
 const PARALLEL: f64 = 1e-12;
 
+/// Angle between normals that is rounding.
+const ROUNDED: f64 = 1e-6;
+
 /// Least cosine between normals of a tool over an edge that is one smooth surface there.
 const SMOOTH: f64 = 0.9;
 
@@ -136,7 +139,8 @@ impl<const D: usize> ContactPoint<D> {
             let (way, distance, m) = (x(a) - at, obstacle.distance(&x(a)), obstacle.normal(&x(a)));
             // A smooth surface is between its tangents at both ends.
             let off = distance - here - 0.5 * (n + m).dot(&way);
-            if n.dot(&m) < SMOOTH || off.abs() > 0.25 * (n - m).norm() * way.norm() {
+            let between = 0.25 * (n - m).norm().max(ROUNDED) * way.norm();
+            if n.dot(&m) < SMOOTH || off.abs() > between {
                 return here - self.offset;
             }
             weighted += w * (distance - here);
@@ -486,6 +490,15 @@ mod tests {
         let large = Ball::new([0.0, -10.0], 10.0).expect("a ball");
         let on_it = |a: usize| SVector::from([x[a], f64::sqrt(100.0 - x[a] * x[a]) - 10.0]);
         assert!(point.gap(&large, on_it).abs() < 1e-14);
+        // Whatever the rounding: the mid-side is on the normal of its point.
+        for k in 0..360 {
+            let turn = nalgebra::Rotation2::new(f64::from(k).to_radians());
+            let center = SVector::from([0.3, -0.7]);
+            let turned = |x: f64| center + turn * SVector::from([x, f64::sqrt(100.0 - x * x)]);
+            let ball = Ball::new(center.into(), 10.0).expect("a ball");
+            let gap = point.gap(&ball, |a| turned([0.0, -1.0, 1.0][a]));
+            assert!(gap.abs() < 1e-13, "{k}: {gap}");
+        }
         let small = Ball::new([0.5, -0.3], 0.3).expect("a ball");
         assert!(point.gap(&small, |a| SVector::from([x[a], 0.0])).abs() < 1e-15);
     }

@@ -17,14 +17,9 @@ const FARTHEST: f64 = 10.0;
 /// displacements with a somewhat smaller α.
 pub(crate) const CONTACT_SLACK: f64 = 10.0;
 
-/// What an increment may be off by for its contact solution \[N\]. One that is not exact excuses
-/// nothing.
-pub(crate) fn slack<const D: usize>(solution: &ContactSolution<D>) -> f64 {
-    match solution.exact {
-        true => CONTACT_SLACK * solution.residual,
-        false => 0.0,
-    }
-}
+/// Most that a contact solution excuses, over the size of the forces in play: where its rounding is more the problem was as
+/// good as singular.
+const EXCUSED: f64 = 1e-5;
 
 impl<const D: usize> Driver<D> {
     /// Size of the forces in play at the nodes, against which imbalance is judged \[N\]. What a tool
@@ -45,7 +40,13 @@ impl<const D: usize> Driver<D> {
     /// Out-of-balance force at which an increment is accepted \[N\]: the tolerance, or the rounding of
     /// internal forces.
     pub(crate) fn accepted_residual(&self, system: &System, scale: f64, d_u: &[f64]) -> f64 {
-        (self.settings.tolerance * scale).max(self.rounding(system, d_u))
+        let least = (self.settings.tolerance * scale).max(self.rounding(system, d_u));
+        // What touches without pressing presses by the rounding of its gaps.
+        let rounded = self.law_rounding(system);
+        match scale <= rounded && !self.points.is_empty() {
+            true => least.max(rounded),
+            false => least,
+        }
     }
 
     /// Rounding of internal forces \[N\], which counts where the body moves almost rigidly, or is let go: a stress that has
@@ -107,6 +108,16 @@ impl<const D: usize> Driver<D> {
         (system.shift() * gap).min(self.settings.tolerance * self.state.largest_force)
     }
 
+    /// What an increment may be off by for its contact solution, of forces of a size \[N\]. One that is not exact excuses
+    /// nothing.
+    pub(crate) fn slack(&self, system: &System, solution: &ContactSolution<D>, scale: f64) -> f64 {
+        let most = (EXCUSED * scale).max(self.law_rounding(system));
+        match solution.exact {
+            true => (CONTACT_SLACK * solution.residual).min(most),
+            false => 0.0,
+        }
+    }
+
     /// The largest [`Driver::law_residual`] with which an increment is accepted \[N\].
     pub(crate) fn law_tolerance(
         &self,
@@ -114,7 +125,9 @@ impl<const D: usize> Driver<D> {
         solution: &ContactSolution<D>,
         scale: f64,
     ) -> f64 {
-        self.settings.tolerance * scale + slack(solution) + self.law_rounding(system)
+        self.settings.tolerance * scale
+            + self.slack(system, solution, scale)
+            + self.law_rounding(system)
     }
 
     /// What rounding of positions makes of [`Driver::law_residual`] \[N\].

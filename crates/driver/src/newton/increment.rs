@@ -10,7 +10,6 @@ use crate::model::load::Loading;
 use crate::model::points::Kinematics;
 use crate::newton::chord::Chord;
 use crate::newton::control::Control;
-use crate::newton::criteria::slack;
 use crate::newton::descent::{TERMS, stiffer};
 use crate::newton::iterate::{Candidate, Iterate};
 use crate::newton::line_search::NewtonStep;
@@ -97,7 +96,7 @@ impl<const D: usize> Driver<D> {
         mut d_u: Vec<f64>,
         control: Option<&'a mut Control<'c, D>>,
     ) -> Increment<'a, 'c, D> {
-        self.begin_grips();
+        self.begin_grips(system, start);
         // Tools resist nothing: they are where they shall be from the first.
         for (&dof, u) in end.displacement.range(self.mesh_dofs()..) {
             d_u[dof] = u - start.displacement.get(&dof).unwrap_or(u);
@@ -235,7 +234,8 @@ impl<const D: usize> Driver<D> {
             increment.counts.residuals.push(largest);
         }
         // Forces of an iterative contact solver are out of balance by what it left.
-        let left = increment.solution.as_ref().map_or(0.0, slack);
+        let solution = increment.solution.as_ref();
+        let left = solution.map_or(0.0, |solution| self.slack(system, solution, scale));
         Ok(Balance {
             accepted: self.accepted_residual(system, scale, &iterate.d_u) + left,
             kinematics,
@@ -393,7 +393,8 @@ impl<const D: usize> Driver<D> {
             contact,
             complete: !moved && arrived,
             arrives: !arrived,
-            slack: increment.solution.as_ref().map_or(0.0, slack),
+            slack: (increment.solution.as_ref())
+                .map_or(0.0, |s| self.slack(system, s, balance.scale)),
             tangent: !(elastic || self.is_symmetric() && last),
             allowed: self.allowed(&increment.counts.residuals),
         })

@@ -343,8 +343,9 @@ fn nearest<const D: usize, T>(
             return Ok((solution, other));
         }
         let is_pushed = |s: &ContactSolution<D>| farthest(s) > PUSHED * motion;
-        return match c == soft && solve(stiff).is_ok_and(|(s, ..)| is_pushed(&s)) {
-            true => solve(soft).map(|(solution, other, _)| (solution, other)),
+        let stiffer = c * (stiff / soft);
+        return match solve(stiffer).is_ok_and(|(s, ..)| is_pushed(&s)) {
+            true => solve(c).map(|(solution, other, _)| (solution, other)),
             false => Err(error),
         };
     }

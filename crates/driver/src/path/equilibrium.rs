@@ -74,6 +74,7 @@ impl<const D: usize> Driver<D> {
                 || matches!(error, IncrementError::Model(_))
                 || error.is_broken_off()
                 || patience.is_none() && self.condenses(system, error)
+                || self.ties(system, error, end)
             {
                 break;
             }

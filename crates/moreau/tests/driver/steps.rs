@@ -7,7 +7,7 @@ use moreau_driver::{
 };
 use moreau_laws::{Coulomb, Elastic, Status, VonMises};
 use moreau_mesh::{
-    Axisymmetric, CellKind, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform,
+    Axisymmetric, CellKind, Facet, Integration, Mesh, PlaneStrain, Solid, block2, block3, uniform,
 };
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -449,6 +449,58 @@ fn adjusted_bodies_touch_where_they_are() {
         assert!((found - gap).abs() < 1e-12, "{found}");
         assert!((far / flush - 1.0).abs() > 0.5, "{far}");
     }
+}
+
+/// A soft ring that lies on a floor and is squeezed by a lid, both without friction, beside a wall:
+/// it could go there, and does not.
+#[test]
+fn a_ring_without_friction_is_squeezed_in_few_iterations() {
+    let (sides, radii) = (48, [2.0, 2.25, 2.5]);
+    let around = |layer: usize, k: usize| layer * sides + k % sides;
+    let at = |layer: usize, k: usize| {
+        let (s, c) = (2.0 * PI * k as f64 / sides as f64).sin_cos();
+        [radii[layer] * s, 2.5 - radii[layer] * c]
+    };
+    let nodes = (0..3).flat_map(|layer| (0..sides).map(move |k| at(layer, k)));
+    let cells = (0..2).flat_map(|layer| (0..sides).map(move |k| (layer, k)));
+    let cells = cells.map(|(layer, k)| {
+        let corners = [
+            (layer + 1, k),
+            (layer + 1, k + 1),
+            (layer, k + 1),
+            (layer, k),
+        ];
+        (CellKind::Quad4, corners.map(|(l, k)| around(l, k)).to_vec())
+    });
+    let mut ring = Mesh::new(nodes.collect(), cells.collect()).expect("valid");
+    ring.add_cell_group("ring", (0..2 * sides).collect())
+        .expect("valid");
+    let outer = (sides..2 * sides).map(|cell| Facet { cell, facet: 0 });
+    ring.add_facet_group("skin", outer.collect())
+        .expect("valid");
+    let plane = |y: f64| Plane::new([0.0, y], [0.0, 2.5 - y]).expect("valid");
+    let model = Model::with_large_strains(ring, PlaneStrain::default())
+        .material(
+            "ring",
+            Elastic::new(6.0, 0.49).expect("valid"),
+            Integration::Full,
+        )
+        .and_then(|m| m.tool("floor", plane(0.0)))
+        .and_then(|m| m.tool("lid", plane(5.0)))
+        .and_then(|m| m.contact("skin", "floor", coulomb(0.0)))
+        .and_then(|m| m.contact("skin", "lid", coulomb(0.0)))
+        .and_then(|m| m.tool("wall", Plane::new([2.9, 0.0], [-1.0, 0.0]).expect("valid")))
+        .and_then(|m| m.contact("skin", "wall", coulomb(0.0)));
+    let mut driver = Driver::new(model.expect("valid"), Settings::default()).expect("valid");
+    let step = Step::new("squeeze").tool("lid", [0.0, -1.0]);
+    let mut iterations = Vec::new();
+    driver
+        .run(&step, 10, |_, report| {
+            iterations.push(report.newton_iterations)
+        })
+        .expect("converges");
+    let all: usize = iterations.iter().sum();
+    assert!(all < 150, "{iterations:?}");
 }
 
 /// A block on a floor, pressed by a roll that is lifted again: once nothing presses it stays where it is, whatever the roll

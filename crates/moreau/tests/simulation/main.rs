@@ -1,5 +1,6 @@
 //! A deck in memory, stepped from outside.
 
+mod beside;
 mod cornered;
 mod driven;
 mod interrupted;
@@ -10,6 +11,7 @@ mod points;
 mod replaced;
 mod saved;
 mod sheared;
+mod shears;
 
 use moreau::deck::{Given, Meshes};
 use moreau::driver::IncrementError;
