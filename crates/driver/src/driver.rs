@@ -594,7 +594,8 @@ impl<const D: usize> Driver<D> {
     /// Whether an increment that ends so is tried with contacts tied in the factor at once: a body that nothing but them
     /// holds, and that stresses turn away, comes to rest there in less than on the way in quarters.
     pub(crate) fn ties(&self, system: &System, error: &IncrementError, end: &Loading<D>) -> bool {
-        let turns_away = system.floats && self.has_large_strains() && !error.is_broken_off();
+        let ends = matches!(error, IncrementError::Model(_)) || error.is_broken_off();
+        let turns_away = system.floats && self.has_large_strains() && !ends;
         turns_away && self.may_tie(system, end)
     }
 

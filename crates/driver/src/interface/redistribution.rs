@@ -105,7 +105,8 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Whether a point says what a tie says already. A node in two ties has a multiplier in the first alone, or the second
-    /// would say what neighbours say; and the contact of bodies ends at the nodes that are tied, of either side.
+    /// would say what neighbours say; and the contact of two bodies ends at the nodes that are tied to each other, of either
+    /// side.
     fn crosses(
         &self,
         c: usize,
@@ -116,10 +117,12 @@ impl<const D: usize> Driver<D> {
         let beside = ties.get(&point.node).filter(|_| point.tool.is_none());
         let is_crossed = |tie: &ContactPoint<D>| match point.tied {
             Some(_) => tie.contact < point.contact && tie.node == point.node,
-            None => {
-                let along = |row| motion_row.is_along(row, DISTINCT);
-                tie.node == point.node || tie.tied.as_ref().is_some_and(along)
-            }
+            None => tie.tied.as_ref().is_some_and(|row| {
+                let opposite =
+                    |(b, _): &(usize, f64)| motion_row.opposite.iter().any(|o| o.0 == *b);
+                let own = tie.node == point.node && row.opposite.iter().any(opposite);
+                own || motion_row.is_along(row, DISTINCT)
+            }),
         };
         beside.is_some_and(|ties| ties.iter().any(|&t| is_crossed(&self.points[t])))
     }

@@ -79,6 +79,58 @@ fn a_contact_ends_at_a_tied_node() {
     }
 }
 
+/// A corner that is tied to the body below is pressed by one beside all the same.
+#[test]
+fn what_is_tied_to_one_body_touches_another() {
+    for strain in ["small", "finite"] {
+        let pressed = finish(simulation(&format!(
+            r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+strain = "{strain}"
+[[mesh.block]]
+name = "a"
+element = "quad4"
+x = [0, 4]
+y = [0, 2]
+cells = [4, 2]
+[[mesh.block]]
+name = "b"
+element = "quad4"
+x = [0, 4]
+y = [-2, 0]
+cells = [3, 2]
+[[mesh.block]]
+name = "c"
+element = "quad4"
+x = [4, 6]
+y = [-2, 2]
+cells = [2, 3]
+[[material]]
+on = ["a", "b", "c"]
+young = 1000
+poisson = 0.3
+[[tie]]
+surface = "a.bottom"
+to = "b.top"
+[[contact]]
+surface = "a.right"
+against = "c.left"
+friction = 0.1
+[[step]]
+name = "p"
+increments = 1
+fix = [{{ on = "b.bottom", u = ["x", "y"] }}, {{ on = "a.left", u = ["x"] }}]
+move = [{{ on = "c.right", u = {{ x = -0.01, y = 0 }} }}]
+"#
+        )));
+        let contacts = pressed.contacts();
+        let [y, t] = ["y", "t_n"].map(|name| contacts.numbers(name));
+        let on_side = (contacts.numbers("x").into_iter()).map(|x| x > 4.0 - 1e-9);
+        let mut corner = (on_side.zip(y).zip(t)).filter(|((on_side, y), _)| *on_side && *y == 0.0);
+        assert!(corner.any(|(_, t)| t > 1e-3), "{strain}");
+    }
+}
+
 /// A block whose cells are a quarter as long as those of the bed below, guided so that it does not move along that, under a
 /// pressure on a part of its top: all of its nodes touch the bed there.
 #[test]
