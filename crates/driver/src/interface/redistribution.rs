@@ -70,10 +70,7 @@ impl<const D: usize> Driver<D> {
         kept.extend(stranded);
         // Those about which the others say all.
         loop {
-            let (spare, narrowed) = self.spare(motion_rows, &kept, loading);
-            for c in narrowed {
-                motion_rows[c].as_own = true;
-            }
+            let spare = self.spare(motion_rows, &kept, loading);
             if spare.is_empty() {
                 return;
             }
@@ -207,14 +204,14 @@ impl<const D: usize> Driver<D> {
 
     /// Points that are held, of which the relative displacement, as far as it is free, is determined
     /// by those of others: by the points with a freedom of their own first, then by those with one
-    /// opposite nearly to themselves. Beside them those of which only that is determined by others which is along the
-    /// directions in which they are held: ties, and contacts without friction, go on with the rest of it.
+    /// opposite nearly to themselves. Ties, and contacts without friction, of which only that is determined by others
+    /// which is along the directions in which they are held, are kept.
     fn spare(
         &self,
         motion_rows: &[RelativeMotionRow<D>],
         kept: &BTreeSet<usize>,
         loading: &Loading<D>,
-    ) -> (Vec<usize>, Vec<usize>) {
+    ) -> Vec<usize> {
         let is_free = |dof: usize| !loading.displacement.contains_key(&dof);
         let own = |c: usize| (0..D).map(move |i| D * self.points[c].node + i);
         let alone = |c: usize| match own(c).all(is_free) {
@@ -224,7 +221,7 @@ impl<const D: usize> Driver<D> {
         let mut order: Vec<(f64, usize)> = kept.iter().map(|&c| (alone(c), c)).collect();
         order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let mut rows = Elimination::new(self.state.displacement.len());
-        let (mut spare, mut narrowed) = (Vec::new(), Vec::new());
+        let mut spare = Vec::new();
         for (alone, c) in order {
             let (motion_row, point) = (&motion_rows[c], &self.points[c]);
             let Some((n, gap)) = motion_row.plane(&SVector::zeros()) else {
@@ -255,7 +252,6 @@ impl<const D: usize> Driver<D> {
                     spare.push(c);
                     continue;
                 }
-                narrowed.push(c);
             }
             let own: Vec<usize> = own(c).collect();
             for (component, row) in all {
@@ -263,7 +259,7 @@ impl<const D: usize> Driver<D> {
                 rows.solve(component, &row, &own);
             }
         }
-        (spare, narrowed)
+        spare
     }
 }
 

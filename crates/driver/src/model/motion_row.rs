@@ -24,9 +24,6 @@ pub(crate) struct RelativeMotionRow<const D: usize> {
     plane: Option<(SVector<f64, D>, f64)>,
     /// Slip from the start of the increment to there, in space \[mm\].
     pub(crate) slipped: Option<SVector<f64, D>>,
-    /// Whether only that counts of it which is along the directions in which the node itself is free: the rest is said by
-    /// others.
-    pub(crate) as_own: bool,
 }
 
 impl<const D: usize> RelativeMotionRow<D> {
@@ -210,12 +207,12 @@ impl<const D: usize> RelativeMotionRow<D> {
     }
 
     /// Where the relative displacement is free, from where nodes are: as the own node is, and as all of those opposite
-    /// are, unless only the own one counts.
+    /// are.
     pub(crate) fn free(&self, node: usize, of: impl Fn(usize) -> Subspace<D>) -> Subspace<D> {
         let opposite = self.opposite.iter().map(|&(b, _)| of(b));
         match opposite.reduce(|all, other| all.common(&other)) {
-            Some(opposite) if !self.as_own => of(node).with(&opposite),
-            _ => of(node),
+            Some(opposite) => of(node).with(&opposite),
+            None => of(node),
         }
     }
 }
@@ -273,7 +270,6 @@ mod tests {
             area: 3.0,
             plane: plane(1.0, 0.1),
             slipped: None,
-            as_own: false,
         };
         let held = RelativeMotionRow {
             own: vec![(1, 1.0)],
@@ -281,7 +277,6 @@ mod tests {
             area: 2.0,
             plane: plane(1.0, 0.5),
             slipped: None,
-            as_own: false,
         };
         motion_row.take_over(&held, 0.5);
         assert_eq!(motion_row.area, 4.0);
