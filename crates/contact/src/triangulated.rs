@@ -17,8 +17,9 @@ type Point = Vector3<f64>;
 /// places, normals there are means over the triangles around, and curved patches in place of the triangles join with
 /// one normal along every such edge, so that the normal is everywhere the gradient of the distance. Other edges are
 /// sharp. Points of a sphere or of a cylinder give their normals exactly, and the surface is off by a small multiple of
-/// the fourth power of the length of an edge over the radius. Plane parts stay plane, and beside a fillet the normals are
-/// those of what it rounds off: a flat face, or a wall of long triangles.
+/// the fourth power of the length of an edge over the radius. Plane parts stay plane, and beside a fillet of revolution the
+/// normals are those of what it rounds off: a flat face, or a wall of long triangles. Beside a straight fillet as long as the
+/// face they are means, and bend the face unless the limit makes its edge sharp.
 ///
 /// Source of the normals: N. Max, *Journal of Graphics Tools* 4 (1999) 1-6.
 #[derive(Debug, Clone)]

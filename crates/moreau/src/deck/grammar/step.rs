@@ -274,7 +274,7 @@ fn motion(name: Option<At<String>>, table: &Table<'_>, dimension: usize) -> Opti
                             "a tool with a force and a motion along {}, expected one of both",
                             ["x", "y", "z"][i]
                         ),
-                        "how far it goes follows from the force: 0 there, or the motion in a step before",
+                        "the force decides how far it goes: put 0 there, or move the tool in a step before",
                     );
                     return None;
                 }
