@@ -1,5 +1,7 @@
 //! Errors of the contact crate; no messages of the driver.
 
+use nalgebra::DMatrix;
+
 /// What can go wrong when a contact problem is built or solved.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -47,6 +49,17 @@ pub enum ContactError {
     Floating {
         /// Component at which the factorisation broke down.
         component: usize,
+    },
+    /// A matrix of which only one triangle is read is not symmetric.
+    #[error("{what} is {} at {:?} and {} at {:?}, expected a symmetric matrix",
+        values[0], (at[0], at[1]), values[1], (at[1], at[0]))]
+    Unsymmetric {
+        /// The matrix.
+        what: &'static str,
+        /// Row and column.
+        at: [usize; 2],
+        /// The entry there, and the one across the diagonal.
+        values: [f64; 2],
     },
     /// A matrix that a problem is built from has no inverse.
     #[error(
@@ -113,6 +126,24 @@ pub(crate) fn expect_sizes(
             found,
             expected,
         }),
+        None => Ok(()),
+    }
+}
+
+/// Entries across the diagonal, over the largest entry, that differ by more than rounding.
+const UNLIKE: f64 = 1e-9;
+
+/// Whether a square matrix is symmetric, beyond rounding.
+///
+/// # Errors
+/// [`ContactError::NotFinite`], [`ContactError::Unsymmetric`].
+pub(crate) fn expect_symmetric(what: &'static str, a: &DMatrix<f64>) -> Result<(), ContactError> {
+    expect_finite(what, a)?;
+    let most = UNLIKE * a.amax();
+    let below = (0..a.ncols()).flat_map(|j| (j + 1..a.nrows()).map(move |i| [i, j]));
+    let pairs = below.map(|[i, j]| ([i, j], [a[(i, j)], a[(j, i)]]));
+    match { pairs }.find(|(_, [v, across])| (v - across).abs() > most) {
+        Some((at, values)) => Err(ContactError::Unsymmetric { what, at, values }),
         None => Ok(()),
     }
 }

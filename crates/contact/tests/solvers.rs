@@ -208,7 +208,11 @@ fn the_critical_friction_of_a_contact_is_that_of_its_compliance() {
             vec![Coulomb::new(mu).expect("valid")],
             [Local::<D>::zeros()],
         );
-        let local = LocalProblem::new(BlockMatrix::from_dense(&w), q.to_vec(), law.clone());
+        let local = LocalProblem::new(
+            BlockMatrix::from_dense(&w).expect("square"),
+            q.to_vec(),
+            law.clone(),
+        );
         let (_, expected) = local.expect("valid").criticality().expect("a contact");
         let problem = CondensedProblem::from_delassus(w, &q, law).expect("definite");
         let (contact, found) = problem.criticality(&[Status::Stick]).expect("closed");

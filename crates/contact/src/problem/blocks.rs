@@ -2,6 +2,8 @@
 //! that factorise are behind `dense` and `sparse`.
 
 use super::{split, stack};
+use crate::ContactError;
+use crate::error::expect_sizes;
 use moreau_algebra::Lu;
 use moreau_algebra::{Rows, SparseLu};
 use moreau_laws::Local;
@@ -72,15 +74,22 @@ impl<const D: usize> BlockMatrix<D> {
     }
 
     /// From a dense matrix of `D·contacts` rows and columns; blocks of zeros are not stored.
-    pub fn from_dense(dense: &DMatrix<f64>) -> Self {
+    ///
+    /// # Errors
+    /// [`ContactError::Dimension`] of a matrix of other rows or columns.
+    pub fn from_dense(dense: &DMatrix<f64>) -> Result<Self, ContactError> {
         let contacts = dense.nrows() / D;
+        expect_sizes([
+            ("rows of a dense matrix", dense.nrows(), D * contacts),
+            ("columns of a dense matrix", dense.ncols(), D * contacts),
+        ])?;
         let mut matrix = Self::empty();
         for i in 0..contacts {
             let block = |j: usize| (j, dense.fixed_view::<D, D>(D * i, D * j).into_owned());
             let row = (0..contacts).map(block);
             matrix.push_row(row.filter(|(_, block)| block.iter().any(|v| *v != 0.0)));
         }
-        matrix
+        Ok(matrix)
     }
 
     /// Number of block rows.
@@ -205,7 +214,7 @@ mod tests {
                 (7 * i + j) as f64
             }
         });
-        let sparse = BlockMatrix::<2>::from_dense(&dense);
+        let sparse = BlockMatrix::<2>::from_dense(&dense).expect("square");
         assert_eq!((sparse.contacts(), sparse.stored()), (3, 8));
         let x: Vec<Local<2>> = (0..3).map(|i| Local::<2>::new(i as f64, 1.0)).collect();
         let expected = &dense * crate::problem::stack(&x);
@@ -218,3 +227,16 @@ mod tests {
         assert_eq!(twice.diagonal(0)[(0, 1)], 5.0);
     }
 }
+
+    /// What does not fit into blocks is not left out.
+    #[test]
+    fn a_matrix_that_is_none_of_blocks_is_refused() {
+        for (rows, columns) in [(5, 5), (4, 2), (4, 6), (0, 2)] {
+            let dense = DMatrix::from_element(rows, columns, 1.0);
+            let matrix = BlockMatrix::<2>::from_dense(&dense);
+            let refused = matches!(matrix, Err(ContactError::Dimension { .. }));
+            assert!(refused, "{rows} x {columns}");
+        }
+        let empty = BlockMatrix::<2>::from_dense(&DMatrix::zeros(0, 0)).expect("square");
+        assert_eq!(empty.contacts(), 0);
+    }

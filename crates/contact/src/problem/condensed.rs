@@ -2,7 +2,7 @@
 
 use super::{BlockMatrix, LocalProblem, criticality, split, stack, statuses};
 use crate::ContactError;
-use crate::error::{expect_finite, expect_sizes};
+use crate::error::{expect_finite, expect_sizes, expect_symmetric};
 use moreau_algebra::DenseCholesky;
 use moreau_laws::{Friction, Local, Status};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
@@ -79,7 +79,8 @@ impl<const D: usize> CondensedProblem<D> {
     /// A problem given in the form u = W t + q of discrete frictional contact; t₀ = 0.
     ///
     /// # Errors
-    /// As [`CondensedProblem::new`]; [`ContactError::Indefinite`] if W is not positive definite.
+    /// As [`CondensedProblem::new`]; [`ContactError::Unsymmetric`], [`ContactError::Indefinite`] if W is not positive
+    /// definite.
     pub fn from_delassus(
         operator: DMatrix<f64>,
         free: &[Local<D>],
@@ -90,6 +91,7 @@ impl<const D: usize> CondensedProblem<D> {
             ("Delassus operator's rows", operator.nrows(), size),
             ("Delassus operator's columns", operator.ncols(), size),
         ])?;
+        expect_symmetric("Delassus operator", &operator)?;
         let singular = |component| ContactError::Indefinite {
             what: "Delassus operator",
             component,
@@ -201,7 +203,7 @@ impl<const D: usize> CondensedProblem<D> {
             .map_err(|component| ContactError::Floating { component })?;
         let free = split::<D>(&(&operator * &self.load));
         let free = free.iter().zip(&self.origin).map(|(w, g)| w + g).collect();
-        LocalProblem::new(BlockMatrix::from_dense(&operator), free, self.laws.clone())
+        LocalProblem::new(BlockMatrix::from_dense(&operator)?, free, self.laws.clone())
     }
 
     /// Parameter α of \[90′\] for contact i \[N/mm\]: the mean stiffness of its own components, so
@@ -456,3 +458,20 @@ mod tests {
         }
     }
 }
+
+    /// One triangle alone would make another problem.
+    #[test]
+    fn an_operator_that_is_not_symmetric_is_refused() {
+        let new = |across: f64| {
+            let w = DMatrix::from_row_slice(2, 2, &[1.0, across, 0.1, 1.0]);
+            CondensedProblem::<2>::from_delassus(w, &[Local::zeros()], vec![coulomb(0.3)])
+        };
+        assert!(new(0.1 + 1e-12).is_ok());
+        match new(5.0) {
+            Err(ContactError::Unsymmetric { at, values, .. }) => {
+                assert_eq!((at, values), ([1, 0], [0.1, 5.0]));
+            }
+            other => panic!("{other:?}"),
+        }
+        assert!(matches!(new(f64::NAN), Err(ContactError::NotFinite { .. })));
+    }

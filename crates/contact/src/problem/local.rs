@@ -25,7 +25,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, SMatrix};
 /// // A rigid block of unit mass on two points, which cannot be told apart: W has rank two of four.
 /// let w = DMatrix::from_fn(4, 4, |i, j| if i % 2 == j % 2 { 1.0 } else { 0.0 });
 /// let q = vec![Local::<2>::new(-1.0, 0.5); 2];
-/// let problem = LocalProblem::new(BlockMatrix::from_dense(&w), q, vec![Coulomb::new(0.3)?; 2])?;
+/// let problem = LocalProblem::new(BlockMatrix::from_dense(&w)?, q, vec![Coulomb::new(0.3)?; 2])?;
 /// let solution = Auto::default().solve(&problem, None)?;
 /// // It slides on, slowed down by the friction of its weight.
 /// assert_eq!(problem.rank(), 2);
@@ -317,8 +317,8 @@ mod tests {
         );
         let q = vec![Local::<2>::new(-1.0, 0.2), Local::<2>::new(0.3, -0.4)];
         let laws = vec![Coulomb::new(0.3).expect("valid"); 2];
-        let problem =
-            LocalProblem::new(BlockMatrix::from_dense(&w), q.clone(), laws).expect("valid");
+        let w = BlockMatrix::from_dense(&w).expect("square");
+        let problem = LocalProblem::new(w, q.clone(), laws).expect("valid");
         let springs = [0.5, 2.0].map(|c| Springs {
             compliance: Local::<2>::new(c, 0.1),
             force: Local::<2>::new(1.0, -2.0 * c),
@@ -337,7 +337,7 @@ mod tests {
     /// The quick reading of the residual is the residual, also where forces run away from the load.
     #[test]
     fn the_size_of_a_residual_is_read_alike() {
-        let w = BlockMatrix::from_dense(&DMatrix::identity(4, 4));
+        let w = BlockMatrix::from_dense(&DMatrix::identity(4, 4)).expect("square");
         let q = vec![Local::<2>::new(-1.0, 0.2), Local::<2>::new(0.3, -0.4)];
         let laws = vec![Coulomb::new(0.3).expect("valid"); 2];
         let problem = LocalProblem::new(w, q, laws).expect("valid");

@@ -233,7 +233,7 @@ mod tests {
                     dense[(k, k)] = 1.0;
                 }
             }
-            let matrix = BlockMatrix::<3>::from_dense(&dense);
+            let matrix = BlockMatrix::<3>::from_dense(&dense).expect("square");
             let Some(mut elimination) = Elimination::new(&matrix) else {
                 return Ok(());
             };
@@ -256,13 +256,14 @@ mod tests {
 
     #[test]
     fn what_is_full_is_left_to_a_dense_factorisation() {
-        let full =
-            |n: usize| BlockMatrix::<2>::from_dense(&DMatrix::from_element(2 * n, 2 * n, 1.0));
+        let full = |n: usize| {
+            BlockMatrix::<2>::from_dense(&DMatrix::from_element(2 * n, 2 * n, 1.0)).expect("square")
+        };
         assert!(Elimination::new(&full(5)).is_some());
         assert!(Elimination::new(&full(50)).is_none());
         // A chain has no fill in the order of its ends.
         let chain = DMatrix::from_fn(200, 200, |i, j| f64::from(u8::from(i.abs_diff(j) <= 1)));
-        let pattern = BlockMatrix::<2>::from_dense(&chain);
+        let pattern = BlockMatrix::<2>::from_dense(&chain).expect("square");
         let elimination = Elimination::new(&pattern).expect("sparse");
         assert_eq!(elimination.blocks.len(), pattern.stored());
     }

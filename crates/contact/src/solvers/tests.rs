@@ -36,7 +36,12 @@ fn problem<const D: usize>(w: &DMatrix<f64>, q: &[Local<D>], mu: f64) -> LocalPr
 
 fn under<const D: usize>(w: &DMatrix<f64>, q: &[Local<D>], law: Friction) -> LocalProblem<D> {
     let laws = vec![law; q.len()];
-    LocalProblem::new(BlockMatrix::from_dense(w), q.to_vec(), laws).expect("valid problem")
+    LocalProblem::new(
+        BlockMatrix::from_dense(w).expect("square"),
+        q.to_vec(),
+        laws,
+    )
+    .expect("valid problem")
 }
 
 /// All laws, of a friction and a limit.
@@ -87,7 +92,8 @@ fn agree<const D: usize>(
     let condensed = CondensedProblem::from_delassus(w.clone(), &q, laws.clone()).expect("regular");
     let reference = ContactSolver::solve(&SemismoothNewton::default(), &condensed, None)
         .map_err(|error| TestCaseError::fail(error.to_string()))?;
-    let problem = LocalProblem::new(BlockMatrix::from_dense(&w), q, laws).expect("valid problem");
+    let problem = LocalProblem::new(BlockMatrix::from_dense(&w).expect("square"), q, laws)
+        .expect("valid problem");
     let scale = (reference.force.iter().map(|t| t.norm())).fold(1.0, f64::max);
     for method in methods::<D>() {
         let solution = solve(&*method, &problem)?;
@@ -404,7 +410,7 @@ fn the_reduction_of_the_global_form_is_that_of_dense_algebra() {
 fn bad_data_is_refused() {
     let one = || vec![Coulomb::new(0.3).expect("valid")];
     let q = |n| vec![Local::<2>::zeros(); n];
-    let identity = || BlockMatrix::<2>::from_dense(&DMatrix::identity(2, 2));
+    let identity = || BlockMatrix::<2>::from_dense(&DMatrix::identity(2, 2)).expect("square");
     use crate::ContactError;
     assert!(matches!(
         LocalProblem::new(identity(), q(2), one()),
