@@ -28,19 +28,25 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// The certificate of displacements u and forces t under the laws.
+    /// The certificate of displacements u and forces t under the laws; where one is no number the
+    /// penetration or the excess is infinite.
+    ///
+    /// # Panics
+    /// If there are not as many displacements and forces as laws.
     pub fn new<const D: usize>(
         laws: &[impl Copy + Into<Friction>],
         u: &[Local<D>],
         t: &[Local<D>],
     ) -> Self {
+        assert_eq!([u.len(), t.len()], [laws.len(); 2], "a pair (u, t) a law");
         let mut certificate = Self::default();
         for ((&law, u), t) in laws.iter().zip(u).zip(t) {
             let law: Friction = law.into();
             let admissible = law.project(t);
             let open = law.admissible(u);
-            certificate.penetration = certificate.penetration.max((open - u).amax());
-            certificate.excess_force = certificate.excess_force.max((t - admissible).norm());
+            let (apart, outside) = (open - u, (t - admissible).norm());
+            certificate.penetration = certificate.penetration.max(largest(&apart));
+            certificate.excess_force = certificate.excess_force.max(largest([&outside]));
             certificate.bipotential_gap += law.b(&-open, &admissible) + admissible.dot(&open);
         }
         certificate
@@ -76,6 +82,23 @@ fn criticality<const D: usize>(
         (i, laws[i].coefficient() * moved.norm())
     };
     contacts.map(ratio).max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Largest absolute value; infinite where there is a NaN, which [`f64::max`] passes over.
+pub(crate) fn largest<'a>(values: impl IntoIterator<Item = &'a f64>) -> f64 {
+    let larger = |most: f64, v: &f64| match v.is_nan() {
+        true => f64::INFINITY,
+        false => most.max(v.abs()),
+    };
+    values.into_iter().fold(0.0, larger)
+}
+
+/// Norm of the natural map at (u, t) \[N\]; infinite where one of the two is no number, which the projection may pass over.
+pub(crate) fn size_of_map<const D: usize>(map: &Local<D>, u: &Local<D>, t: &Local<D>) -> f64 {
+    match u.iter().chain(t).all(|v| v.is_finite()) {
+        true => largest([&map.norm()]),
+        false => f64::INFINITY,
+    }
 }
 
 /// Splits a vector of all components into contacts.
@@ -126,5 +149,24 @@ mod tests {
             &[Local::<2>::new(-1.0, 0.0)],
         );
         assert_eq!((outside.penetration, outside.excess_force), (0.3, 1.0));
+    }
+
+    #[test]
+    fn what_is_no_number_is_not_certified() {
+        let law = [Coulomb::new(0.5).expect("valid")];
+        for k in 0..2 {
+            let mut nan = Local::<2>::zeros();
+            nan[k] = f64::NAN;
+            let certificate = |u, t| Certificate::new(&law, &[u], &[t]);
+            assert_eq!(certificate(nan, Local::zeros()).penetration, f64::INFINITY);
+            assert_eq!(certificate(Local::zeros(), nan).excess_force, f64::INFINITY);
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "a pair (u, t) a law")]
+    fn a_certificate_is_one_of_all_contacts() {
+        let law = [Coulomb::new(0.5).expect("valid"); 2];
+        let _ = Certificate::new(&law, &[Local::<2>::zeros(); 2], &[]);
     }
 }

@@ -34,6 +34,7 @@ pub use tied::{TiedFactor, solve_tied};
 pub use tresca::TrescaFixedPoint;
 pub use uzawa::{Uzawa, uzawa_steps};
 
+use crate::error::{expect_finite, expect_sizes};
 use crate::{Certificate, CondensedProblem, ContactError, LocalProblem};
 use moreau_laws::{Local, Status};
 
@@ -106,7 +107,8 @@ pub trait ContactSolver<const D: usize>: std::fmt::Debug + Send + Sync {
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] with the residual left, [`ContactError::Floating`] where
-    /// the method needs an invertible stiffness, [`ContactError::Singular`].
+    /// the method needs an invertible stiffness, [`ContactError::Singular`]; [`ContactError::Dimension`] of a guess of
+    /// another number of contacts, and [`ContactError::NotFinite`] of a guess or of a solution that is none in numbers.
     fn approach(
         &self,
         problem: &CondensedProblem<D>,
@@ -133,12 +135,35 @@ pub trait ContactSolver<const D: usize>: std::fmt::Debug + Send + Sync {
     }
 }
 
+/// Whether a guess is one of so many contacts, in numbers.
+///
+/// # Errors
+/// [`ContactError::Dimension`], [`ContactError::NotFinite`].
+fn expect_guess<const D: usize>(
+    contacts: usize,
+    guess: Option<&ContactSolution<D>>,
+) -> Result<(), ContactError> {
+    let Some(guess) = guess else { return Ok(()) };
+    let pairs = [&guess.displacement, &guess.irreversible, &guess.force];
+    expect_sizes(pairs.map(|part| ("guess", part.len(), contacts)))?;
+    expect_finite("guess", pairs.into_iter().flatten().flatten())
+}
+
 /// Forces of a guess to start from.
+///
+/// # Errors
+/// As [`expect_guess`].
 fn forces<const D: usize>(
     form: &LocalProblem<D>,
     guess: Option<&ContactSolution<D>>,
-) -> Vec<Local<D>> {
-    local::start(form, guess.map(|g| g.force.as_slice()))
+) -> Result<Vec<Local<D>>, ContactError> {
+    expect_guess(form.contacts(), guess)?;
+    Ok(local::start(form, guess.map(|g| g.force.as_slice())))
+}
+
+/// Whether a residual is within a target; what is no number never is, nor is anything within a target that has overflowed.
+fn is_within(residual: f64, target: f64) -> bool {
+    target.is_finite() && residual <= target
 }
 
 /// When a method on the form u = W t + q of a condensed problem has arrived.
@@ -182,7 +207,7 @@ impl<'a, const D: usize> Goal<'a, D> {
     ) -> Option<Result<ContactSolution<D>, ContactError>> {
         let residual = self.problem.residual(u, t);
         let target = self.target(t, u);
-        if residual <= target.max(self.enough) {
+        if is_within(residual, target.max(self.enough)) {
             return Some(Ok(ContactSolution {
                 displacement: u.to_vec(),
                 motion: self.problem.relative(u),
@@ -191,7 +216,7 @@ impl<'a, const D: usize> Goal<'a, D> {
                 status: self.problem.statuses(u, t),
                 iterations,
                 residual,
-                exact: residual <= target,
+                exact: is_within(residual, target),
             }));
         }
         if residual < (1.0 - PATIENCE) * self.least.0 {
@@ -200,11 +225,14 @@ impl<'a, const D: usize> Goal<'a, D> {
         let idle = (iterations - self.least.1) as f64;
         let limit = self.tolerance.iterations;
         let ends = iterations >= limit || idle > PATIENCE * limit as f64;
-        ends.then_some(Err(ContactError::NotConverged {
-            solver,
-            iterations,
-            residual,
-            tolerance: target,
+        ends.then_some(Err(match residual.is_finite() && target.is_finite() {
+            true => ContactError::NotConverged {
+                solver,
+                iterations,
+                residual,
+                tolerance: target,
+            },
+            false => ContactError::NotFinite { what: "solution" },
         }))
     }
 }

@@ -226,7 +226,6 @@ mod tests {
         let twice = BlockMatrix::<2>::from_entries(1, [(0, 1, 2.0), (1, 1, 1.0), (0, 1, 3.0)]);
         assert_eq!(twice.diagonal(0)[(0, 1)], 5.0);
     }
-}
 
     /// What does not fit into blocks is not left out.
     #[test]
@@ -240,3 +239,4 @@ mod tests {
         let empty = BlockMatrix::<2>::from_dense(&DMatrix::zeros(0, 0)).expect("square");
         assert_eq!(empty.contacts(), 0);
     }
+}

@@ -1,6 +1,6 @@
 //! The condensed contact problem t = S (u − g) − f and its residual; not how it is solved.
 
-use super::{BlockMatrix, LocalProblem, criticality, split, stack, statuses};
+use super::{BlockMatrix, LocalProblem, criticality, size_of_map, split, stack, statuses};
 use crate::ContactError;
 use crate::error::{expect_finite, expect_sizes, expect_symmetric};
 use moreau_algebra::DenseCholesky;
@@ -215,11 +215,14 @@ impl<const D: usize> CondensedProblem<D> {
             / D as f64
     }
 
-    /// Largest norm over the contacts of the natural map t − proj(t − α ũ), \[90′\] \[N\].
+    /// Largest norm over the contacts of the natural map t − proj(t − α ũ), \[90′\] \[N\]; infinite where a displacement or a
+    /// force is no number.
     pub fn residual(&self, u: &[Local<D>], t: &[Local<D>]) -> f64 {
-        (0..self.contacts())
-            .map(|i| self.laws[i].natural_map(&u[i], &t[i], self.alpha(i)).norm())
-            .fold(0.0, f64::max)
+        let size = |i: usize| {
+            let map = self.laws[i].natural_map(&u[i], &t[i], self.alpha(i));
+            size_of_map(&map, &u[i], &t[i])
+        };
+        (0..self.contacts()).map(size).fold(0.0, f64::max)
     }
 
     /// Size of the forces in play, against which a residual is judged \[N\]: the largest of the
@@ -457,7 +460,6 @@ mod tests {
             assert_eq!(problem.expect("valid").is_unstable(), unstable, "{x}");
         }
     }
-}
 
     /// One triangle alone would make another problem.
     #[test]
@@ -475,3 +477,4 @@ mod tests {
         }
         assert!(matches!(new(f64::NAN), Err(ContactError::NotFinite { .. })));
     }
+}

@@ -44,7 +44,7 @@ impl<const D: usize, S: LocalSolver<D>> ContactSolver<D> for Dual<S> {
             iterations: usize::MAX,
         };
         let mut goal = Goal::new(problem, own, enough);
-        let mut start = forces(&form, guess);
+        let mut start = forces(&form, guess)?;
         let mut asked = own
             .relative
             .max(MARGIN * enough / problem.force_scale(&start));
@@ -62,6 +62,9 @@ impl<const D: usize, S: LocalSolver<D>> ContactSolver<D> for Dual<S> {
                 return end;
             }
             let (residual, target) = (problem.residual(u, t), goal.target(t, u).max(enough));
+            if !(residual.is_finite() && target.is_finite()) {
+                return Err(ContactError::NotFinite { what: "solution" });
+            }
             if failed || rounds == ROUNDS {
                 return Err(ContactError::NotConverged {
                     solver: point.solver,

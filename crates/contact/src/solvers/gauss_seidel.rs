@@ -35,7 +35,7 @@ impl<const D: usize> ContactSolver<D> for GaussSeidel {
     ) -> Result<ContactSolution<D>, ContactError> {
         let form = problem.delassus()?;
         let goal = Goal::new(problem, self.tolerance, enough);
-        Self::extrapolated(&form, forces(&form, guess), goal)
+        Self::extrapolated(&form, forces(&form, guess)?, goal)
     }
 }
 

@@ -100,7 +100,8 @@ pub trait LocalSolver<const D: usize>: std::fmt::Debug + Send + Sync {
     /// [`Residual::size`] that the method stops at of itself.
     fn tolerance(&self) -> f64;
 
-    /// Solves a problem to a residual of `tolerance`, starting from the forces `guess` if there are any.
+    /// Solves a problem to a residual of `tolerance`, starting from the forces `guess` if there are any: those of another
+    /// number of contacts, or that are no numbers, are none to start from.
     ///
     /// # Errors
     /// [`Unsolved`] with the best point met and the reason for the end.
@@ -129,8 +130,11 @@ pub(super) fn start<const D: usize>(
     problem: &LocalProblem<D>,
     guess: Option<&[Local<D>]>,
 ) -> Vec<Local<D>> {
+    let is_a_start = |guess: &[Local<D>]| {
+        guess.len() == problem.contacts() && guess.iter().flatten().all(|r| r.is_finite())
+    };
     match guess {
-        Some(guess) if guess.len() == problem.contacts() => guess.to_vec(),
+        Some(guess) if is_a_start(guess) => guess.to_vec(),
         _ => vec![Local::zeros(); problem.contacts()],
     }
 }

@@ -5,8 +5,9 @@ mod linearised;
 use self::linearised::Row;
 use super::{
     Auto, ContactSolution, ContactSolver, GaussSeidel, Goal, LocalSolver, Tolerance, Uzawa,
+    expect_guess, is_within,
 };
-use crate::problem::statuses;
+use crate::problem::{size_of_map, statuses};
 use crate::{CondensedProblem, ContactError, Springs};
 use moreau_laws::{Friction, Local};
 use nalgebra::{DVector, SMatrix};
@@ -70,7 +71,7 @@ impl<const D: usize> ContactSolver<D> for SemismoothNewton {
         let next = newton.iterate(add(&here, &linearised::solve(problem, rows)?, 1.0));
         let forces = next.t.clone();
         let target = newton.part * self.tolerance.relative * problem.force_scale(&next.t);
-        let exact = next.residual <= target.max(problem.rounding(&next.x));
+        let exact = is_within(next.residual, target.max(problem.rounding(&next.x)));
         let mut solution = newton.solution(next, 1, exact);
         if !exact {
             // In balance, as those of the law are not.
@@ -117,6 +118,7 @@ pub(super) fn newton<const D: usize>(
     guess: Option<&ContactSolution<D>>,
     (tolerance, enough): (Tolerance, f64),
 ) -> Result<ContactSolution<D>, ContactError> {
+    expect_guess(problem.contacts(), guess)?;
     let springs: Vec<Springs<D>> = (problem.previous().iter().zip(problem.laws()))
         .map(|(previous, law)| Springs::of_penalty(compliance, *previous, law))
         .collect();
@@ -135,11 +137,14 @@ pub(super) fn newton<const D: usize>(
             part: PARTS[part % PARTS.len()],
         };
         let mut now = newton.iterate(start.clone());
+        if !now.residual.is_finite() {
+            return Err(ContactError::NotFinite { what: "solution" });
+        }
         for _ in 0..ATTEMPT {
             // The residual grows with α, at most in proportion: this bounds it for the common α.
             let target = newton.part * tolerance.relative * problem.force_scale(&now.t);
             let target = target.max(problem.rounding(&now.x) + newton.rounding_of_sums(&now));
-            if now.residual <= target.max(newton.part * enough) {
+            if is_within(now.residual, target.max(newton.part * enough)) {
                 let exact = now.residual <= target;
                 return Ok(newton.solution(now, iterations, exact));
             }
@@ -217,7 +222,8 @@ impl<const D: usize> Newton<'_, D> {
         let map: Vec<Local<D>> = (0..u.len())
             .map(|i| p.laws()[i].natural_map(&irreversible[i], &t[i], self.alpha(i)))
             .collect();
-        let residual = map.iter().map(|g| g.norm()).fold(0.0, f64::max);
+        let size = |i: usize| size_of_map(&map[i], &irreversible[i], &t[i]);
+        let residual = (0..map.len()).map(size).fold(0.0, f64::max);
         // Divided by α a square is an energy: contacts of unlike stiffness weigh alike.
         let energy = |(i, g): (usize, &Local<D>)| g.norm_squared() / self.alpha(i);
         let merit = map.iter().enumerate().map(energy).sum();

@@ -471,3 +471,81 @@ fn forces_that_the_bodies_hardly_tell_apart_are_soon_found() {
         );
     }
 }
+
+/// Every method, of both forms, on a condensed problem.
+fn all_methods() -> Vec<Box<dyn ContactSolver<2>>> {
+    vec![
+        Box::new(SemismoothNewton::default()),
+        Box::new(Penalty::new(1e3, 1e3).expect("valid")),
+        Box::new(Uzawa::default()),
+        Box::new(GaussSeidel::default()),
+        Box::new(Dual(Auto::default())),
+    ]
+}
+
+/// One contact pressed and dragged.
+fn pressed(stiffness: f64, load: f64) -> CondensedProblem<2> {
+    let s = DMatrix::from_row_slice(2, 2, &[1.0, 0.9, 0.9, 1.0]) * stiffness;
+    let f = nalgebra::DVector::from_vec(vec![-load, load]);
+    let law = vec![Coulomb::new(0.3).expect("valid")];
+    let zero = vec![Local::zeros()];
+    CondensedProblem::new(s, f, vec![Local::<2>::new(10.0, 10.0)], law, zero).expect("valid")
+}
+
+#[test]
+fn a_guess_that_is_none_is_refused() {
+    let problem = pressed(1.0, 12.0);
+    for solver in all_methods() {
+        let found = solver.solve(&problem, None).expect("solvable");
+        for k in 0..2 {
+            let mut guess = found.clone();
+            guess.displacement[0][k] = f64::NAN;
+            guess.force[0][k] = f64::NAN;
+            let solution = solver.solve(&problem, Some(&guess));
+            let refused = matches!(solution, Err(ContactError::NotFinite { what: "guess" }));
+            assert!(refused, "{solver:?}: {solution:?}");
+        }
+        let mut guess = found.clone();
+        guess.force.push(Local::zeros());
+        let solution = solver.solve(&problem, Some(&guess));
+        assert!(
+            matches!(
+                solution,
+                Err(ContactError::Dimension {
+                    found: 2,
+                    expected: 1,
+                    ..
+                })
+            ),
+            "{solver:?}: {solution:?}"
+        );
+    }
+}
+
+/// Data that overflow, and a proximal term that is no number.
+#[test]
+fn a_residual_that_is_not_finite_is_never_accepted() {
+    let mut held = pressed(1.0, 12.0);
+    held.hold(f64::NAN);
+    for solver in all_methods() {
+        assert!(solver.solve(&held, None).is_err(), "{solver:?}");
+        for size in [1e160, 1e308] {
+            let solution = solver.solve(&pressed(size, 1.2 * size), None);
+            let is_refused = matches!(solution, Err(ContactError::NotFinite { .. }));
+            assert!(is_refused, "{solver:?}, {size:e}: {solution:?}");
+        }
+    }
+}
+
+/// A projection may pass over what is no number; the residual does not.
+#[test]
+fn the_residual_of_what_is_no_number_is_infinite() {
+    let problem = pressed(1.0, 12.0);
+    let zero = [Local::<2>::zeros()];
+    for k in 0..2 {
+        let mut nan = zero;
+        nan[0][k] = f64::NAN;
+        assert_eq!(problem.residual(&nan, &zero), f64::INFINITY);
+        assert_eq!(problem.residual(&zero, &nan), f64::INFINITY);
+    }
+}

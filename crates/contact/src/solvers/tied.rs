@@ -10,7 +10,7 @@ mod step;
 #[cfg(test)]
 mod tests;
 
-use super::{ContactSolution, Tolerance};
+use super::{ContactSolution, Tolerance, expect_guess, is_within};
 use crate::ContactError;
 use crate::problem::split;
 use crate::tied::TiedProblem;
@@ -79,13 +79,15 @@ struct At<const D: usize> {
 /// Where the statuses leave the structure a rigid motion it is one of the solutions.
 ///
 /// # Errors
-/// [`ContactError::NotConverged`], and [`ContactError::Singular`] where nothing holds the structure.
+/// [`ContactError::NotConverged`], and [`ContactError::Singular`] where nothing holds the structure; those of a guess as
+/// [`ContactSolver::approach`](super::ContactSolver::approach).
 pub fn solve_tied<const D: usize>(
     problem: &mut TiedProblem<'_, D>,
     guess: Option<&ContactSolution<D>>,
     (tolerance, enough): (Tolerance, f64),
     held: &mut TiedFactor<D>,
 ) -> Result<(ContactSolution<D>, DVector<f64>), ContactError> {
+    expect_guess(problem.friction.len(), guess)?;
     let cold = guess.is_none();
     let mut guess = Guess::new(problem, guess);
     let mut newton = Tied {
@@ -103,7 +105,7 @@ pub fn solve_tied<const D: usize>(
     for iterations in 0..=tolerance.iterations {
         made = iterations;
         let target = newton.target(&now, tolerance, progress.stalls(now.residual));
-        if now.residual <= target.max(PARTS[0] * enough) {
+        if is_within(now.residual, target.max(PARTS[0] * enough)) {
             if newton.part == 0 && newton.rounds_off(&now) > ROUNDED * target {
                 now = newton.answered(now.z);
                 continue;
@@ -194,6 +196,9 @@ impl<const D: usize> Tied<'_, '_, D> {
     fn failure(&self, now: &At<D>, iterations: usize, tolerance: Tolerance) -> ContactError {
         if !self.factor.propped.is_empty() {
             return ContactError::Singular;
+        }
+        if !now.residual.is_finite() {
+            return ContactError::NotFinite { what: "solution" };
         }
         ContactError::NotConverged {
             solver: "semismooth Newton through the factor",

@@ -39,7 +39,7 @@ impl<const D: usize> ContactSolver<D> for Uzawa {
     ) -> Result<ContactSolution<D>, ContactError> {
         let form = problem.delassus()?;
         let mut goal = Goal::new(problem, self.tolerance, enough);
-        Self::corrections(&form, forces(&form, guess), |k, t, u| {
+        Self::corrections(&form, forces(&form, guess)?, |k, t, u| {
             goal.judge(NAME, k, t, u)
         })
     }

@@ -2,7 +2,7 @@
 //! goes on.
 
 use super::{At, Guess, PARTS, ROUNDED, Tied};
-use crate::problem::stack;
+use crate::problem::{size_of_map, stack};
 use crate::solvers::Tolerance;
 use moreau_laws::{Local, Status};
 use nalgebra::{DVector, SMatrix};
@@ -52,7 +52,7 @@ impl<const D: usize> Tied<'_, '_, D> {
             let springs = &p.springs[i];
             let irreversible = u + springs.elongation(&t);
             let map = p.friction[i].natural_map(&irreversible, &t, self.alpha(i));
-            at.residual = at.residual.max(map.norm());
+            at.residual = at.residual.max(size_of_map(&map, &irreversible, &t));
             at.merit += map.norm_squared() / self.alpha(i);
             at.u.push(u);
             at.t.push(t);
