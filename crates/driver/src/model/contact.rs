@@ -188,15 +188,22 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         Ok(())
     }
 
+    /// The contact added last, which a datum is about.
+    fn expect_contact(&self, what: &str, value: f64) -> Result<&Contact, ModelError> {
+        let last = self.contacts.last();
+        last.ok_or_else(|| out_of_range(what, value, "a contact before it, which it is about"))
+    }
+
     /// Lets the nodes of the contact added last touch at a distance from the tool \[mm\]: that of a
     /// coating, or of half a sheet; negative, to lie into it.
     ///
     /// # Errors
-    /// [`ModelError::OutOfRange`] for a number that is not finite.
+    /// [`ModelError::OutOfRange`] for a number that is not finite, or before any contact.
     pub fn gap_offset(mut self, offset: f64) -> Result<Self, ModelError> {
         if !offset.is_finite() {
             return Err(out_of_range("gap offset", offset, "a finite number"));
         }
+        self.expect_contact("gap offset", offset)?;
         let last = self.contacts.len();
         for point in self.points.iter_mut().filter(|p| p.contact + 1 == last) {
             point.offset += offset;
@@ -210,7 +217,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     /// [`frame`](moreau_contact::frame).
     ///
     /// # Errors
-    /// [`ModelError::OutOfRange`] for an axis of no length, [`ModelError::NormalAxis`] for one that is
+    /// [`ModelError::OutOfRange`] for an axis of no length, or before any contact, [`ModelError::NormalAxis`] for one that is
     /// normal to the surface somewhere.
     pub fn along(mut self, axis: [f64; D]) -> Result<Self, ModelError> {
         let axis = SVector::from(axis);
@@ -223,9 +230,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
             ));
         }
         let axis = axis / length;
-        let Some(last) = self.contacts.last() else {
-            return Ok(self);
-        };
+        let last = self.expect_contact("axis of friction", length)?;
         let facets = self.mesh.facet_group(&last.surface)?;
         for share in self.mesh.facet_shares(facets, &self.hypothesis) {
             let normal = SVector::from(share.normal);
@@ -250,7 +255,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     /// nor is strained. Between bodies the gap is that of the virgin state.
     ///
     /// # Errors
-    /// [`ModelError::OutOfRange`] for a tolerance that is negative or not finite.
+    /// [`ModelError::OutOfRange`] for a tolerance that is negative or not finite, or before any contact.
     pub fn adjust(mut self, tolerance: f64) -> Result<Self, ModelError> {
         if !(tolerance >= 0.0 && tolerance.is_finite()) {
             let expected = "a non-negative number";
@@ -260,6 +265,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 expected,
             ));
         }
+        self.expect_contact("tolerance of adjusted gaps", tolerance)?;
         let count = self.contacts.len();
         let pair = self.contacts.last_mut().filter(|c| c.pairing.is_some());
         if let Some(contact) = pair {

@@ -413,6 +413,20 @@ fn gap_offsets_and_adjusted_gaps_move_nothing() {
     assert!(model(0.0).adjust(-1.0).is_err());
 }
 
+/// What is said of the contact added last is said of one.
+#[test]
+fn nothing_is_said_of_a_contact_that_there_is_not() {
+    let model = || Model::new(mesh([6, 2]), PlaneStrain::default());
+    for refused in [
+        model().gap_offset(0.3),
+        model().adjust(0.02),
+        model().along([1.0, 0.0]),
+    ] {
+        let error = refused.err().expect("refused").to_string();
+        assert!(error.contains("a contact before it"), "{error}");
+    }
+}
+
 /// Bodies that overlap a little, or do not quite meet, and whose contact is adjusted, touch without stress: pressed
 /// together they carry what bodies do that meet.
 #[test]
