@@ -295,6 +295,16 @@ pub enum ModelError {
         /// The second value \[mm\].
         second: f64,
     },
+    /// Two conditions that say how far a tool moves or turns.
+    #[error("step {step:?} says twice how far tool {tool:?} {what}: both are totals, remove one")]
+    TwoMotions {
+        /// The step.
+        step: String,
+        /// The tool.
+        tool: String,
+        /// What it does: moves or turns.
+        what: &'static str,
+    },
     /// Conditions at a node that prescribe its displacement along a direction differently.
     #[error(
         "step {step:?} prescribes the displacement of node {node} along {} as {first} and as {second} mm, by the \

@@ -9,7 +9,7 @@ use crate::vector::directions::Directions;
 use crate::vector::subspace::Subspace;
 use moreau_mesh::{Facet, Mesh};
 use nalgebra::SVector;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A coordinate direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -150,6 +150,8 @@ pub struct Step<const D: usize> {
     pub(crate) conditions: Vec<Condition<D>>,
     /// Of conditions by their number.
     pub(crate) amplitudes: BTreeMap<usize, Amplitude>,
+    /// How many conditions were to have an amplitude where there were not as many.
+    missing: Option<usize>,
 }
 
 impl<const D: usize> Step<D> {
@@ -159,6 +161,7 @@ impl<const D: usize> Step<D> {
             name: name.into(),
             conditions: Vec::new(),
             amplitudes: BTreeMap::new(),
+            missing: None,
         }
     }
 
@@ -244,7 +247,7 @@ impl<const D: usize> Step<D> {
         })
     }
 
-    /// Moves a tool by a total translation from its first position \[mm\].
+    /// Moves a tool by a total translation from its first position \[mm\], once in a step.
     pub fn tool(self, name: &str, displacement: [f64; D]) -> Self {
         self.with(Condition::Tool {
             name: name.into(),
@@ -253,7 +256,7 @@ impl<const D: usize> Step<D> {
     }
 
     /// Turns a tool about its reference point by a total angle \[rad\] since its first position:
-    /// counter-clockwise in the plane, and about `axis` in space, which has any length.
+    /// counter-clockwise in the plane, and about `axis` in space, which has any length. Once in a step.
     pub fn turn(self, name: &str, axis: [f64; 3], angle: f64) -> Self {
         self.with(Condition::Turn {
             name: name.into(),
@@ -298,9 +301,11 @@ impl<const D: usize> Step<D> {
     /// from 0 to 1, and the share of the value that acts then, linear in between. The totals at the end of the step
     /// are the last shares. An increment ends at every row.
     ///
-    /// A step starts at what held before: the first row says how much of the value that was.
+    /// A step starts at what held before: the first row says how much of the value that was. A step in which there are
+    /// fewer conditions is refused where it begins.
     pub fn over(mut self, last: usize, rows: &[[f64; 2]]) -> Self {
         let all = self.conditions.len();
+        self.missing = self.missing.or((last > all).then_some(last));
         let amplitude = Amplitude::new(rows);
         let of = all.saturating_sub(last)..all;
         self.amplitudes.extend(of.map(|k| (k, amplitude.clone())));
@@ -326,6 +331,7 @@ impl<const D: usize> Step<D> {
             name: self.name.clone(),
             conditions: self.conditions.iter().enumerate().map(scaled).collect(),
             amplitudes: BTreeMap::new(),
+            missing: self.missing,
         }
     }
 
@@ -342,8 +348,33 @@ impl<const D: usize> Step<D> {
         ]
     }
 
-    /// Whether all amplitudes are such.
+    /// Whether all amplitudes are such, of conditions that there are, and no tool is told twice where to go.
     pub(crate) fn check(&self) -> Result<(), ModelError> {
+        if let Some(last) = self.missing {
+            return Err(ModelError::OutOfRange {
+                what: format!(
+                    "conditions in step {:?} with an amplitude, their number",
+                    self.name
+                ),
+                value: last as f64,
+                expected: "at most those before it",
+            });
+        }
+        let mut told = BTreeSet::new();
+        for condition in &self.conditions {
+            let (tool, what) = match condition {
+                Condition::Tool { name, .. } => (name, "moves"),
+                Condition::Turn { name, .. } => (name, "turns"),
+                _ => continue,
+            };
+            if !told.insert((tool, what)) {
+                return Err(ModelError::TwoMotions {
+                    step: self.name.clone(),
+                    tool: tool.clone(),
+                    what,
+                });
+            }
+        }
         let mut all = self.amplitudes.values();
         all.try_for_each(|amplitude| amplitude.check(&self.name))
     }
@@ -597,6 +628,44 @@ impl<const D: usize> Loading<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The second would take the place of the first, or add to it, where both are totals.
+    #[test]
+    fn a_tool_is_told_once_where_to_go() {
+        let step = || Step::<2>::new("press");
+        let axis = [0.0, 0.0, 1.0];
+        let moved = || step().tool("punch", [0.0, -0.1]).tool("die", [0.0, 0.1]);
+        let whole = moved().turn("punch", axis, 0.1).turn("die", axis, 0.1);
+        assert_eq!(whole.check(), Ok(()));
+        let twice = [
+            (moved().tool("punch", [0.1, 0.0]), "moves"),
+            (whole.turn("punch", axis, 0.2), "turns"),
+        ];
+        for (step, expected) in twice {
+            match step.check() {
+                Err(ModelError::TwoMotions { tool, what, .. }) => {
+                    assert_eq!((tool.as_str(), what), ("punch", expected));
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn amplitudes_are_those_of_conditions_that_there_are() {
+        let rows = [[0.0, 0.0], [1.0, 1.0]];
+        let step = || Step::<2>::new("press").fix("left", &[Axis::X, Axis::Y]);
+        assert_eq!(step().over(2, &rows).check(), Ok(()));
+        for refused in [
+            step().over(3, &rows),
+            step().over(3, &rows).fix("top", &[Axis::X]),
+        ] {
+            match refused.check() {
+                Err(ModelError::OutOfRange { value, .. }) => assert_eq!(value, 3.0),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
 
     #[test]
     fn directions_have_any_length_but_none() {

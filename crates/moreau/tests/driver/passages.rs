@@ -22,10 +22,14 @@ fn above(height: f64, radius: f64) -> Driver<2> {
     Driver::new(model, Settings::default()).expect("valid")
 }
 
-fn down(by: f64) -> Step<2> {
-    Step::new("down")
+fn to(moved: [f64; 2]) -> Step<2> {
+    Step::new("to")
         .fix("b.bottom", &[Axis::X, Axis::Y])
-        .tool("t", [0.0, -by])
+        .tool("t", moved)
+}
+
+fn down(by: f64) -> Step<2> {
+    to([0.0, -by])
 }
 
 /// Into the block from above, not out of its far side: the increment is cut as often as it takes.
@@ -77,7 +81,8 @@ fn a_way_through_the_air_is_not_cut() {
 fn a_tool_that_slides_along_the_surface_is_not_cut() {
     let mut driver = above(0.0, 10.0);
     driver.run(&down(0.5), 2, |_, _| {}).expect("converges");
-    let along = down(0.0).tool("t", [2.0, -0.5]);
-    let reports = driver.run(&along, 1, |_, _| {}).expect("converges");
+    let reports = driver
+        .run(&to([2.0, -0.5]), 1, |_, _| {})
+        .expect("converges");
     assert_eq!((reports.len(), reports[0].cuts), (1, 0));
 }
