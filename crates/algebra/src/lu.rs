@@ -8,7 +8,7 @@ use faer::{MatMut, MatRef, Par};
 use nalgebra::{DMatrix, DVector};
 
 /// Pivots below this part of the largest are rounding: the matrix is singular.
-const SINGULAR: f64 = 1e-14;
+pub(crate) const SINGULAR: f64 = 1e-14;
 
 /// L U = P A with partial pivoting.
 pub struct Lu {
@@ -24,6 +24,9 @@ pub struct Lu {
 
 impl Lu {
     /// Factorises a square matrix; `None` if it is singular to rounding or holds NaN.
+    ///
+    /// # Panics
+    /// If it is not square.
     pub fn new(mut a: DMatrix<f64>) -> Option<Self> {
         let n = a.nrows();
         let (mut forward, mut inverse) = (vec![0usize; n], vec![0usize; n]);
@@ -59,6 +62,9 @@ impl Lu {
     }
 
     /// x of A x = b.
+    ///
+    /// # Panics
+    /// If b has not as many rows as A.
     pub fn solve(&mut self, mut b: DVector<f64>) -> DVector<f64> {
         let n = b.len();
         let factors = MatRef::from_column_major_slice(self.factors.as_slice(), n, n);
