@@ -21,6 +21,9 @@ pub struct DenseCholesky {
 impl DenseCholesky {
     /// Factorises a symmetric matrix, of which the lower triangle is read; `None` if it is not
     /// positive definite.
+    ///
+    /// # Panics
+    /// If it is not square.
     pub fn new(mut a: DMatrix<f64>) -> Option<Self> {
         let n = a.nrows();
         let request = factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, Default::default());
@@ -50,6 +53,9 @@ impl DenseCholesky {
     }
 
     /// X ← L⁻¹ X.
+    ///
+    /// # Panics
+    /// If it has not as many rows as A.
     pub fn forward(&self, x: &mut DMatrix<f64>) {
         let (rows, columns) = x.shape();
         triangular_solve::solve_lower_triangular_in_place(
@@ -60,12 +66,18 @@ impl DenseCholesky {
     }
 
     /// x ← L⁻¹ x.
+    ///
+    /// # Panics
+    /// If it has not as many rows as A.
     pub fn forward_one(&self, x: &mut DVector<f64>) {
         // L is regular: its pivots are positive.
         self.factor.solve_lower_triangular_mut(x);
     }
 
     /// x ← L⁻ᵀ x.
+    ///
+    /// # Panics
+    /// If it has not as many rows as A.
     pub fn backward_one(&self, x: &mut DVector<f64>) {
         self.factor.tr_solve_lower_triangular_mut(x);
     }
@@ -83,6 +95,9 @@ pub struct DenseLdlt {
 
 impl DenseLdlt {
     /// Factorises a symmetric matrix, of which the lower triangle is read; `None` if it holds what is not finite.
+    ///
+    /// # Panics
+    /// If it is not square.
     pub fn new(mut a: DMatrix<f64>) -> Option<Self> {
         if !a.iter().all(|x| x.is_finite()) {
             return None;
@@ -137,6 +152,9 @@ impl DenseLdlt {
     }
 
     /// x ← A⁻¹ x; no numbers where A is singular.
+    ///
+    /// # Panics
+    /// If it has not as many rows as A.
     pub fn solve(&self, x: &mut DVector<f64>) {
         let n = x.len();
         let factor = MatRef::from_column_major_slice(self.factor.as_slice(), n, n);

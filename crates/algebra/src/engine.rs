@@ -160,18 +160,21 @@ pub trait Engine: fmt::Debug + Send + Sync {
     fn schur(&self) -> Result<DMatrix<f64>, EngineError>;
 }
 
-/// Whether so many values are those of a pattern.
+/// Whether so many values are those of a pattern, and numbers.
 pub(crate) fn check_values(values: &[f64], pattern: &Pattern) -> Result<(), EngineError> {
     let (found, expected) = (values.len(), pattern.entries());
     let what = "values";
-    if found == expected {
-        Ok(())
-    } else {
-        Err(EngineError::Length {
+    if found != expected {
+        return Err(EngineError::Length {
             what,
             found,
             expected,
-        })
+        });
+    }
+    let is_finite = |j: &usize| values[pattern.range(*j)].iter().all(|v| v.is_finite());
+    match (0..pattern.size()).find(|j| !is_finite(j)) {
+        Some(column) => Err(EngineError::NotFinite { column }),
+        None => Ok(()),
     }
 }
 

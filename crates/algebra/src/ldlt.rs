@@ -114,7 +114,7 @@ impl Ldlt {
 
     /// Eliminates all but the kept unknowns.
     fn eliminate(&mut self, values: &[f64], room: &mut Room) -> Result<Inertia, EngineError> {
-        self.scale = scales(&self.symbolic.pattern, values)?;
+        self.scale = scales(&self.symbolic.pattern, values);
         self.inner.clear();
         let mut known = Pivots::of(self.size());
         let mut left: Vec<Vec<Left>> = Vec::new();
@@ -334,7 +334,7 @@ const ROUNDS: usize = 16;
 
 /// Powers of two by which rows and columns are multiplied, after which the largest entry of a row is about 1
 /// (D. Ruiz, RAL-TR-2001-034). A row of zeros keeps its scale.
-fn scales(pattern: &Pattern, values: &[f64]) -> Result<Vec<f64>, EngineError> {
+fn scales(pattern: &Pattern, values: &[f64]) -> Vec<f64> {
     let size = pattern.size();
     let mut scale = vec![1.0; size];
     for _ in 0..ROUNDS {
@@ -342,9 +342,6 @@ fn scales(pattern: &Pattern, values: &[f64]) -> Result<Vec<f64>, EngineError> {
         for j in 0..size {
             let range = pattern.range(j);
             for (&i, v) in pattern.rows()[range.clone()].iter().zip(&values[range]) {
-                if !v.is_finite() {
-                    return Err(EngineError::NotFinite { column: j });
-                }
                 let i = i as usize;
                 let scaled = (scale[i] * v * scale[j]).abs();
                 largest[i] = largest[i].max(scaled);
@@ -363,7 +360,7 @@ fn scales(pattern: &Pattern, values: &[f64]) -> Result<Vec<f64>, EngineError> {
             }
         }
     }
-    Ok(scale)
+    scale
 }
 
 /// The power of two at or below a positive number.
