@@ -124,6 +124,21 @@ fn names_that_do_not_exist_name_the_nearest() {
         "on = \"punch\"",
         &["holds facets", "a body"],
     );
+    // Shared by the nodes of a body a force would depend on the size of its cells.
+    let load = |on: &str| format!("increments = 20\nload = [{{ on = \"{on}\", force = [0, -9] }}]");
+    says(
+        "increments = 20",
+        &load("block"),
+        "force = [0, -9]",
+        &[
+            "\"block\" holds cells, expected a group of facets",
+            "`body-force`",
+        ],
+    );
+    for on in ["punch", "block.right"] {
+        let out = shown("increments = 20", &load(on));
+        assert!(!out.contains("holds"), "{out}");
+    }
     says(
         "\"force.punch.y\"",
         "\"force.pnch.y\"",

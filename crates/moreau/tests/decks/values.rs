@@ -94,6 +94,23 @@ fn values_out_of_their_range_are_pointed_at() {
         "[10, 0]",
         &["0 cells along y"],
     );
+    let grid = "x = [0, 50]\ny = [0, 20]\ncells = [10, 2]";
+    let lines = |cells: &str| {
+        format!("x = {{ lines = [0, 10, 25, 50] }}\ny = [0, 20]\ncells = [{cells}, 2]")
+    };
+    says(
+        grid,
+        &lines("400"),
+        "cells",
+        &[
+            "400 cells along x, expected the 3 between its lines",
+            "0 where grid lines",
+        ],
+    );
+    for cells in ["0", "3"] {
+        let out = shown(grid, &lines(cells));
+        assert!(!out.contains("cells along"), "{out}");
+    }
     says(
         "cells = [10, 2]",
         "cells = [99999, 9999]",

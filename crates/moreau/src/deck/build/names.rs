@@ -12,6 +12,8 @@ enum Needed {
     Cells,
     Facets,
     Nodes,
+    /// Facets or nodes: shared by the nodes of a body a force would be larger where its cells are smaller.
+    Loaded,
 }
 
 pub(super) fn check<const D: usize>(
@@ -100,11 +102,10 @@ fn used<const D: usize>(
 fn needed(action: &Action) -> Option<Needed> {
     match action {
         Action::Tool(..) | Action::Push(..) | Action::Moment(_) => None,
-        Action::Fix(_)
-        | Action::FixAlong(_)
-        | Action::Move(_)
-        | Action::MoveAlong(..)
-        | Action::Force(_) => Some(Needed::Nodes),
+        Action::Fix(_) | Action::FixAlong(_) | Action::Move(_) | Action::MoveAlong(..) => {
+            Some(Needed::Nodes)
+        }
+        Action::Force(_) => Some(Needed::Loaded),
         Action::Pressure(_) | Action::Traction(_) => Some(Needed::Facets),
         Action::BodyForce(_) | Action::Temperature(_) => Some(Needed::Cells),
     }
@@ -173,6 +174,7 @@ fn group<const D: usize>(
         Needed::Cells => groups.mesh.cell_group(n).is_ok(),
         Needed::Facets => groups.mesh.facet_group(n).is_ok(),
         Needed::Nodes => true,
+        Needed::Loaded => groups.mesh.facet_group(n).is_ok() || groups.mesh.cell_group(n).is_err(),
     };
     if !groups.has(&name.value) {
         let near = did_you_mean(&name.value, groups.names().filter(|n| fits(n)));
@@ -183,6 +185,9 @@ fn group<const D: usize>(
     } else if !fits(&name.value) {
         let what = match needed {
             Needed::Cells => "a group of cells (a body)",
+            Needed::Loaded => {
+                "a group of facets (a side of a body) or of nodes: it is `body-force` that loads a body"
+            }
             _ => "a group of facets (a side of a body)",
         };
         let found = match groups.mesh.cell_group(&name.value).is_ok() {

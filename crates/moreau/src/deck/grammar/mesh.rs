@@ -244,6 +244,18 @@ fn grid(
         );
         return None;
     }
+    let cells = lines.value.len() - 1;
+    if let Some(count) = count.filter(|count| ![0, cells].contains(&count.value)) {
+        log.borrow_mut().error(
+            &count.span,
+            format!(
+                "{} cells along {key}, expected the {cells} between its lines",
+                count.value
+            ),
+            "0 where grid lines are given",
+        );
+        return None;
+    }
     Some(At::new(Grid::Lines(lines.value), lines.span))
 }
 
