@@ -6,20 +6,22 @@ use super::tell;
 use crate::run::{Resumable, Watch};
 use crate::simulation::Converged;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::io::{IsTerminal, Write};
+use std::io::{self, ErrorKind, IsTerminal, Write};
 
 /// Shows a run as it goes on.
 pub(super) struct Progress {
     bar: Option<ProgressBar>,
     quiet: bool,
     json: bool,
+    /// Why a line of the log is missing.
+    unwritten: Option<io::Error>,
     signals: Signals,
 }
 
 impl Progress {
     pub(super) fn new(quiet: bool, json: bool, signals: Signals) -> Self {
         let quiet = quiet || json;
-        let terminal = std::io::stderr().is_terminal();
+        let terminal = io::stderr().is_terminal();
         let bar = (terminal && !quiet).then(|| {
             let bar = ProgressBar::new(1000);
             let style = ProgressStyle::with_template("{elapsed:>5} {bar:24} {msg}");
@@ -30,8 +32,14 @@ impl Progress {
             bar,
             quiet,
             json,
+            unwritten: None,
             signals,
         }
+    }
+
+    /// Why a line of the log could not be written, if one could not.
+    pub(super) fn unwritten(&self) -> Option<&io::Error> {
+        self.unwritten.as_ref()
     }
 
     pub(super) fn end(&self) {
@@ -88,9 +96,12 @@ impl Watch for Progress {
     }
 
     fn iterated(&mut self, line: &str) {
-        if self.json {
-            // A reader that has gone does not end the run.
-            let _ = writeln!(std::io::stdout(), "{line}");
+        if self.json
+            && let Err(error) = writeln!(io::stdout(), "{line}")
+            // A reader that has gone misses nothing.
+            && error.kind() != ErrorKind::BrokenPipe
+        {
+            self.unwritten.get_or_insert(error);
         }
     }
 

@@ -162,6 +162,23 @@ fn go(
     let mut progress = Progress::new(manner.quiet, manner.json_log, Signals::listen());
     let outcome = pool.install(|| solve(simulation, directory, &mut progress));
     progress.end();
+    let status = told(outcome, (manner, finite), directory);
+    let Some(error) = progress.unwritten() else {
+        return status;
+    };
+    tell!("cannot write the log to the standard output: {error}");
+    match status {
+        0 => NOT_CONVERGED,
+        other => other,
+    }
+}
+
+/// The status of what has come of a run, which is told.
+fn told(
+    outcome: Result<Outcome, RunError>,
+    (manner, finite): (&Manner, bool),
+    directory: &Directory,
+) -> u8 {
     match outcome {
         Ok(outcome) => conclude(&outcome, (manner, finite), directory.path()),
         Err(error) => {

@@ -270,6 +270,27 @@ fn a_reader_that_goes_away_is_no_error() {
     }
 }
 
+/// A log that is not written whole is told, and the run goes on to its end without it.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_log_that_cannot_be_written_is_told() {
+    let out = directory("full").join("out");
+    let full = std::fs::File::create("/dev/full").expect("a device");
+    let result = Command::new(env!("CARGO_BIN_EXE_moreau"))
+        .args(["run", "--json-log", "--out"])
+        .args([&out, &examples().join("punched-block.toml")])
+        .stdout(full)
+        .output()
+        .expect("it starts");
+    let told = text(&result.stderr);
+    assert_eq!(result.status.code(), Some(2), "{told}");
+    assert!(
+        told.contains("cannot write the log to the standard output"),
+        "{told}"
+    );
+    assert!(out.join("report.html").exists());
+}
+
 /// A tool that a force takes past everything, and one that slides off: by name, with what to do.
 #[test]
 fn a_tool_that_nothing_holds_is_told() {
