@@ -59,6 +59,13 @@ impl<const D: usize> Driver<D> {
         64.0 * f64::EPSILON * system.stiffest() * motion
     }
 
+    /// What the force of a node may be by rounding, as far as the body has been moved \[N\]; zero before the first step.
+    pub fn rounding_of_forces(&self) -> f64 {
+        let moved = &self.state.displacement;
+        let rounding = |system| self.rounding(system, moved);
+        self.system.as_ref().map_or(0.0, rounding)
+    }
+
     /// Whether nothing has gone so far that forces are rounding, in all of the increment or in its last step: what
     /// slides away is in balance with anything there. What falls may go as far as to what stops it.
     pub(crate) fn is_near(

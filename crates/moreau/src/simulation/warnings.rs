@@ -148,10 +148,11 @@ impl Warnings {
         report: &IncrementReport,
         to_collapse: bool,
     ) {
-        // No more than what is out of balance at every node, along the longest way.
+        // No more than what is out of balance or rounds at every node, along the longest way.
         let way = driver.displacements().iter();
         let way = way.fold(0.0, |most: f64, u| most.max(u.abs()));
-        let rounding = driver.mesh().nodes().len() as f64 * report.out_of_balance * way;
+        let force = report.out_of_balance.max(driver.rounding_of_forces());
+        let rounding = driver.mesh().nodes().len() as f64 * force * way;
         self.balance
             .add(&report.energies, report.increment, rounding);
         if !(to_collapse || driver.has_large_strains()) {

@@ -201,6 +201,21 @@ fn energies_that_are_rounding_are_not_told() {
         "move = [{ on = \"b.bottom\", u = { x = 0.03, y = 0.07 } }]",
     );
     tells("rounding", &deck, &[&["never closed"]]);
+    // Where all that moves is prescribed next to nothing is out of balance, and reactions are rounding.
+    let cube = r#"
+units = "mm-N-MPa"
+analysis = "solid"
+mesh.block = [{ name = "b", element = "hex8", x = [0, 1], y = [0, 1], z = [0, 1], cells = [2, 2, 2] }]
+material = [{ on = "b", young = 1000.0, poisson = 0.3 }]
+tool = [{ name = "t", plane = { point = [0, 30, 0], normal = [0, -1, 0] } }]
+contact = [{ surface = "b.top", against = "t", friction = 0.2 }]
+[[step]]
+name = "press"
+increments = 3
+fix = [{ on = "b.right", u = ["y", "z"] }]
+move = [{ on = "b.right", u = { x = 0.1 } }]
+"#;
+    tells("reactions", cube, &[&["never closed"]]);
 }
 
 /// A cylinder through 100 mm of air and 0.1 mm into a block in one increment, with friction all the way; with
