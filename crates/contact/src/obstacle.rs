@@ -54,6 +54,9 @@ pub struct Corner<const D: usize> {
     pub axis: SVector<f64, D>,
     /// The angle between the axis and the normals of the faces \[rad\], below π/2.
     pub half_angle: f64,
+    /// In space the direction of the edge across which the normals are, of unit length; none where more than two faces
+    /// meet, and the cone is one around all of their normals.
+    pub edge: Option<SVector<f64, D>>,
 }
 
 impl<const D: usize, T: Obstacle<D> + ?Sized> Obstacle<D> for Box<T> {

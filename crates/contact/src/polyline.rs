@@ -493,6 +493,7 @@ impl Obstacle<2> for Polyline {
                 position: self.pieces[k].start,
                 axis,
                 half_angle: 0.5 * left(a).angle(&left(b)),
+                edge: None,
             })
         });
         corners.next()

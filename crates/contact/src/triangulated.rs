@@ -2,12 +2,13 @@
 
 mod patch;
 
-use crate::{ContactError, Obstacle};
-use nalgebra::{Matrix3, Vector2, Vector3};
+use crate::{ContactError, Corner, Obstacle};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
 use patch::{Jet, Patch, handles};
 use rstar::primitives::{GeomWithData, Rectangle};
-use rstar::{PointDistance, RTree};
+use rstar::{AABB, PointDistance, RTree};
 use std::collections::{BTreeMap, HashMap};
+use std::f64::consts::FRAC_PI_2;
 
 type Point = Vector3<f64>;
 
@@ -17,9 +18,9 @@ type Point = Vector3<f64>;
 /// places, normals there are means over the triangles around, and curved patches in place of the triangles join with
 /// one normal along every such edge, so that the normal is everywhere the gradient of the distance. Other edges are
 /// sharp. Points of a sphere or of a cylinder give their normals exactly, and the surface is off by a small multiple of
-/// the fourth power of the length of an edge over the radius. Plane parts stay plane, and beside a fillet of revolution the
-/// normals are those of what it rounds off: a flat face, or a wall of long triangles. Beside a straight fillet as long as the
-/// face they are means, and bend the face unless the limit makes its edge sharp.
+/// the fourth power of the length of an edge over the radius, and by that of a flat side where a plane cuts a round one off.
+/// Plane parts stay plane, and beside a fillet the normals are those of what it rounds off: a plane at least four times as
+/// broad as the steps of the fillet, or a wall of long triangles.
 ///
 /// Source of the normals: N. Max, *Journal of Graphics Tools* 4 (1999) 1-6.
 #[derive(Debug, Clone)]
@@ -170,6 +171,52 @@ impl Triangulated {
     }
 }
 
+/// Angle between normals from which on faces are two \[rad\].
+const TWO: f64 = 0.05;
+
+/// A face at a place.
+struct Face {
+    /// The point of it nearest to the place.
+    foot: Point,
+    normal: Point,
+    /// From there into the face.
+    inwards: Point,
+}
+
+impl Triangulated {
+    /// The faces within a distance of a place, if they are of more than one normal and the obstacle is convex there.
+    fn faces_at(&self, x: &Point, within: f64) -> Option<Vec<Face>> {
+        let (low, high) = (x.add_scalar(-within), x.add_scalar(within));
+        let around = AABB::from_corners(low.into(), high.into());
+        let mut faces: Vec<Face> = Vec::new();
+        for found in self.boxes.locate_in_envelope_intersecting(around) {
+            let patch = &self.patches[found.data];
+            if patch.away(x) > within {
+                continue;
+            }
+            let (jet, middle) = (
+                patch.at(&patch.nearest(x)),
+                patch.at(&Vector2::repeat(1.0 / 3.0)),
+            );
+            let normal = jet.normal().filter(|_| (jet.x - x).norm() <= within);
+            let Some(normal) = normal else { continue };
+            if faces.iter().all(|face| face.normal.angle(&normal) > TWO) {
+                faces.push(Face {
+                    foot: jet.x,
+                    normal,
+                    inwards: middle.x - jet.x,
+                });
+            }
+        }
+        let is_below = |face: &Face, other: &Face| {
+            let same = face.normal == other.normal;
+            same || self.side * face.normal.dot(&other.inwards) < 0.0
+        };
+        let is_convex = faces.iter().all(|f| faces.iter().all(|g| is_below(f, g)));
+        (faces.len() > 1 && is_convex).then_some(faces)
+    }
+}
+
 /// Along the edge that a point of a patch is on, none inside and at corners: as long as the root of how far the point
 /// of the edge that is nearest to another, `from` there, goes as that goes along.
 fn edge_of(at: &Vector2<f64>, jet: &Jet, from: &Point) -> Option<Point> {
@@ -236,8 +283,8 @@ const ROUNDED: f64 = 1e-4;
 /// Least angle around a corner of what a fillet rounds off: half of a turn, less a corner of an outline \[rad\].
 const HALF: f64 = 2.6;
 
-/// How much longer than others the triangles of a wall are.
-const LONG: f64 = 4.0;
+/// How much longer than others the triangles of a wall are, and how much broader a plane.
+const LARGE: f64 = 4.0;
 
 /// The triangles around a corner that are in one plane.
 #[derive(Default)]
@@ -247,20 +294,29 @@ struct Plane {
     /// Sum of the angles between those \[rad\].
     angle: f64,
     longest: f64,
+    /// Of the whole face that they are of.
+    breadth: f64,
 }
 
 impl Plane {
-    fn add(&mut self, a: Point, b: Point) {
+    fn add(&mut self, a: Point, b: Point, breadth: f64) {
         self.normal += a.cross(&b) / (a.norm_squared() * b.norm_squared());
         self.angle += a.angle(&b);
         self.longest = self.longest.max(a.norm()).max(b.norm());
+        self.breadth = breadth;
     }
 }
 
-/// The mean normal of the planes around a corner, not of unit length. Of a plane that ends there, half around the corner,
-/// that of the plane, and of long triangles beside others the mean of theirs: these others are a fillet, tangent to them.
+/// The mean normal of the planes around a corner, not of unit length. Of one that is broad beside all others, or ends there,
+/// half around the corner, that of the plane, and of long triangles beside others the mean of theirs: these others are a
+/// fillet, tangent to them.
 fn mean_normal(mut planes: Vec<Plane>) -> Point {
     let angle = |planes: &[Plane]| planes.iter().map(|p| p.angle).sum::<f64>();
+    let broadest = planes.iter().map(|p| p.breadth).fold(0.0, f64::max);
+    let mut broad = planes.iter().filter(|p| p.breadth * LARGE >= broadest);
+    if let (Some(only), None) = (broad.next(), broad.next()) {
+        return only.normal;
+    }
     let longest = planes.iter().map(|p| p.longest).fold(0.0, f64::max);
     let halves = planes.iter().filter(|p| p.angle >= HALF).count();
     if halves == 1 {
@@ -268,7 +324,7 @@ fn mean_normal(mut planes: Vec<Plane>) -> Point {
     }
     let (long, short): (Vec<Plane>, Vec<Plane>) = planes
         .into_iter()
-        .partition(|p| p.longest * LONG >= longest);
+        .partition(|p| p.longest * LARGE >= longest);
     let all = match angle(&long) >= HALF {
         true => long,
         false => long.into_iter().chain(short).collect(),
@@ -296,6 +352,7 @@ fn smooth(at: &[Point], faces: &[[usize; 3]], sharp: f64) -> Result<Vec<Patch>, 
     let mut joined: Vec<usize> = (0..3 * faces.len()).collect();
     let is_smooth = |f: usize, g: usize| normals[f].angle(&normals[g]) <= sharp + ROUNDED;
     let mut flat = joined.clone();
+    let mut plane: Vec<usize> = (0..faces.len()).collect();
     for (edge, &other) in opposite.iter().enumerate() {
         let (f, g) = (edge / 3, other / 3);
         let ends = [
@@ -308,16 +365,19 @@ fn smooth(at: &[Point], faces: &[[usize; 3]], sharp: f64) -> Result<Vec<Patch>, 
             }
             if normals[f].angle(&normals[g]) <= ROUNDED {
                 join(&mut flat, own, beside);
+                join(&mut plane, f, g);
             }
         }
     }
+    let breadths = breadths(at, faces, &opposite, &plane);
     let roots: Vec<usize> = (0..joined.len()).map(|k| root(&joined, k)).collect();
     let mut around: BTreeMap<usize, BTreeMap<usize, Plane>> = BTreeMap::new();
     for (k, &own) in roots.iter().enumerate() {
         let face = &faces[k / 3];
         let [x, y, z] = [0, 1, 2].map(|i| at[face[(k + i) % 3]]);
         let planes = around.entry(own).or_default();
-        planes.entry(root(&flat, k)).or_default().add(y - x, z - x);
+        let plane = planes.entry(root(&flat, k)).or_default();
+        plane.add(y - x, z - x, breadths[k / 3]);
     }
     let sums: HashMap<usize, Point> = (around.into_iter())
         .map(|(root, planes)| (root, mean_normal(planes.into_values().collect())))
@@ -352,6 +412,24 @@ fn smooth(at: &[Point], faces: &[[usize; 3]], sharp: f64) -> Result<Vec<Patch>, 
             )
         })
         .collect())
+}
+
+/// Of each face, twice the area over the perimeter of all that are in its plane and joined to it.
+fn breadths(at: &[Point], faces: &[[usize; 3]], opposite: &[usize], plane: &[usize]) -> Vec<f64> {
+    let planes: Vec<usize> = (0..faces.len()).map(|f| root(plane, f)).collect();
+    let (mut areas, mut perimeters) = (vec![0.0; faces.len()], vec![0.0; faces.len()]);
+    for (f, &plane) in planes.iter().enumerate() {
+        let [a, b, c] = faces[f].map(|k| at[k]);
+        areas[plane] += 0.5 * (b - a).cross(&(c - a)).norm();
+        for (k, side) in [b - a, c - b, a - c].iter().enumerate() {
+            if planes[opposite[3 * f + k] / 3] != plane {
+                perimeters[plane] += side.norm();
+            }
+        }
+    }
+    (planes.iter())
+        .map(|&plane| 2.0 * areas[plane] / perimeters[plane])
+        .collect()
 }
 
 /// For edge k of face f, which goes from corner k to the next and is 3 f + k, the same edge of the other face.
@@ -427,6 +505,31 @@ impl Obstacle<3> for Triangulated {
 
     fn reference(&self) -> Point {
         self.first
+    }
+
+    fn corner(&self, x: &Point, tolerance: f64) -> Option<Corner<3>> {
+        let faces = self.faces_at(&self.foot(x).jet.x, 2.0 * tolerance)?;
+        // To where their planes meet: a line, or a point.
+        let normals = DMatrix::from_fn(faces.len(), 3, |i, j| faces[i].normal[j]);
+        let off = |face: &Face| (face.foot - x).dot(&face.normal);
+        let off = DVector::from_iterator(faces.len(), faces.iter().map(off));
+        let way = normals.svd(true, true).solve(&off, 1e-6).ok()?;
+        let way = Point::new(way[0], way[1], way[2]);
+        let axis: Point = faces.iter().map(|face| face.normal).sum();
+        let axis = (axis * self.side).try_normalize(1e-6)?;
+        let aside = (way - axis * axis.dot(&way)).norm();
+        let angle = |face: &Face| axis.angle(&(face.normal * self.side));
+        let half_angle = faces.iter().map(angle).fold(0.0, f64::max);
+        let edge = match &faces[..] {
+            [a, b] => a.normal.cross(&b.normal).try_normalize(0.0),
+            _ => None,
+        };
+        (aside <= tolerance && half_angle < FRAC_PI_2).then_some(Corner {
+            position: x + way,
+            axis,
+            half_angle,
+            edge,
+        })
     }
 }
 

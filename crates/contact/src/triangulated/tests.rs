@@ -103,6 +103,63 @@ fn cube() -> Skin {
     (points.collect(), faces.collect())
 }
 
+/// Rings of as many points one above the other, with a face at either end.
+fn lofted(rings: &[Vec<[f64; 3]>]) -> Skin {
+    let mut points: Vec<[f64; 3]> = Vec::new();
+    let mut number = |x: [f64; 3]| {
+        let is_same = |y: &[f64; 3]| (Point::from(*y) - Point::from(x)).norm() < 1e-9;
+        points.iter().position(is_same).unwrap_or_else(|| {
+            points.push(x);
+            points.len() - 1
+        })
+    };
+    let n = rings[0].len();
+    let rings: Vec<Vec<usize>> = (rings.iter())
+        .map(|ring| ring.iter().map(|&x| number(x)).collect())
+        .collect();
+    let mut faces = Vec::new();
+    let (first, last) = (&rings[0], &rings[rings.len() - 1]);
+    for k in 0..n {
+        let next = (k + 1) % n;
+        faces.push([first[0], first[next], first[k]]);
+        for pair in rings.windows(2) {
+            faces.push([pair[0][k], pair[0][next], pair[1][next]]);
+            faces.push([pair[0][k], pair[1][next], pair[1][k]]);
+        }
+        faces.push([last[0], last[k], last[next]]);
+    }
+    faces.retain(|[a, b, c]| a != b && b != c && c != a);
+    (points, faces)
+}
+
+/// Rings around a block of half sides, edges and corners rounded by 2, six steps a quarter.
+fn rounded_block(half: [f64; 3]) -> Vec<Vec<[f64; 3]>> {
+    let quarter = |from: f64| (0..=6).map(move |k| PI / 2.0 * (from + f64::from(k) / 6.0));
+    let corners = [
+        (0.0, 1.0, 1.0),
+        (1.0, -1.0, 1.0),
+        (2.0, -1.0, -1.0),
+        (3.0, 1.0, -1.0),
+    ];
+    let latitudes = [(-1.0, -1.0), (0.0, 1.0)];
+    let latitudes =
+        (latitudes.into_iter()).flat_map(|(from, z)| quarter(from).map(move |at| (at, z)));
+    let ring = |(latitude, z): (f64, f64)| {
+        let longitudes =
+            (corners.into_iter()).flat_map(|(from, x, y)| quarter(from).map(move |at| (at, x, y)));
+        let point = |(longitude, x, y): (f64, f64, f64)| {
+            let ((s, c), (up, out)) = (longitude.sin_cos(), latitude.sin_cos());
+            [
+                half[0] * x + 2.0 * c * out,
+                half[1] * y + 2.0 * s * out,
+                half[2] * z + 2.0 * up,
+            ]
+        };
+        longitudes.map(point).collect()
+    };
+    latitudes.map(ring).collect()
+}
+
 fn surface((points, faces): &Skin) -> Triangulated {
     Triangulated::new(points, faces, SHARP).expect("closed")
 }
@@ -218,49 +275,92 @@ fn faces_of_a_cube_are_plane_wherever_it_stands() {
 
 /// A punch of revolution: a flat face of radius 8 at the bottom, a fillet of radius 2 in n steps, a wall and a lid, of 24
 /// sides. The flat face stays plane, and the wall upright where its sides are.
+/// Of a punch of radius 10 and height 20 whose edge below is rounded by 2, height and radius of the outline.
+fn outline() -> impl Iterator<Item = [f64; 2]> {
+    let rounded = (0..=8).map(|k| {
+        let (s, c) = (PI / 16.0 * k as f64).sin_cos();
+        [2.0 - 2.0 * c, 8.0 + 2.0 * s]
+    });
+    rounded.chain([[20.0, 10.0]])
+}
+
+/// Flat below to rounding and round beside it, as a whole and as a quarter cut off by two planes, a side away from those.
 #[test]
-fn what_a_fillet_rounds_off_keeps_its_shape() {
-    let (sides, n) = (24, 8);
-    let mut profile: Vec<[f64; 2]> = (0..=n)
-        .map(|k| {
-            let (s, c) = (PI / 2.0 * k as f64 / n as f64).sin_cos();
-            [8.0 + 2.0 * s, 2.0 - 2.0 * c]
-        })
-        .collect();
-    profile.push([10.0, 20.0]);
-    let mut points: Vec<[f64; 3]> = Vec::new();
-    for [r, z] in &profile {
-        points.extend((0..sides).map(|k| {
-            let (s, c) = (TAU * k as f64 / sides as f64).sin_cos();
-            [r * c, r * s, *z]
-        }));
-    }
-    let (low, high) = (points.len(), points.len() + 1);
-    points.extend([[0.0; 3], [0.0, 0.0, 20.0]]);
-    let mut faces = Vec::new();
-    for k in 0..sides {
-        let next = (k + 1) % sides;
-        faces.push([low, next, k]);
-        for ring in 0..profile.len() - 1 {
-            let [a, b] = [ring * sides + k, ring * sides + next];
-            faces.push([a, b, b + sides]);
-            faces.push([a, b + sides, a + sides]);
+fn what_a_fillet_of_revolution_rounds_off_keeps_its_shape() {
+    for (turn, sides) in [(TAU, 24), (TAU / 4.0, 24)] {
+        let rings: Vec<Vec<[f64; 3]>> = outline()
+            .map(|[z, r]| {
+                let round = (0..=sides).map(|k| {
+                    let (s, c) = (turn * k as f64 / sides as f64).sin_cos();
+                    [r * c, r * s, z]
+                });
+                match turn < TAU {
+                    true => [[0.0, 0.0, z]].into_iter().chain(round).collect(),
+                    false => round.take(sides).collect(),
+                }
+            })
+            .collect();
+        let punch = surface(&lofted(&rings));
+        let mut most = [0.0f64; 2];
+        for k in 0..200 {
+            let part = 0.002 + 0.996 * (0.618 * k as f64).fract();
+            let (s, c) = (turn * part).sin_cos();
+            let r = 7.9 * (k as f64 / 200.0).sqrt();
+            most[0] = most[0].max((punch.distance(&Point::new(r * c, r * s, -0.1)) - 0.1).abs());
+            let (s, c) = (turn * (0.18 + 0.64 * part)).sin_cos();
+            let z = 2.5 + 17.0 * k as f64 / 200.0;
+            let out = punch.distance(&Point::new(10.1 * c, 10.1 * s, z)) - 0.1;
+            most[1] = most[1].max(out.abs());
         }
-        let last = (profile.len() - 1) * sides;
-        faces.push([high, last + k, last + next]);
+        assert!(most[0] < 1e-12 && most[1] < 2e-3, "{turn}: {most:?}");
     }
-    let punch = surface(&(points, faces));
-    let mut most = [0.0f64; 2];
+}
+
+/// A bar with one rounded edge as long as itself, of which the faces beside it are plane.
+#[test]
+fn what_a_straight_fillet_rounds_off_is_plane() {
+    let rounded = (0..=8).map(|k| {
+        let (s, c) = (PI / 16.0 * k as f64).sin_cos();
+        [48.0 + 2.0 * s, 2.0 - 2.0 * c]
+    });
+    let outline: Vec<[f64; 2]> = [[0.0, 20.0], [0.0, 0.0]]
+        .into_iter()
+        .chain(rounded)
+        .collect();
+    let outline = outline.iter().chain(&[[50.0, 20.0]]);
+    let rings = [0.0, 20.0].map(|z| outline.clone().map(|[x, y]| [*x, *y, z]).collect());
+    let bar = surface(&lofted(&rings));
     for k in 0..200 {
-        let angle = 0.1 + k as f64;
-        let (s, c) = angle.sin_cos();
-        let r = 7.5 * (k as f64 / 200.0).sqrt();
-        most[0] = most[0].max((punch.distance(&Point::new(r * c, r * s, -0.1)) - 0.1).abs());
-        let z = 2.5 + 17.0 * k as f64 / 200.0;
-        let out = punch.distance(&Point::new(10.1 * c, 10.1 * s, z)) - 0.1;
-        most[1] = most[1].max(out.abs());
+        let z = 20.0 * (0.618 * k as f64).fract();
+        let (x, y) = (0.24 * k as f64, 2.0 + 0.09 * k as f64);
+        for at in [Point::new(x, -0.1, z), Point::new(50.1, y, z)] {
+            assert!((bar.distance(&at) - 0.1).abs() < 1e-12, "{at:?}");
+        }
     }
-    assert!(most[0] < 1e-12 && most[1] < 2e-3, "{most:?}");
+}
+
+/// A block of which all edges and corners are rounded by 2: of the six faces to rounding, elsewhere to a fourth power; and
+/// what is left of it without one, two and three of its sides, a plate, a capsule and a ball.
+#[test]
+fn a_block_with_rounded_edges_and_corners_has_plane_faces() {
+    for half in [
+        [20.0, 10.0, 5.0],
+        [20.0, 10.0, 0.0],
+        [20.0, 0.0, 0.0],
+        [0.0, 0.0, 5.0],
+        [0.0; 3],
+    ] {
+        let block = surface(&lofted(&rounded_block(half)));
+        let mut most = [0.0f64; 2];
+        for d in directions(2000) {
+            let x = [0, 1, 2].map(|k| (1.2 * half[k] + 6.0) * d[k]);
+            let beyond = [0, 1, 2].map(|k| (x[k].abs() - half[k]).max(0.0));
+            let exact = Point::from(beyond).norm() - 2.0;
+            let edge = usize::from(beyond.iter().filter(|b| **b > 0.0).count() > 1);
+            most[edge] = most[edge].max((block.distance(&x.into()) - exact).abs());
+        }
+        assert!(most[0] < 1e-12 && most[1] < 1e-3, "{half:?}: {most:?}");
+    }
 }
 
 #[test]
@@ -372,4 +472,32 @@ fn what_is_no_closed_surface_is_refused() {
     let inwards: Vec<[usize; 3]> = faces.iter().map(|&[a, b, c]| [b, a, c]).collect();
     let cube = surface(&(points, inwards));
     assert!((cube.distance(&Point::new(0.5, 0.5, 2.0)) - 1.0).abs() < 1e-14);
+}
+
+/// Straight ahead of an edge or a corner of a cube, at it, and beside it; from within there are none.
+#[test]
+fn edges_and_corners_of_a_cube_have_their_cones() {
+    let cube = surface(&cube());
+    for out in [0.0, 0.2] {
+        let edge = cube.corner(&Point::new(1.0 + out, 0.3, 1.0 + out), 1e-6);
+        let edge = edge.expect("an edge");
+        assert!((edge.axis - Point::new(1.0, 0.0, 1.0).normalize()).norm() < 1e-12);
+        assert!((edge.position - Point::new(1.0, 0.3, 1.0)).norm() < 1e-12);
+        assert!((edge.half_angle - PI / 4.0).abs() < 1e-12);
+        assert!(edge.edge.is_some_and(|along| along.y.abs() > 1.0 - 1e-12));
+        let corner = cube.corner(&Point::repeat(1.0 + out), 1e-6);
+        let corner = corner.expect("a corner");
+        assert!((corner.axis - Point::repeat(1.0).normalize()).norm() < 1e-12);
+        assert!((corner.position - Point::repeat(1.0)).norm() < 1e-12);
+        assert!((corner.half_angle.cos() - 3f64.sqrt().recip()).abs() < 1e-12);
+        assert!(corner.edge.is_none());
+    }
+    for beside in [[1.0, 0.3, 1.0 - 1e-5], [1.0, 0.3, 1.2], [0.4, 0.4, 1.0]] {
+        assert_eq!(cube.corner(&beside.into(), 1e-6), None);
+    }
+    let rounded = Point::new(1.0 + 3e-7, 0.3, 1.0 - 2e-7);
+    let at = cube.corner(&rounded, 1e-6).expect("an edge");
+    assert!((at.position - Point::new(1.0, 0.3, 1.0)).norm() < 1e-12);
+    let hollow = cube.hollow();
+    assert_eq!(hollow.corner(&Point::new(1.0, 0.3, 1.0), 1e-6), None);
 }

@@ -158,6 +158,12 @@ impl<const D: usize> Driver<D> {
             let gap = corner.axis.dot(&(x - corner.position)) - p.offset;
             let law = p.law.at_corner(corner.half_angle);
             let blunt = ContactPoint { law, ..p.clone() };
+            // Slip along an edge would carry the point across it, where friction against both were one.
+            let across = corner.edge.map(|edge| {
+                let edge = Subspace::spanned(&[turned(edge, &turn)]);
+                free.common(&edge.complement())
+            });
+            let free = across.as_ref().unwrap_or(free);
             let axis = turned(corner.axis, &turn);
             let mut kinematics = Kinematics::new(&blunt, &axis, gap, &slip, free);
             kinematics.at_corner = true;

@@ -106,6 +106,96 @@ fn shown(name: &str, files: &[(&str, String)], changes: &[(&str, &str)]) -> (boo
     (problem.is_some(), out)
 }
 
+/// No condition but those of a `move`.
+const FREE: (&str, &str) = (
+    "fix = [{ on = \"b.bottom\", u = [\"y\"] }, { on = \"b.left\", u = [\"x\"] }, { on = \"b.back\", u = [\"z\"] }]",
+    "",
+);
+
+/// The forces of a die of triangles and of a plane in its place, on the deck with these replacements.
+fn pressed(name: &str, die: &[[[f64; 3]; 3]], changes: &[(&str, &str)]) -> [[f64; 3]; 2] {
+    let folder = with(name, &[("cube.stl", stl(die))]);
+    let plane = "plane = { point = [0, 1, 0], normal = [0, -1, 0] }";
+    ["surface = { file = \"cube.stl\" }", plane].map(|tool| {
+        let text = changes.iter().fold(DECK.to_owned(), |text, (from, to)| {
+            assert!(text.contains(from), "{from}");
+            text.replacen(from, to, 1)
+        });
+        let text = text.replace("surface = { file = \"cube.stl\" }", tool);
+        let (_, problem, findings) = open_in(&text, &folder);
+        let Some(Problem::Solid(mut setup)) = problem else {
+            panic!("{}", findings.render("deck.toml", &text, false));
+        };
+        let stage = &setup.stages[0];
+        let run = setup.driver.run(&stage.step, stage.increments, |_, _| {});
+        run.expect("converges");
+        setup.driver.tool_force("die").expect("a force").into()
+    })
+}
+
+/// A cube with the face of the block presses it as a plane does, but for friction along its edges: nodes there and at its corners
+/// are held by any normal.
+#[test]
+fn a_cube_as_wide_as_the_block_presses_as_a_plane() {
+    let narrow = cube()
+        .into_iter()
+        .map(|face| face.map(|[x, y, z]| [(x + 1.0) / 3.0, y, (z + 1.0) / 3.0]));
+    let narrow: Vec<_> = narrow.collect();
+    for strain in ["small", "finite"] {
+        let changes = [
+            ("finite", strain),
+            ("cells = [1, 1, 1]", "cells = [3, 3, 3]"),
+            ("friction = 0.1", "friction = 0.8"),
+            ("poisson = 0.3", "poisson = 0.1"),
+            FREE,
+            (
+                "tools = [{ name = \"die\", move = [0, -0.1, 0] }]",
+                "move = [{ on = \"b.bottom\", u = { x = 0, y = 0.1, z = 0 } }]",
+            ),
+        ];
+        let [cube, plane] = pressed("surface-narrow", &narrow, &changes);
+        let off = (0..3)
+            .map(|i| (cube[i] - plane[i]).abs())
+            .fold(0.0, f64::max);
+        assert!(
+            plane[1] < -90.0 && off < 1e-3 * plane[1].abs(),
+            "{strain}: {cube:?} {plane:?}"
+        );
+    }
+}
+
+/// A die drawn along two of its edges, on which nodes of the block are: those slide along them, and have no friction there.
+#[test]
+fn nodes_at_an_edge_slide_along_it() {
+    let rail = cube()
+        .into_iter()
+        .map(|face| face.map(|[x, y, z]| [(x + 1.0) / 3.0, y, z]));
+    let rail: Vec<_> = rail.collect();
+    let changes = [
+        ("strain = \"finite\"", "strain = \"small\""),
+        ("cells = [1, 1, 1]", "cells = [4, 1, 2]"),
+        FREE,
+        ("poisson = 0.3", "poisson = 0.0"),
+        (
+            "tools = [{ name = \"die\", move = [0, -0.1, 0] }]",
+            "move = [{ on = \"b.bottom\", u = { x = 0, y = 0.02, z = -0.4 } }]",
+        ),
+    ];
+    let [rail, plane] = pressed("surface-rail", &rail, &changes);
+    assert!(
+        (plane[2] - 0.1 * plane[1].abs()).abs() < 1e-4 * plane[2],
+        "{plane:?}"
+    );
+    assert!(
+        rail[2] < 0.9 * plane[2] && rail[2] > 0.3 * plane[2],
+        "{rail:?} {plane:?}"
+    );
+    assert!(
+        (rail[1] / plane[1] - 1.0).abs() < 0.05,
+        "{rail:?} {plane:?}"
+    );
+}
+
 /// A plane face of triangles presses as a plane does, whatever file it comes from.
 #[test]
 fn a_cube_presses_as_a_plane() {
