@@ -26,6 +26,9 @@ use tree::Tree;
 /// Part of the normal in the middle of a facet that is added at its nodes: nothing beside a normal.
 const DEGENERATE: f64 = 1e-12;
 
+/// Cosine of the angle between facets beyond which a surface has two sides there: a circle of nine facets has one.
+const SHARP: f64 = 0.75;
+
 /// How a node of one surface is coupled to the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Pairing {
@@ -77,7 +80,8 @@ impl<const D: usize> Mesh<D> {
             };
             facets.iter().map(face).collect()
         };
-        let (own, other) = (faces(surface), faces(opposite));
+        let (mut own, other) = (faces(surface), faces(opposite));
+        part(&mut own);
         let sides = Sides {
             normals: normals(&own),
             own: &own,
@@ -105,7 +109,8 @@ impl<const D: usize> Mesh<D> {
             let nodes = self.facet_nodes(f);
             Face::new(self.facet_kind(f), nodes, positions, Change::default())
         };
-        normals(&surface.iter().map(face).collect::<Vec<_>>())
+        let all = normals(&surface.iter().map(face).collect::<Vec<_>>());
+        all.into_iter().map(|((_, node), n)| (node, n)).collect()
     }
 }
 
@@ -113,8 +118,8 @@ impl<const D: usize> Mesh<D> {
 struct Sides<'a, const D: usize> {
     own: &'a [Face<D>],
     other: &'a [Face<D>],
-    /// Outward unit normals of the own nodes, averaged over their facets.
-    normals: BTreeMap<usize, [f64; D]>,
+    /// Outward unit normals of the own nodes, averaged over their facets of one smooth part, by that and the node.
+    normals: BTreeMap<(usize, usize), [f64; D]>,
     tree: Tree<D>,
     /// Farthest that two points of the surfaces can be apart \[mm\].
     reach: f64,
@@ -122,7 +127,8 @@ struct Sides<'a, const D: usize> {
 
 impl<const D: usize> Sides<'_, D> {
     fn normals_of(&self, face: &Face<D>) -> Vec<[f64; D]> {
-        face.nodes.iter().map(|a| self.normals[a]).collect()
+        let own = |a: &usize| self.normals[&(face.part, *a)];
+        face.nodes.iter().map(own).collect()
     }
 
     /// Facets that may be met within a distance of points along their normals, ascending: none of those that have one
@@ -169,23 +175,25 @@ impl<const D: usize> Sides<'_, D> {
             .iter()
             .flat_map(|e| e.nodes.iter().copied().zip(e.x.iter().copied()))
             .collect();
+        let mut normals: BTreeMap<usize, Vec<[f64; D]>> = BTreeMap::new();
+        for (&(_, node), &n) in &self.normals {
+            normals.entry(node).or_default().push(n);
+        }
         let mut mortar_rows = Vec::new();
         for (&node, &(area, kind, size)) in &shares {
             let own = points.remove(&node).unwrap_or_default();
             let place = |i: usize| own.iter().map(|(a, w)| w * position[a][i]).sum();
-            let (x, n): ([f64; D], _) = (std::array::from_fn(place), self.normals[&node]);
-            let mut nearest: Option<(f64, usize, Values)> = None;
-            for k in self.candidates(&[node], (&[x], &[n]), size, self.reach) {
-                let other = &self.other[k];
-                let Some(eta) = other.hit(&x, &n) else {
-                    continue;
-                };
-                let gap = face::along(&x, &other.at(eta), &n);
-                if gap >= -size && nearest.is_none_or(|(g, ..)| gap.abs() < g.abs()) {
-                    nearest = Some((gap, k, other.shape(eta)));
-                }
-            }
-            let Some((_, k, n_b)) = nearest else { continue };
+            let x: [f64; D] = std::array::from_fn(place);
+            let parts = normals[&node].iter();
+            let met = parts.filter_map(|&n| Some((n, self.met(node, &x, &n, size)?)));
+            // What is as near is met by the part that looks straight at it.
+            let off = |(n, (gap, k, _)): &([f64; D], (f64, usize, Values))| {
+                let other = &self.other[*k];
+                gap.abs() + size * (1.0 + dot(n, &unit(&other.outward(other.middle()))))
+            };
+            let Some((n, (_, k, n_b))) = met.min_by(|a, b| off(a).total_cmp(&off(b))) else {
+                continue;
+            };
             mortar_rows.push(MortarRow {
                 node,
                 kind,
@@ -197,16 +205,79 @@ impl<const D: usize> Sides<'_, D> {
         }
         mortar_rows
     }
+
+    /// What is nearest to a node along a direction: the gap, the facet and its shape functions there.
+    fn met(
+        &self,
+        node: usize,
+        x: &[f64; D],
+        n: &[f64; D],
+        size: f64,
+    ) -> Option<(f64, usize, Values)> {
+        let candidates = self.candidates(&[node], (&[*x], &[*n]), size, self.reach);
+        let met = candidates.into_iter().filter_map(|k| {
+            let other = &self.other[k];
+            let eta = other.hit(x, n)?;
+            let gap = face::along(x, &other.at(eta), n);
+            (gap >= -size).then(|| (gap, k, other.shape(eta)))
+        });
+        met.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
+    }
 }
 
-/// Outward unit normals of the nodes, those of the facets there, averaged. At a plane of symmetry the
+/// Tells each facet which smooth part of the surface it is of: what meets at a sharp edge looks in two directions.
+fn part<const D: usize>(faces: &mut [Face<D>]) {
+    // Across a node in the plane, across an edge in space.
+    let mut around: BTreeMap<Vec<usize>, Vec<(usize, [f64; D])>> = BTreeMap::new();
+    for (f, face) in faces.iter().enumerate() {
+        let corners = face.kind.corner_count();
+        for k in 0..corners {
+            let (mut ends, at) = match D {
+                2 => (vec![face.nodes[k]], face.places()[k]),
+                _ => (
+                    vec![face.nodes[k], face.nodes[(k + 1) % corners]],
+                    face.middle(),
+                ),
+            };
+            ends.sort_unstable();
+            around
+                .entry(ends)
+                .or_default()
+                .push((f, unit(&face.outward(at))));
+        }
+    }
+    let mut beside: Vec<Vec<usize>> = vec![Vec::new(); faces.len()];
+    for (i, all) in around
+        .values()
+        .flat_map(|all| (0..all.len()).map(move |i| (i, all)))
+    {
+        let (f, n) = all[i];
+        let smooth = all.iter().filter(|(_, m)| dot(&n, m) >= SHARP);
+        beside[f].extend(smooth.map(|(g, _)| *g));
+    }
+    let mut parts: Vec<Option<usize>> = vec![None; faces.len()];
+    for first in 0..faces.len() {
+        let mut open = vec![first];
+        while let Some(f) = open.pop() {
+            if parts[f].is_none() {
+                parts[f] = Some(first);
+                open.extend(&beside[f]);
+            }
+        }
+    }
+    for (face, part) in faces.iter_mut().zip(parts) {
+        face.part = part.unwrap_or(0);
+    }
+}
+
+/// Outward unit normals of the nodes, those of the facets of one part there, averaged. At a plane of symmetry the
 /// mean over a facet that is curved would lean outwards.
-fn normals<const D: usize>(faces: &[Face<D>]) -> BTreeMap<usize, [f64; D]> {
-    let mut sums: BTreeMap<usize, [f64; D]> = BTreeMap::new();
+fn normals<const D: usize>(faces: &[Face<D>]) -> BTreeMap<(usize, usize), [f64; D]> {
+    let mut sums: BTreeMap<(usize, usize), [f64; D]> = BTreeMap::new();
     for face in faces {
         let middle = face.outward(face.middle());
         for (&node, xi) in face.nodes.iter().zip(face.places()) {
-            let sum = sums.entry(node).or_insert([0.0; D]);
+            let sum = sums.entry((face.part, node)).or_insert([0.0; D]);
             let outward = face.outward(xi);
             for i in 0..D {
                 // Of a facet that is degenerate there a trace is left.

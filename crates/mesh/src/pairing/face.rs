@@ -28,6 +28,8 @@ pub(super) struct Face<const D: usize> {
     pub(super) x: Vec<[f64; D]>,
     /// From the N_a to the Ñ_a of positive integrals, to which multipliers are dual.
     pub(super) change: Change,
+    /// Which of the smooth parts of its surface it is of.
+    pub(super) part: usize,
 }
 
 /// Values of the nodes that there are.
@@ -48,6 +50,7 @@ impl<const D: usize> Face<D> {
             x: nodes.iter().map(|&a| positions[a]).collect(),
             nodes,
             change,
+            part: 0,
         }
     }
 

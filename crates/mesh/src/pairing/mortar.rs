@@ -1,8 +1,9 @@
 //! Dual multipliers on the part of a facet that the other surface covers; not the search of that
 //! part.
 
-use super::face::{Face, Values};
+use super::face::{Face, Values, along, unit};
 use super::{MortarRow, Sides};
+use crate::geometry::{dot, interpolate};
 use crate::mesh::NodeKind;
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
@@ -19,6 +20,12 @@ pub(super) const NEAR: f64 = 0.25;
 
 /// Least share of a multiplier in the overlap of a facet.
 const LEAST: f64 = 1e-3;
+
+/// How much less straight than another a part of a surface may look at what is opposite, in cosines.
+const ASKEW: f64 = 0.1;
+
+/// How much farther than another it may be from that, over the size of a facet.
+const BEYOND: f64 = 0.1;
 
 /// What the other surface covers of a facet.
 #[derive(Default)]
@@ -47,6 +54,12 @@ pub(super) struct Sample {
 struct Sums {
     kind: NodeKind,
     area: f64,
+    /// ∫ Φ_a times the cosine of the angle between its normal and that opposite.
+    seen: f64,
+    /// ∫ Φ_a times the gap along its normal.
+    gap: f64,
+    /// Largest of its facets.
+    size: f64,
     own: BTreeMap<usize, f64>,
     opposite: BTreeMap<usize, f64>,
 }
@@ -60,7 +73,7 @@ struct Multipliers {
 
 impl<const D: usize> Sides<'_, D> {
     pub(super) fn mortar(&self, measure: &dyn Fn(&[f64; D]) -> f64) -> Vec<MortarRow<D>> {
-        let mut sums: BTreeMap<usize, Sums> = BTreeMap::new();
+        let mut sums: BTreeMap<(usize, usize), Sums> = BTreeMap::new();
         for face in self.own {
             let overlap = match D {
                 2 => self.overlap_in_plane(face, measure),
@@ -71,7 +84,13 @@ impl<const D: usize> Sides<'_, D> {
         // What lies on the axis of symmetry is no surface.
         let largest = sums.values().map(|s| s.area).fold(0.0, f64::max);
         sums.retain(|_, s| s.area > SLIVER * largest);
-        let coupling = |(node, sums): (usize, Sums)| {
+        let mut nodes: BTreeMap<usize, Vec<([f64; D], Sums)>> = BTreeMap::new();
+        for ((part, node), sums) in sums {
+            let n = self.normals[&(part, node)];
+            nodes.entry(node).or_default().push((n, sums));
+        }
+        let coupling = |(node, parts): (usize, Vec<([f64; D], Sums)>)| {
+            let (n, sums) = self.facing(parts);
             // Matching meshes leave weights that are rounding. Both sums of weights are the area.
             let relative = |mut weights: BTreeMap<usize, f64>| -> Vec<(usize, f64)> {
                 weights.retain(|_, w| w.abs() > ROUNDING * sums.area);
@@ -82,28 +101,66 @@ impl<const D: usize> Sides<'_, D> {
                 node,
                 kind: sums.kind,
                 area: sums.area,
-                normal: self.normals[&node].map(|v| -v),
+                normal: n.map(|v| -v),
                 own: relative(sums.own),
                 opposite: relative(sums.opposite),
             }
         };
-        sums.into_iter().map(coupling).collect()
+        nodes.into_iter().map(coupling).collect()
+    }
+
+    /// Of the parts of a surface that meet in a node the one that looks straight at what is opposite, or those that do,
+    /// as a corner that stands in another: with their mean normal and all of their integrals.
+    fn facing(&self, mut parts: Vec<([f64; D], Sums)>) -> ([f64; D], Sums) {
+        let gap = |(_, s): &([f64; D], Sums)| (s.gap / s.area).abs();
+        let seen = |(_, s): &([f64; D], Sums)| s.seen / s.area;
+        let least = parts.iter().map(gap).fold(f64::INFINITY, f64::min);
+        parts.retain(|part| gap(part) <= least + BEYOND * part.1.size);
+        let best = parts.iter().map(seen).fold(f64::NEG_INFINITY, f64::max);
+        parts.retain(|part| seen(part) >= best - ASKEW);
+        let mut parts = parts.into_iter();
+        let (mut n, mut sums) = parts.next().expect("a node has a part");
+        for (m, more) in parts {
+            n = unit(&std::array::from_fn(|i| n[i] + m[i]));
+            sums.area += more.area;
+            for (weights, more) in [
+                (&mut sums.own, more.own),
+                (&mut sums.opposite, more.opposite),
+            ] {
+                for (a, w) in more {
+                    *weights.entry(a).or_insert(0.0) += w;
+                }
+            }
+        }
+        (n, sums)
     }
 
     /// Adds the integrals of a facet: ∫ Φ_a N_c, ∫ Φ_a N_b and ∫ Φ_a.
-    fn integrate(&self, face: &Face<D>, overlap: &Overlap, sums: &mut BTreeMap<usize, Sums>) {
+    fn integrate(
+        &self,
+        face: &Face<D>,
+        overlap: &Overlap,
+        sums: &mut BTreeMap<(usize, usize), Sums>,
+    ) {
         let count = face.nodes.len();
         let Some(multipliers) = Multipliers::new(overlap, count) else {
             return;
         };
         for (&a, phi) in multipliers.nodes.iter().zip(&multipliers.values) {
-            let sums = sums.entry(face.nodes[a]).or_insert_with(|| Sums {
-                kind: face.node_kind(a),
-                area: 0.0,
-                own: BTreeMap::new(),
-                opposite: BTreeMap::new(),
-            });
+            let sums = sums
+                .entry((face.part, face.nodes[a]))
+                .or_insert_with(|| Sums {
+                    kind: face.node_kind(a),
+                    area: 0.0,
+                    seen: 0.0,
+                    gap: 0.0,
+                    size: 0.0,
+                    own: BTreeMap::new(),
+                    opposite: BTreeMap::new(),
+                });
             sums.area += phi.iter().sum::<f64>();
+            sums.size = sums.size.max(face.size());
+            let n = self.normals[&(face.part, face.nodes[a])];
             // Those of the other nodes with a multiplier vanish where Ñ is N.
             let beside =
                 |c: &usize| *c == a || !face.change.is_none() || !multipliers.nodes.contains(c);
@@ -113,6 +170,12 @@ impl<const D: usize> Sides<'_, D> {
             }
             for (sample, p) in overlap.samples.iter().zip(phi) {
                 let other = &self.other[sample.other];
+                sums.seen -= p * dot(&n, &unit(&other.outward(other.middle())));
+                let (x, y) = (
+                    interpolate(&sample.shape, &face.x),
+                    interpolate(&sample.opposite, &other.x),
+                );
+                sums.gap += p * along(&x, &y, &n);
                 for (&b, n) in other.nodes.iter().zip(sample.opposite) {
                     *sums.opposite.entry(b).or_insert(0.0) += p * n;
                 }

@@ -260,3 +260,65 @@ fn of_two_layers_the_nearer_is_met() {
         }
     }
 }
+
+/// The corner of a block over a floor, with a wall at a distance: it is opposite to what is near, which its side looks
+/// straight at, or to both, with the normal between them.
+#[test]
+fn a_corner_faces_what_is_near_or_what_is_on_both_sides() {
+    let corner = |apart: f64, tilt: f64, pairing: Pairing| {
+        let block = |name, x: [f64; 2], y: [f64; 2]| {
+            let kind = CellKind::Quad4;
+            block2(name, kind, &uniform(x[0], x[1], 4), &uniform(y[0], y[1], 4)).expect("valid")
+        };
+        let right = 2.0 + apart;
+        let mesh = block("body", [0.0, 2.0], [0.0, 2.0])
+            .joined(block("floor", [-1.0, 4.0], [-1.0, 0.0]))
+            .and_then(|m| m.joined(block("wall", [right, right + 1.0], [-0.1, 3.0])))
+            // The side of the body leans over the floor.
+            .and_then(|m| {
+                m.map(|[x, y]| match x > 1.9 && x < 2.1 && y > 0.0 {
+                    true => [x + tilt * y, y],
+                    false => [x, y],
+                })
+            })
+            .expect("valid");
+        let group = |name| mesh.facet_group(name).expect("named");
+        let own = [group("body.bottom"), group("body.right")].concat();
+        let other = [group("floor.top"), group("wall.left")].concat();
+        let rows = mesh.mortar_rows(
+            mesh.nodes(),
+            (&own, &other),
+            pairing,
+            &PlaneStrain::default(),
+        );
+        let at = |a: usize| mesh.nodes()[a];
+        let row = rows.iter().find(|row| at(row.node) == [2.0, 0.0]);
+        let row = row.expect("the corner has a row").clone();
+        let opposite = [0, 1].map(|i| sum(&row.opposite, |a| at(a)[i]));
+        (row.normal, opposite)
+    };
+    for pairing in [Pairing::Mortar, Pairing::NodeToSurface] {
+        // Alone on the floor, its side upright or leaning over it.
+        for tilt in [0.0, 0.3, 0.8] {
+            let (normal, opposite) = corner(9.0, tilt, pairing);
+            assert!(
+                (normal[1] - 1.0).abs() < 1e-12,
+                "{pairing:?} {tilt}: {normal:?}"
+            );
+            assert!(
+                opposite[1].abs() < 1e-12,
+                "{pairing:?} {tilt}: {opposite:?}"
+            );
+        }
+        // A wall beside it that is not touched.
+        let (normal, opposite) = corner(0.4, 0.0, pairing);
+        assert!((normal[1] - 1.0).abs() < 1e-12, "{pairing:?}: {normal:?}");
+        assert!(opposite[1].abs() < 1e-12, "{pairing:?}: {opposite:?}");
+    }
+    let (normal, _) = corner(0.0, 0.0, Pairing::Mortar);
+    let half = 0.5f64.sqrt();
+    assert!(
+        (normal[0] + half).abs() < 1e-12 && (normal[1] - half).abs() < 1e-12,
+        "{normal:?}"
+    );
+}

@@ -179,3 +179,67 @@ tools = [{{ name = "roll", move = [0, -0.05] }}]
     assert!(!pressed(0.0).is_empty() && pressed(0.0).iter().all(|&y| y == 0.0));
     assert!(!pressed(1.0).is_empty() && pressed(1.0).iter().all(|&y| y == 4.0));
 }
+
+/// A block pressed against a wider one: that its side wall is of the contact too changes nothing, however that looks at
+/// what is opposite.
+#[test]
+fn a_side_wall_beside_what_touches_turns_no_normal() {
+    let pressed = |strain: &str, element: &str, surface: &str| {
+        let (analysis, z, depth, fixed) = match element {
+            "hex8" => (
+                "solid",
+                "z = [0, 1]",
+                ", 1",
+                r#", { on = "b.back", u = ["z"] }, { on = "d.back", u = ["z"] }"#,
+            ),
+            _ => ("plane-strain", "", "", ""),
+        };
+        let blocks = finish(simulation(&format!(
+            r#"units = "mm-N-MPa"
+analysis = "{analysis}"
+strain = "{strain}"
+[[mesh.block]]
+name = "b"
+element = "{element}"
+x = [0, 3]
+y = [0, 3]
+{z}
+cells = [4, 4{depth}]
+[[mesh.block]]
+name = "d"
+element = "{element}"
+x = [0, 5]
+y = [3, 5]
+{z}
+cells = [5, 3{depth}]
+[[material]]
+on = ["b", "d"]
+young = 210000
+poisson = 0.3
+[[contact]]
+surface = {surface}
+against = "d.bottom"
+friction = 0.3
+[[step]]
+name = "s"
+increments = 1
+fix = [{{ on = "b.bottom", u = ["y"] }}, {{ on = "b.left", u = ["x"] }}, {{ on = "d.left", u = ["x"] }}{fixed}]
+move = [{{ on = "d.top", u = {{ y = -0.02 }} }}]
+"#
+        )));
+        blocks.history().numbers("force.d.top.y")[0]
+    };
+    for (strain, element) in [
+        ("small", "quad4"),
+        ("small", "quad8"),
+        ("finite", "quad4"),
+        ("small", "hex8"),
+    ] {
+        let top = pressed(strain, element, r#""b.top""#);
+        let both = pressed(strain, element, r#"["b.top", "b.right"]"#);
+        assert!(
+            (both / top - 1.0).abs() < 1e-9,
+            "{strain} {element}: {both} {top}"
+        );
+    }
+}
