@@ -204,11 +204,11 @@ impl<const D: usize> Driver<D> {
 
     /// Points that are held, of which the relative displacement, as far as it is free, is determined
     /// by those of others: by the points with a freedom of their own first, then by those with one
-    /// opposite nearly to themselves. Ties, and contacts without friction, of which only that is determined by others
-    /// which is along the directions in which they are held, are kept.
+    /// opposite nearly to themselves. Where only that is determined by others which is along the directions in which they
+    /// are held, ties are kept as they are, and contacts say what their nodes can do.
     fn spare(
         &self,
-        motion_rows: &[RelativeMotionRow<D>],
+        motion_rows: &mut [RelativeMotionRow<D>],
         kept: &BTreeSet<usize>,
         loading: &Loading<D>,
     ) -> Vec<usize> {
@@ -224,6 +224,7 @@ impl<const D: usize> Driver<D> {
         let mut spare = Vec::new();
         for (alone, c) in order {
             let (motion_row, point) = (&motion_rows[c], &self.points[c]);
+            let mut own_only = false;
             let Some((n, gap)) = motion_row.plane(&SVector::zeros()) else {
                 continue;
             };
@@ -243,8 +244,10 @@ impl<const D: usize> Driver<D> {
             let mut all = rows_in(&motion_row.free(point.node, |a| loading.free_at(a)));
             if alone.is_finite() && !are_distinct(&all, &rows) {
                 let own = loading.free_at(point.node);
-                let parts = point.law.is_tie() && own.dimension() > 0
-                    || !point.law.resists_slip() && own.part(&n).norm() > DISTINCT;
+                let parts = match point.law.is_tie() {
+                    true => own.dimension() > 0,
+                    false => own.part(&n).norm() > DISTINCT,
+                };
                 if parts {
                     all = rows_in(&own);
                 }
@@ -252,12 +255,14 @@ impl<const D: usize> Driver<D> {
                     spare.push(c);
                     continue;
                 }
+                own_only = !point.law.is_tie();
             }
             let own: Vec<usize> = own(c).collect();
             for (component, row) in all {
                 // What cannot be solved for is refused where the increment is.
                 rows.solve(component, &row, &own);
             }
+            motion_rows[c].own_only |= own_only;
         }
         spare
     }

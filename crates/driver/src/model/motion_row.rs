@@ -20,6 +20,8 @@ pub(crate) struct RelativeMotionRow<const D: usize> {
     pub(crate) opposite: Vec<(usize, f64)>,
     /// Share of the surface in contact \[mm²\].
     pub(crate) area: f64,
+    /// Whether it says only what its node can do: others say what the nodes opposite do along the rest.
+    pub(crate) own_only: bool,
     /// Normal and gap where the surfaces were paired, where they are those of a surface.
     plane: Option<(SVector<f64, D>, f64)>,
     /// Slip from the start of the increment to there, in space \[mm\].
@@ -206,10 +208,14 @@ impl<const D: usize> RelativeMotionRow<D> {
         Some((normal, gap + normal.dot(slip)))
     }
 
-    /// Where the relative displacement is free, from where nodes are: as the own node is, and as all of those opposite
-    /// are.
+    /// Where the relative displacement is free, from where nodes are: as the own node is and, unless it says only that, as
+    /// all of those opposite are.
     pub(crate) fn free(&self, node: usize, of: impl Fn(usize) -> Subspace<D>) -> Subspace<D> {
-        let opposite = self.opposite.iter().map(|&(b, _)| of(b));
+        let opposite = self
+            .opposite
+            .iter()
+            .filter(|_| !self.own_only)
+            .map(|&(b, _)| of(b));
         match opposite.reduce(|all, other| all.common(&other)) {
             Some(opposite) => of(node).with(&opposite),
             None => of(node),
@@ -268,6 +274,7 @@ mod tests {
             own: vec![(0, 1.0)],
             opposite: vec![(2, 0.5), (3, 0.5)],
             area: 3.0,
+            own_only: false,
             plane: plane(1.0, 0.1),
             slipped: None,
         };
@@ -275,6 +282,7 @@ mod tests {
             own: vec![(1, 1.0)],
             opposite: vec![(2, 1.0)],
             area: 2.0,
+            own_only: false,
             plane: plane(1.0, 0.5),
             slipped: None,
         };
