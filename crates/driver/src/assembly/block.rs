@@ -100,6 +100,12 @@ pub trait Block<const D: usize>: Send + Sync {
     /// Whether the stiffness is that of the forces, or does for it.
     fn is_symmetric(&self) -> bool;
 
+    /// Whether the forces are those of a potential or, under large strains, hardly differ from such: its slope tells how far
+    /// to go along a step.
+    fn has_potential(&self) -> bool {
+        self.is_symmetric()
+    }
+
     /// Whether the elastic stiffness is the same always, and plastic flow adds to it: displacements are so
     /// small that they do not change it.
     fn keeps_elastic_stiffness(&self) -> bool;
@@ -358,6 +364,10 @@ impl<C: CellLaw<D>, const D: usize> Block<D> for SolidBlock<C, D> {
 
     fn is_symmetric(&self) -> bool {
         self.of_cell.is_symmetric()
+    }
+
+    fn has_potential(&self) -> bool {
+        self.of_cell.has_potential()
     }
 
     fn keeps_elastic_stiffness(&self) -> bool {

@@ -140,6 +140,11 @@ pub trait CellLaw<const D: usize>: 'static + Send + Sync {
     /// Whether the stiffness is that of the forces, or does for it.
     fn is_symmetric(&self) -> bool;
 
+    /// See [`Block::has_potential`](crate::Block::has_potential).
+    fn has_potential(&self) -> bool {
+        self.is_symmetric()
+    }
+
     /// Whether displacements do not change the elastic stiffness.
     fn keeps_elastic_stiffness(&self) -> bool;
 

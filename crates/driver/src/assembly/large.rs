@@ -367,6 +367,10 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Large<L> {
         self.0.is_symmetric() && self.0.is_isotropic()
     }
 
+    fn has_potential(&self) -> bool {
+        self.0.is_symmetric()
+    }
+
     fn keeps_elastic_stiffness(&self) -> bool {
         false
     }

@@ -34,8 +34,7 @@ pub(crate) struct NewtonStep {
     pub(crate) slack: f64,
     /// Whether the tangent at its end is likely to be needed.
     pub(crate) tangent: bool,
-    /// Residual that a step of an unsymmetric tangent may leave \[N\]; `None` of a symmetric one, of
-    /// which ΔΦ decides.
+    /// Residual that a step may leave \[N\] where forces have no potential; `None` where ΔΦ decides.
     pub(crate) allowed: Option<f64>,
 }
 
@@ -98,7 +97,7 @@ impl<const D: usize> Driver<D> {
     /// Goes along a Newton step, and returns the part taken: all of it, unless that overshoots the minimum
     /// of ΔΦ with contact forces between those of both ends. Friction that changes can make ΔΦ no potential
     /// of the step, which then does not begin downhill; there the norm of the residual decides; where the
-    /// tangent is not symmetric, the largest residual of the last iterations, so that kinks are passed.
+    /// forces of the bulk have none, the largest residual of the last iterations, so that kinks are passed.
     pub(crate) fn search(
         &mut self,
         system: &mut System,

@@ -108,10 +108,10 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Imbalance that a step of an unsymmetric tangent may leave \[N\], after the imbalances of the
-    /// iterates so far: the largest of the last few; `None` where the tangent is symmetric.
+    /// iterates so far: the largest of the last few; `None` where a potential tells how far to go.
     pub(crate) fn allowed(&self, imbalances: &[f64]) -> Option<f64> {
         let last = &imbalances[imbalances.len().saturating_sub(MEMORY)..];
-        (!self.is_symmetric()).then(|| largest(last.iter().copied()))
+        (!self.blocks.iter().all(|b| b.has_potential())).then(|| largest(last.iter().copied()))
     }
 
     /// Whether the stiffness of all blocks is that of their forces.

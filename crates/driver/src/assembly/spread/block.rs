@@ -179,6 +179,10 @@ impl<const D: usize> Block<D> for SpreadBlock<D> {
         self.own.is_symmetric()
     }
 
+    fn has_potential(&self) -> bool {
+        self.own.has_potential()
+    }
+
     fn keeps_elastic_stiffness(&self) -> bool {
         self.own.keeps_elastic_stiffness()
     }
