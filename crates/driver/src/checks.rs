@@ -1,5 +1,6 @@
 //! What a model lacks and what an answer hides, told before or after it is solved; nothing that changes it.
 
+pub(crate) mod ahead;
 pub(crate) mod beside;
 pub(crate) mod between;
 pub(crate) mod gaps;

@@ -73,6 +73,8 @@ pub struct Driver<const D: usize> {
     pub(crate) system: Option<System>,
     /// [`Driver::guess`].
     pub(crate) guessed: Option<Vec<f64>>,
+    /// Whether what tools move may end the increment at hand far away: shorter ones do as well.
+    pub(crate) may_leap: bool,
     /// What the increment under way has counted on ways that led to no balance.
     pub(crate) spent: Counts,
     /// The nodes on the surfaces of the bodies, where there are tools.
@@ -150,6 +152,7 @@ impl<const D: usize> Driver<D> {
             state,
             system: None,
             guessed: None,
+            may_leap: false,
             spent: Counts::default(),
         };
         driver.start();
@@ -526,6 +529,7 @@ impl<const D: usize> Driver<D> {
         self.spent = Counts::default();
         let outcome = self.attempt(end, watch);
         self.guessed = None;
+        self.may_leap = false;
         outcome
     }
 
@@ -594,7 +598,7 @@ impl<const D: usize> Driver<D> {
     /// Whether an increment that ends so is tried with contacts tied in the factor at once: a body that nothing but them
     /// holds, and that stresses turn away, comes to rest there in less than on the way in quarters.
     pub(crate) fn ties(&self, system: &System, error: &IncrementError, end: &Loading<D>) -> bool {
-        let ends = matches!(error, IncrementError::Model(_)) || error.is_broken_off();
+        let ends = error.is_final();
         let turns_away = system.floats && self.has_large_strains() && !ends;
         turns_away && self.may_tie(system, end)
     }

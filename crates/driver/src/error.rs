@@ -492,10 +492,10 @@ pub enum IncrementError {
         /// How deep \[mm\].
         depth: f64,
     },
-    /// Loads that grow have left a stable equilibrium for another one, across unstable ones.
+    /// A stable equilibrium was left for another one, across unstable ones or none.
     #[error(
-        "the body snaps: it moves by {moved:.3e} mm at once, through equilibria that are unstable: the load has \
-         passed its limit"
+        "the body snaps: it moves by {moved:.3e} mm at once, far from the equilibrium before: loads have passed \
+         their limit, or tools have lost their hold"
     )]
     Snap {
         /// Largest displacement of the increment \[mm\].
@@ -613,6 +613,11 @@ impl IncrementError {
             Self::Law(fault) => fault.breaks_off(),
             _ => false,
         }
+    }
+
+    /// Whether a smaller increment is none of the ways out: it was broken off, or the model makes no sense.
+    pub(crate) fn is_final(&self) -> bool {
+        matches!(self, Self::Model(_)) || self.is_broken_off()
     }
 }
 

@@ -50,6 +50,7 @@ pub use assembly::cells::{Cells, ElementCells};
 pub use assembly::large::Large;
 pub use assembly::panel::PanelBlock;
 pub use assembly::small::Small;
+pub use checks::ahead::Ahead;
 pub use checks::beside::Beside;
 pub use checks::between::Between;
 pub use checks::gaps::LeastGap;

@@ -125,6 +125,9 @@ pub struct IncrementReport {
     /// The load factor at a limit that has been passed in this increment, along the path of equilibria: loads that
     /// rose fall.
     pub limit: Option<f64>,
+    /// The node that moves most, and how far \[mm\], where tools or supports move the body and it comes to rest far from
+    /// where it was, in as short an increment as there may be: between the two is no path of equilibria that was found.
+    pub leap: Option<(usize, f64)>,
     /// Rigid motions that nothing resists in the state that was found, in words, if the statuses left
     /// some free on the way: forces are what they are, and positions are those nearest to the ones before.
     pub free_motions: Vec<String>,

@@ -258,15 +258,7 @@ impl<const D: usize> Driver<D> {
         let all = facets.iter().filter_map(deepest);
         let (x, depth, facet) = all.max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)))?;
         let normal = turned(obstacle.normal(&x), &turn);
-        let along = own().map(|p| self.displacement(p.node).dot(&normal));
-        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), u| {
-            (l.min(u), h.max(u))
-        });
-        // What rounding moves is not pressed.
-        let pressed = match high - low > FINE * FINE * facet {
-            true => high - low,
-            false => 0.0,
-        };
+        let pressed = self.pressed(contact, &normal, facet);
         (depth > Between::<D>::BESIDE_PRESSED * pressed).then(|| Between {
             contact,
             depth,
@@ -274,6 +266,20 @@ impl<const D: usize> Driver<D> {
             position: (body.turned(x, &turn) + at).into(),
             pressed,
         })
+    }
+
+    /// How far the nodes of a contact have been pressed along a direction, against each other \[mm\]: what rounding moves
+    /// on a facet of this length is not pressed.
+    pub(super) fn pressed(&self, contact: usize, along: &SVector<f64, D>, facet: f64) -> f64 {
+        let own = self.points.iter().filter(|p| p.contact == contact);
+        let moved = own.map(|p| self.displacement(p.node).dot(along));
+        let (low, high) = moved.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), u| {
+            (l.min(u), h.max(u))
+        });
+        match high - low > FINE * FINE * facet {
+            true => high - low,
+            false => 0.0,
+        }
     }
 }
 

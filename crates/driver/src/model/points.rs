@@ -135,11 +135,13 @@ impl<const D: usize> ContactPoint<D> {
         let here = obstacle.distance(&at);
         let n = obstacle.normal(&at);
         let mut weighted = 0.0;
+        let far = self.own.iter().map(|&(a, _)| (x(a) - at).norm());
+        let rounding = ROUNDED * ROUNDED * far.fold(0.0, f64::max);
         for &(a, w) in self.own.iter().filter(|_| self.own.len() > 1) {
             let (way, distance, m) = (x(a) - at, obstacle.distance(&x(a)), obstacle.normal(&x(a)));
             // A smooth surface is between its tangents at both ends.
             let off = distance - here - 0.5 * (n + m).dot(&way);
-            let between = 0.25 * (n - m).norm().max(ROUNDED) * way.norm();
+            let between = 0.25 * (n - m).norm().max(ROUNDED) * way.norm() + rounding;
             if n.dot(&m) < SMOOTH || off.abs() > between {
                 return here - self.offset;
             }
@@ -498,6 +500,15 @@ mod tests {
             let ball = Ball::new(center.into(), 10.0).expect("a ball");
             let gap = point.gap(&ball, |a| turned([0.0, -1.0, 1.0][a]));
             assert!(gap.abs() < 1e-13, "{k}: {gap}");
+        }
+        // A straight side beside a ball that it does not touch, turned and elsewhere.
+        for k in 0..360 {
+            let turn = nalgebra::Rotation2::new(f64::from(k).to_radians());
+            let center = turn * SVector::from([0.0, -10.3]);
+            let ball = Ball::new(center.into(), 10.0).expect("a ball");
+            let gap = point.gap(&ball, |a| turn * SVector::from([[0.0, -1.0, 1.0][a], 0.0]));
+            let expected = (5.0 * 0.3 - 2.0 * (10.3f64.hypot(1.0) - 10.0)) / 3.0;
+            assert!((gap - expected).abs() < 1e-13, "{k}: {gap}");
         }
         let small = Ball::new([0.5, -0.3], 0.3).expect("a ball");
         assert!(point.gap(&small, |a| SVector::from([x[a], 0.0])).abs() < 1e-15);

@@ -253,6 +253,7 @@ impl<const D: usize> Driver<D> {
             negative_eigenvalues: counts.negative,
             mode: None,
             limit: None,
+            leap: None,
             free_motions: match counts.undetermined {
                 true => self.free_motions(),
                 false => Vec::new(),

@@ -42,14 +42,18 @@ impl<const D: usize> Driver<D> {
         let mut candidate = self.equilibrium(system, (start, end), watch)?;
         self.check_passage(&candidate.d_u, end)?;
         self.check_bodies(&candidate.d_u)?;
-        self.check_snap(system, (start, end), &candidate, watch)?;
+        let leap = self.check_snap(system, (start, end), &candidate, watch)?;
         candidate.counts = std::mem::take(&mut self.spent).with(candidate.counts);
         let mode = match candidate.counts.negative > 0 && !self.state.unstable {
             true => self.unstable_mode(system, &candidate),
             false => None,
         };
         let report = self.commit(start, end, candidate)?;
-        Ok(IncrementReport { mode, ..report })
+        Ok(IncrementReport {
+            mode,
+            leap,
+            ..report
+        })
     }
 
     /// The equilibrium at the end of an increment: found at once or, under large strains, by following it along the
@@ -71,8 +75,7 @@ impl<const D: usize> Driver<D> {
         for patience in [Some(PATIENCE), None] {
             let Err(error) = &found else { break };
             if !follows
-                || matches!(error, IncrementError::Model(_))
-                || error.is_broken_off()
+                || error.is_final()
                 || patience.is_none() && self.condenses(system, error)
                 || self.ties(system, error, end)
             {
@@ -86,8 +89,9 @@ impl<const D: usize> Driver<D> {
         found
     }
 
-    /// Whether loads that grow, under large strains, have left the body near where it was: an equilibrium
-    /// beyond a limit of the load is that of another branch, which the path leads to.
+    /// Whether, under large strains, the body has stayed near where it was: an equilibrium beyond a limit is that of
+    /// another branch, to which loads lead along a path, and tools perhaps in shorter increments. Where those have been
+    /// tried, [`Driver::may_leap`], what is left is a leap: the node that moves most, and how far.
     ///
     /// # Errors
     /// [`IncrementError::Snap`].
@@ -97,45 +101,63 @@ impl<const D: usize> Driver<D> {
         (start, end): (&Loading<D>, &Loading<D>),
         candidate: &Candidate<D>,
         watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
-    ) -> Result<(), IncrementError> {
-        let moves = start.displacement != end.displacement || start.turn != end.turn;
+    ) -> Result<Option<(usize, f64)>, IncrementError> {
+        let grows = end.increment_from(start);
+        let driven = self.driven(&grows);
         let stable = candidate.counts.negative == 0;
-        if moves || !stable || !self.has_large_strains() {
-            return Ok(());
+        if !stable || !self.has_large_strains() || driven > 0.0 && self.is_let_go() {
+            return Ok(None);
         }
         let dofs = self.mesh_dofs();
         let between =
             |a: &[f64], b: &[f64]| largest(a.iter().zip(b).take(dofs).map(|(a, b)| a - b));
         let rest = vec![0.0; candidate.d_u.len()];
         let moved = between(&candidate.d_u, &rest);
-        let expected = between(&self.predictor(start, end), &rest);
-        // Of the first increment nothing is expected. One in which contact opens may pass a limit although no tangent of its
-        // iterates was indefinite.
+        let expected = between(&self.predictor(start, end), &rest).max(driven);
+        // Of the first increment of loads nothing is expected. One in which contact opens may pass a limit although no
+        // tangent of its iterates was indefinite.
         let may_snap = expected > 0.0 || system.was_indefinite();
         if !may_snap || moved <= SNAP * expected.max(STILL * self.mesh.size()) {
-            return Ok(());
+            return Ok(None);
         }
         // A body that yields moves less in less of the increment, one that snaps as much.
         let (mut near, mut far) = ((0.0, rest), (1.0, candidate.d_u.clone()));
+        let mut is_known = true;
         for _ in 0..HALVINGS {
             let middle = 0.5 * (near.0 + far.0);
             let here = start.towards(end, middle);
             let increment = self.begin_increment(system, (start, &here), near.1.clone(), None);
-            let Candidate { d_u, counts, .. } = self.balance(system, increment, watch)?;
+            let Candidate { d_u, counts, .. } = match self.balance(system, increment, watch) {
+                Err(error) if driven > 0.0 && !error.is_final() => {
+                    is_known = false;
+                    break;
+                }
+                found => found?,
+            };
             self.spent.add(&counts);
             match between(&d_u, &near.1) > between(&far.1, &d_u) {
                 true => far = (middle, d_u),
                 false => near = (middle, d_u),
             }
         }
-        if between(&far.1, &near.1) > 0.5 * moved {
+        let snaps = between(&far.1, &near.1) > 0.5 * moved;
+        if snaps && is_known && !(self.may_leap && driven > 0.0) {
             return Err(IncrementError::Snap { moved });
         }
         // What is committed is the last that was evaluated.
         let none = SparseVector::default();
         self.assemble(system, end, (&candidate.d_u, &none), Stiffness::None);
         self.follow_surfaces(end, &candidate.d_u)?;
-        Ok(())
+        let leaps = |dof: &usize| candidate.d_u[*dof].abs() == moved;
+        let node = (0..dofs).find(leaps).map_or(0, |dof| dof / D);
+        Ok(snaps.then_some((node, moved)))
+    }
+
+    /// The largest motion that a loading prescribes, of a turn at the size of the mesh \[mm\].
+    fn driven(&self, grows: &Loading<D>) -> f64 {
+        let turned = largest(grows.turn.iter().map(|(_, angle)| angle));
+        let moved = largest(grows.displacement.values().copied());
+        moved.max(turned * self.mesh.size())
     }
 
     /// Finds the equilibrium at the end of an increment by following it along the loading, in parts: history stands

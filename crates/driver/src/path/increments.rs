@@ -1,5 +1,7 @@
 //! How a step is divided into increments; not how one is solved.
 
+use crate::error::ModelError;
+
 /// Lengths of the increments of a step, in parts of it.
 ///
 /// An increment that fails is halved, down to `min`; one that converges after that is doubled, up
@@ -27,6 +29,45 @@ impl Increments {
             min: None,
             max: start,
         }
+    }
+
+    /// Whether the lengths are parts of a step, that of the first between the others.
+    ///
+    /// # Errors
+    /// [`ModelError::OutOfRange`] of the first that is not.
+    pub(crate) fn check(&self) -> Result<(), ModelError> {
+        let Self { start, min, max } = *self;
+        let least = min.unwrap_or(start);
+        let wrong = |what: &str, value: f64, expected: &'static str| {
+            let what = what.into();
+            Err(ModelError::OutOfRange {
+                what,
+                value,
+                expected,
+            })
+        };
+        if !(start > 0.0 && start.is_finite()) {
+            return wrong(
+                "length of the first increment",
+                start,
+                "a positive part of the step",
+            );
+        }
+        if !(least > 0.0 && least <= start) {
+            return wrong(
+                "least length of an increment",
+                least,
+                "a positive one, at most that of the first",
+            );
+        }
+        if max.is_nan() || max < start {
+            return wrong(
+                "greatest length of an increment",
+                max,
+                "at least that of the first",
+            );
+        }
+        Ok(())
     }
 
     /// Number of increments, if all converge at the first length.
@@ -64,5 +105,34 @@ impl Increments {
 impl From<usize> for Increments {
     fn from(count: usize) -> Self {
         Self::equal(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of other lengths a step would never end, or be over before it has begun.
+    #[test]
+    fn lengths_are_parts_of_a_step() {
+        for count in [0, 1, 7] {
+            assert_eq!(Increments::equal(count).check(), Ok(()));
+        }
+        let of = |start, min, max| Increments { start, min, max }.check();
+        assert_eq!(of(0.1, Some(0.1), 1.0), Ok(()));
+        for (start, min, max) in [
+            (0.0, None, 1.0),
+            (-1.0, None, 1.0),
+            (f64::NAN, None, 1.0),
+            (f64::INFINITY, None, f64::INFINITY),
+            (0.5, Some(0.0), 1.0),
+            (0.5, Some(0.6), 1.0),
+            (0.5, Some(f64::NAN), 1.0),
+            (0.5, None, 0.1),
+            (0.5, None, f64::NAN),
+        ] {
+            let refused = matches!(of(start, min, max), Err(ModelError::OutOfRange { .. }));
+            assert!(refused, "{start}, {min:?}, {max}");
+        }
     }
 }

@@ -40,6 +40,8 @@ pub struct Ramp<const D: usize> {
     yielded: [Option<Yielded>; 2],
     /// The load factor as an unknown, once that is what it takes.
     path: Option<Path>,
+    /// Part of the step at which the body was found where it snaps to, until that is done.
+    beyond: Option<f64>,
 }
 
 /// Stiffness against the loads of a step in an increment.
@@ -161,7 +163,12 @@ impl<const D: usize> Saved for Ramp<D> {
                 numbers.value(value)?;
             }
             numbers.flag(&mut path.ended)
-        })
+        })?;
+        numbers.option(
+            &mut self.beyond,
+            || 0.0,
+            |beyond, numbers| numbers.value(beyond),
+        )
     }
 }
 
@@ -258,7 +265,7 @@ impl<const D: usize> Driver<D> {
     /// Begins a step in a number of equal increments or in [`Increments`]; none is applied yet.
     ///
     /// # Errors
-    /// See [`Driver::loading`].
+    /// See [`Driver::loading`]; [`ModelError::OutOfRange`] for increments that are no parts of a step.
     pub fn begin(
         &self,
         step: &Step<D>,
@@ -266,6 +273,7 @@ impl<const D: usize> Driver<D> {
     ) -> Result<Ramp<D>, ModelError> {
         let end = self.loading(step)?;
         let increments = increments.into();
+        increments.check()?;
         let start = self.start_of(&end);
         Ok(Ramp {
             step: step.name.clone(),
@@ -282,6 +290,7 @@ impl<const D: usize> Driver<D> {
             work: 0.0,
             yielded: [None; 2],
             path: None,
+            beyond: None,
         })
     }
 
@@ -325,10 +334,12 @@ impl<const D: usize> Driver<D> {
         ramp: &mut Ramp<D>,
         watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<IncrementReport, IncrementError> {
+        let mut may_leap = false;
         loop {
             if let Some(path) = ramp.path {
                 return self.follow(ramp, path, watch);
             }
+            self.may_leap = may_leap;
             let (target, at_end) = ramp.target();
             let loading = ramp.at(target);
             let cuts = ramp.cuts;
@@ -338,6 +349,7 @@ impl<const D: usize> Driver<D> {
                     report.fraction = target;
                     report.cuts = cuts;
                     let before = std::mem::replace(&mut ramp.done, target);
+                    ramp.beyond = ramp.beyond.filter(|beyond| *beyond > target);
                     ramp.whole += usize::from(at_end);
                     let iterations = report.newton_iterations;
                     ramp.length = ramp
@@ -346,8 +358,7 @@ impl<const D: usize> Driver<D> {
                     ramp.converged(&report, before, self.last_work(&self.load(ramp)));
                     return Ok(report);
                 }
-                Err(error @ IncrementError::Model(_)) => return Err(error),
-                Err(error) if error.is_broken_off() => return Err(error),
+                Err(error) if error.is_final() => return Err(error),
                 Err(cause) => {
                     // Halved exactly, and until it is not what has just failed.
                     ramp.length *= 0.5;
@@ -368,7 +379,15 @@ impl<const D: usize> Driver<D> {
                     let fewest = ramp.increments.start * 0.5f64.powi(cuts as i32);
                     let smallest = ramp.increments.min.unwrap_or(fewest);
                     ramp.path = self.path(ramp).filter(|_| !follows);
+                    if matches!(cause, IncrementError::Snap { .. }) && ramp.moves() {
+                        ramp.beyond = Some(target);
+                    }
                     if ramp.path.is_none() && ramp.length < smallest {
+                        // No shorter one leads on: the body leaps to where it was found.
+                        if let Some(beyond) = ramp.beyond.take() {
+                            (may_leap, ramp.length) = (true, beyond - ramp.done);
+                            continue;
+                        }
                         let stopped = ramp.stopped(cause, 2.0 * ramp.length);
                         return Err(self.out_of_hand(ramp, stopped));
                     }
@@ -498,8 +517,7 @@ impl<const D: usize> Driver<D> {
                     ramp.path = Some(path);
                     return Ok(report);
                 }
-                Err(error @ IncrementError::Model(_)) => return Err(error),
-                Err(error) if error.is_broken_off() => return Err(error),
+                Err(error) if error.is_final() => return Err(error),
                 Ok(None) => {}
                 Err(cause)
                     if ramp.done < LEFT * path.peak

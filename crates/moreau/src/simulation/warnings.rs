@@ -33,9 +33,13 @@ enum Kind {
     Limit,
     /// Cells distorted by large strains.
     Distorted,
+    /// A body that has come to rest far from where it was.
+    Leap,
+    /// A tool that bears on a node which it does not reach.
+    Ahead,
 }
 
-const KINDS: [Kind; 12] = [
+const KINDS: [Kind; 14] = [
     Kind::Strain,
     Kind::Rotation,
     Kind::Inverted,
@@ -48,6 +52,8 @@ const KINDS: [Kind; 12] = [
     Kind::Unstable,
     Kind::Limit,
     Kind::Distorted,
+    Kind::Leap,
+    Kind::Ahead,
 ];
 
 /// Quality below which a cell is distorted: that of a rectangle 1 : 20, or of a square sheared by 4.2.
@@ -178,6 +184,11 @@ impl Warnings {
             let at = (beside.node, beside.position.to_vec());
             self.note(Kind::Beside, numbers, at, report.increment);
         }
+        if let Some(ahead) = driver.bears_ahead() {
+            let numbers = vec![ahead.distance, ahead.pressed, ahead.contact as f64];
+            let at = (ahead.node, ahead.position.to_vec());
+            self.note(Kind::Ahead, numbers, at, report.increment);
+        }
         self.undecided(driver, report);
     }
 
@@ -208,6 +219,10 @@ impl Warnings {
         {
             let (at, direction) = most_moved(driver, report.mode.as_deref());
             self.note(Kind::Limit, [vec![limit], direction].concat(), at, when);
+        }
+        if let Some((node, moved)) = report.leap {
+            let at = driver.mesh().nodes()[node].iter().copied().collect();
+            self.note(Kind::Leap, vec![moved], (node, at), when);
         }
         if !report.free_motions.is_empty() {
             let numbers = vec![report.free_motions.len() as f64];
@@ -379,6 +394,14 @@ impl Worst {
                 shown(self.number(1), 9),
                 shown(DISTORTED, 2)
             ),
+            Kind::Ahead => self.ahead(driver, deck),
+            Kind::Leap => format!(
+                "the body leaps in increment {when}, the node at {at} by {} {}, far more than what moves it: that has lost its \
+                 hold, and what follows is an equilibrium at rest far from the one before, not where a body in motion would \
+                 come to rest",
+                shown(self.number(0), 3),
+                deck.units.length()
+            ),
             Kind::Buckling => self.buckling(deck),
         }
     }
@@ -425,6 +448,19 @@ impl Worst {
              push them out; release them, or move \"{opposite}\"",
             shown(self.number(1), 9),
             shown(self.number(0), 4)
+        )
+    }
+
+    fn ahead<const D: usize>(&self, driver: &Driver<D>, deck: &Deck) -> String {
+        let length = deck.units.length();
+        let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
+        let (surface, tool) = driver.contact_name(self.number(2) as usize);
+        format!(
+            "\"{tool}\" bears on node {index} of \"{surface}\" at {at} in increment {when} from {} {length} away, where the \
+             nodes of the surface are pressed in by {} {length}: the sides of facets with nodes between corners, which \
+             have one gap with those, are too long there beside the curve of the tool; use facets of half that length, or linear cells",
+            shown(self.number(0), 3),
+            shown(self.number(1), 3)
         )
     }
 

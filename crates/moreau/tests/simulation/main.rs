@@ -1,11 +1,13 @@
 //! A deck in memory, stepped from outside.
 
+mod ahead;
 mod beside;
 mod cornered;
 mod driven;
 mod interrupted;
 mod keys;
 mod laws;
+mod leaps;
 mod outside;
 mod points;
 mod replaced;
