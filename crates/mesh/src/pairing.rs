@@ -247,13 +247,11 @@ fn part<const D: usize>(faces: &mut [Face<D>]) {
         }
     }
     let mut beside: Vec<Vec<usize>> = vec![Vec::new(); faces.len()];
-    for (i, all) in around
-        .values()
-        .flat_map(|all| (0..all.len()).map(move |i| (i, all)))
-    {
-        let (f, n) = all[i];
-        let smooth = all.iter().filter(|(_, m)| dot(&n, m) >= SHARP);
-        beside[f].extend(smooth.map(|(g, _)| *g));
+    for all in around.values() {
+        for (f, n) in all {
+            let smooth = all.iter().filter(|(_, m)| dot(n, m) >= SHARP);
+            beside[*f].extend(smooth.map(|(g, _)| *g));
+        }
     }
     let mut parts: Vec<Option<usize>> = vec![None; faces.len()];
     for first in 0..faces.len() {
