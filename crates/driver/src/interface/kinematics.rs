@@ -14,6 +14,9 @@ use nalgebra::{SMatrix, SVector};
 /// decides between its two faces is then rounding, and not the model.
 const AHEAD: f64 = 1e-6;
 
+/// Cosine of the angle to the normal of a surface within which a motion presses on it.
+const PRESSING: f64 = 0.5;
+
 /// Slip that is rounding, over the size of the mesh.
 pub(crate) const NO_SLIP: f64 = 1e-11;
 
@@ -137,7 +140,17 @@ impl<const D: usize> Driver<D> {
                 true => turned(obstacle.way(&self.seen(p, motion_row), &x), &turn),
                 false => slip,
             };
-            let Some(corner) = obstacle.corner(&x, AHEAD * size) else {
+            // A tool that presses its corner on a node has it, wherever the node will be: it has not moved yet.
+            let comes_on = || {
+                let from = self.seen(p, motion_row);
+                let (way, facing) = (x - from, turned(p.facing, &-turn));
+                let still = p.own.iter().all(|&(a, _)| moved(a).norm() == 0.0);
+                let presses = still && way.dot(&facing) > PRESSING * way.norm();
+                presses
+                    .then(|| obstacle.corner(&from, AHEAD * size))
+                    .flatten()
+            };
+            let Some(corner) = obstacle.corner(&x, AHEAD * size).or_else(comes_on) else {
                 let gap = p.gap(obstacle, |a| tool.seen(now(a) - at, &turn));
                 let n = turned(obstacle.normal(&x), &turn);
                 let mut kinematics = Kinematics::new(p, &n, gap, &slip, free);

@@ -243,3 +243,41 @@ move = [{{ on = "d.top", u = {{ y = -0.02 }} }}]
         );
     }
 }
+
+/// A block under a die of its width: the nodes under the edges of the die are pressed by it, whether it moves or the block does.
+#[test]
+fn a_die_presses_what_is_under_its_edges() {
+    let pressed = |strain: &str, wider: f64, moves: &str| {
+        let [left, right] = [-wider, 1.0 + wider];
+        let block = finish(simulation(&format!(
+            r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+strain = "{strain}"
+mesh = {{ block = [{{ name = "b", element = "quad4", x = [0, 1], y = [0, 1], cells = [4, 4] }}] }}
+material = [{{ on = "b", young = 1000, poisson = 0.3 }}]
+contact = [{{ surface = "b.top", against = "die", friction = 0.8 }}]
+[[tool]]
+name = "die"
+polyline = [[{right:?}, 5], [{right:?}, 1], [{left:?}, 1], [{left:?}, 5]]
+[[step]]
+name = "press"
+increments = 2
+{moves}
+"#
+        )));
+        block.history().numbers("force.die.y")[1]
+    };
+    for strain in ["small", "finite"] {
+        let die = r#"fix = [{ on = "b.bottom", u = ["x", "y"] }]
+tools = [{ name = "die", move = [0, -0.1] }]"#;
+        let body = r#"move = [{ on = "b.bottom", u = { x = 0, y = 0.1 } }]"#;
+        let wide = pressed(strain, 0.5, die);
+        for moves in [die, body] {
+            let narrow = pressed(strain, 0.0, moves);
+            assert!(
+                (narrow / wide - 1.0).abs() < 1e-9,
+                "{strain}: {narrow} {wide}"
+            );
+        }
+    }
+}
