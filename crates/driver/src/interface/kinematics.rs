@@ -7,6 +7,7 @@ use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Kinematics, Turn, in_space, turned};
 use crate::vector::SparseVector;
 use crate::vector::subspace::Subspace;
+use moreau_contact::Corner;
 use moreau_laws::{Friction, Local};
 use nalgebra::{SMatrix, SVector};
 
@@ -22,6 +23,31 @@ pub(crate) const NO_SLIP: f64 = 1e-11;
 
 /// Part of a force that is rounding.
 const NO_FORCE: f64 = 1e-9;
+
+/// Of a point at a sharp corner of its tool, which sees it at x and has turned: any normal of the cone, as friction about its
+/// axis that holds as far as the cone reaches.
+fn at_corner<const D: usize>(
+    p: &ContactPoint<D>,
+    corner: &Corner<D>,
+    (x, turn): (&SVector<f64, D>, &Turn),
+    slip: &SVector<f64, D>,
+    free: &Subspace<D>,
+) -> Kinematics<D> {
+    let gap = corner.axis.dot(&(x - corner.position)) - p.offset;
+    let law = p.law.at_corner(corner.half_angle);
+    let blunt = ContactPoint { law, ..p.clone() };
+    // Slip along an edge would carry the point across it, where friction against both were one.
+    let across = corner.edge.map(|edge| {
+        let edge = Subspace::spanned(&[turned(edge, turn)]);
+        free.common(&edge.complement())
+    });
+    let axis = turned(corner.axis, turn);
+    let free = across.as_ref().unwrap_or(free);
+    Kinematics {
+        at_corner: true,
+        ..Kinematics::new(&blunt, &axis, gap, slip, free)
+    }
+}
 
 impl<const D: usize> Driver<D> {
     /// Where a tool is at the end of an increment: as it is told, or moved by what it was driven to.
@@ -106,22 +132,7 @@ impl<const D: usize> Driver<D> {
             let slip = motion_row.relative(moved);
             let Some(tool) = p.tool else {
                 let since = motion_row.relative(|a| moved(a) - self.footing.moved(a));
-                let kinematics = match motion_row.plane(&since) {
-                    Some((n, gap)) => {
-                        let slip = motion_row.slipped.map_or(since, |before| before + since);
-                        let kinematics = Kinematics::new(p, &n, gap - p.offset, &slip, free);
-                        // Nodes that are not held decide of the slip.
-                        let mut nodes = motion_row.nodes().into_iter();
-                        let known = nodes.all(|a| system.free_at(a).is_within(free))
-                            && self.is_dragged(i, &kinematics, &slip, free);
-                        match known {
-                            true => kinematics.with_known_slip(p, &slip),
-                            false => kinematics,
-                        }
-                    }
-                    // Opposite to nothing: as far away as anything can be.
-                    None => Kinematics::apart(p.law, size),
-                };
+                let kinematics = self.between_bodies(system, (i, p), motion_row, since, free);
                 return kinematics.between_forces(self.grips[i].area(&p.law, motion_row.area));
             };
             let turn = self.turn_at(tool, end, d_u);
@@ -167,19 +178,7 @@ impl<const D: usize> Driver<D> {
                 }
                 return kinematics.between_forces(self.grips[i].area(&p.law, motion_row.area));
             };
-            // Any normal of the cone: friction about its axis that holds as far as the cone reaches.
-            let gap = corner.axis.dot(&(x - corner.position)) - p.offset;
-            let law = p.law.at_corner(corner.half_angle);
-            let blunt = ContactPoint { law, ..p.clone() };
-            // Slip along an edge would carry the point across it, where friction against both were one.
-            let across = corner.edge.map(|edge| {
-                let edge = Subspace::spanned(&[turned(edge, &turn)]);
-                free.common(&edge.complement())
-            });
-            let free = across.as_ref().unwrap_or(free);
-            let axis = turned(corner.axis, &turn);
-            let mut kinematics = Kinematics::new(&blunt, &axis, gap, &slip, free);
-            kinematics.at_corner = true;
+            let mut kinematics = at_corner(p, &corner, (&x, &turn), &slip, free);
             kinematics.lever = lever;
             kinematics
         };
@@ -197,6 +196,31 @@ impl<const D: usize> Driver<D> {
             k.dragged = k.dragged.filter(|_| !decided && alone(&n));
         }
         all
+    }
+
+    /// Of a contact point between two bodies, after a relative displacement since they were paired.
+    fn between_bodies(
+        &self,
+        system: &System,
+        (i, p): (usize, &ContactPoint<D>),
+        motion_row: &RelativeMotionRow<D>,
+        since: SVector<f64, D>,
+        free: &Subspace<D>,
+    ) -> Kinematics<D> {
+        // Opposite to nothing: as far away as anything can be.
+        let Some((n, gap)) = motion_row.plane(&since) else {
+            return Kinematics::apart(p.law, self.mesh.size());
+        };
+        let slip = motion_row.slipped.map_or(since, |before| before + since);
+        let kinematics = Kinematics::new(p, &n, gap - p.offset, &slip, free);
+        // Nodes that are not held decide of the slip.
+        let mut nodes = motion_row.nodes().into_iter();
+        let known = nodes.all(|a| system.free_at(a).is_within(free))
+            && self.is_dragged(i, &kinematics, &slip, free);
+        match known {
+            true => kinematics.with_known_slip(p, &slip),
+            false => kinematics,
+        }
     }
 
     /// Whether friction acts along what conditions prescribe of a slip while the point is free across the surface or

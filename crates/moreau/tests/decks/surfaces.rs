@@ -4,7 +4,7 @@ use super::{flat, temporary};
 use moreau::deck::{Problem, open_in};
 use std::fmt::Write;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const DECK: &str = r#"
 units = "mm-N-MPa"
@@ -112,6 +112,18 @@ const FREE: (&str, &str) = (
     "",
 );
 
+/// The force of the die at the end of a deck in a folder.
+fn force_of_die(text: &str, folder: &Path) -> [f64; 3] {
+    let (_, problem, findings) = open_in(text, folder);
+    let Some(Problem::Solid(mut setup)) = problem else {
+        panic!("{}", findings.render("deck.toml", text, false));
+    };
+    let stage = &setup.stages[0];
+    let run = setup.driver.run(&stage.step, stage.increments, |_, _| {});
+    run.expect("converges");
+    setup.driver.tool_force("die").expect("a force").into()
+}
+
 /// The forces of a die of triangles and of a plane in its place, on the deck with these replacements.
 fn pressed(name: &str, die: &[[[f64; 3]; 3]], changes: &[(&str, &str)]) -> [[f64; 3]; 2] {
     let folder = with(name, &[("cube.stl", stl(die))]);
@@ -122,14 +134,7 @@ fn pressed(name: &str, die: &[[[f64; 3]; 3]], changes: &[(&str, &str)]) -> [[f64
             text.replacen(from, to, 1)
         });
         let text = text.replace("surface = { file = \"cube.stl\" }", tool);
-        let (_, problem, findings) = open_in(&text, &folder);
-        let Some(Problem::Solid(mut setup)) = problem else {
-            panic!("{}", findings.render("deck.toml", &text, false));
-        };
-        let stage = &setup.stages[0];
-        let run = setup.driver.run(&stage.step, stage.increments, |_, _| {});
-        run.expect("converges");
-        setup.driver.tool_force("die").expect("a force").into()
+        force_of_die(&text, &folder)
     })
 }
 
@@ -208,14 +213,7 @@ fn a_cube_presses_as_a_plane() {
     ];
     let forces = tools.map(|tool| {
         let text = DECK.replace("surface = { file = \"cube.stl\" }", tool);
-        let (_, problem, findings) = open_in(&text, &folder);
-        let Some(Problem::Solid(mut setup)) = problem else {
-            panic!("{}", findings.render("deck.toml", &text, false));
-        };
-        let stage = &setup.stages[0];
-        let run = setup.driver.run(&stage.step, stage.increments, |_, _| {});
-        run.expect("converges");
-        setup.driver.tool_force("die").expect("a force")
+        force_of_die(&text, &folder)
     });
     assert!(forces[0][1] < -90.0, "{forces:?}");
     for force in &forces[1..] {
