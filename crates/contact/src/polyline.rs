@@ -607,13 +607,13 @@ mod tests {
         #[test]
         fn a_rounded_line_is_smooth(
             radius in 0.3..0.8f64,
-            at in (0..7usize, 0.0..1.0f64, -0.15..0.15f64),
+            at in (0..7usize, 0.0..1.0f64, -0.1..0.1f64),
             by in prop::array::uniform2(-1.0..1.0f64),
         ) {
             let line = wave(radius);
             let (piece, s, off) = (&line.pieces[at.0], at.1, at.2);
             let s = s * piece.length;
-            // Within the smallest radius both sides of the line are smooth.
+            // Well within the smallest radius, 0.18, both sides of the line are smooth: near it differences are not exact.
             let x = piece.at(s) + left(piece.direction(s)) * off;
             let h = 1e-5;
             let (n, v) = (line.normal(&x), Vector2::from(by));
