@@ -17,7 +17,7 @@ type Point = Vector3<f64>;
 /// Across an edge where two triangles meet at an angle below a limit the surface is smooth: its corners keep their
 /// places, normals there are means over the triangles around, and curved patches in place of the triangles join with
 /// one normal along every such edge, so that the normal is everywhere the gradient of the distance. Other edges are
-/// sharp. Points of a sphere or of a cylinder give their normals exactly, and the surface is off by a small multiple of
+/// sharp, and so is a point, as the tip of a cone, around which faces lean farther than any two of them meet at. Points of a sphere or of a cylinder give their normals exactly, and the surface is off by a small multiple of
 /// the fourth power of the length of an edge over the radius, and by that of a flat side where a plane cuts a round one off.
 /// Plane parts stay plane, and beside a fillet the normals are those of what it rounds off: a plane at least four times as
 /// broad as the steps of the fillet, or a wall of long triangles.
@@ -283,6 +283,10 @@ const ROUNDED: f64 = 1e-4;
 /// Least angle around a corner of what a fillet rounds off: half of a turn, less a corner of an outline \[rad\].
 const HALF: f64 = 2.6;
 
+/// How much farther the faces around a point lean from their mean than they bend: around a corner of a smooth surface, where n
+/// of them meet, 1/(2 sin π/n), or half of that of the next ones.
+const POINTED: f64 = 1.5;
+
 /// How much longer than others the triangles of a wall are, and how much broader a plane.
 const LARGE: f64 = 4.0;
 
@@ -370,18 +374,35 @@ fn smooth(at: &[Point], faces: &[[usize; 3]], sharp: f64) -> Result<Vec<Patch>, 
         }
     }
     let breadths = breadths(at, faces, &opposite, &plane);
-    let roots: Vec<usize> = (0..joined.len()).map(|k| root(&joined, k)).collect();
-    let mut around: BTreeMap<usize, BTreeMap<usize, Plane>> = BTreeMap::new();
-    for (k, &own) in roots.iter().enumerate() {
-        let face = &faces[k / 3];
-        let [x, y, z] = [0, 1, 2].map(|i| at[face[(k + i) % 3]]);
-        let planes = around.entry(own).or_default();
-        let plane = planes.entry(root(&flat, k)).or_default();
-        plane.add(y - x, z - x, breadths[k / 3]);
+    let sums = |roots: &[usize]| -> HashMap<usize, Point> {
+        let mut around: BTreeMap<usize, BTreeMap<usize, Plane>> = BTreeMap::new();
+        for (k, &own) in roots.iter().enumerate() {
+            let face = &faces[k / 3];
+            let [x, y, z] = [0, 1, 2].map(|i| at[face[(k + i) % 3]]);
+            let planes = around.entry(own).or_default();
+            let plane = planes.entry(root(&flat, k)).or_default();
+            plane.add(y - x, z - x, breadths[k / 3]);
+        }
+        (around.into_iter())
+            .map(|(root, planes)| (root, mean_normal(planes.into_values().collect())))
+            .collect()
+    };
+    let mut roots: Vec<usize> = (0..joined.len()).map(|k| root(&joined, k)).collect();
+    let bend = |edge: usize| {
+        let (f, g) = (edge / 3, opposite[edge] / 3);
+        is_smooth(f, g).then(|| normals[f].angle(&normals[g]))
+    };
+    let bends = |f: usize| (3 * f..3 * f + 3).filter_map(bend).fold(0.0, f64::max);
+    let bends: Vec<f64> = (0..faces.len()).map(bends).collect();
+    let pointed = pointed(&roots, &sums(&roots), &normals, &bends);
+    for (k, own) in roots
+        .iter_mut()
+        .enumerate()
+        .filter(|(_, own)| pointed[**own])
+    {
+        *own = root(&flat, k);
     }
-    let sums: HashMap<usize, Point> = (around.into_iter())
-        .map(|(root, planes)| (root, mean_normal(planes.into_values().collect())))
-        .collect();
+    let sums = sums(&roots);
     let normal = |k: usize| sums[&roots[k]].try_normalize(0.0);
     let normal = |k: usize| normal(k).unwrap_or(normals[k / 3]);
     let edge = |edge: usize| {
@@ -412,6 +433,25 @@ fn smooth(at: &[Point], faces: &[[usize; 3]], sharp: f64) -> Result<Vec<Patch>, 
             )
         })
         .collect())
+}
+
+/// Which corners, by the least of those that smooth edges join, are points, as the tip of a cone: the faces around lean
+/// farther away from the mean normal than those of a surface do that is smooth there, whose bends are along their edges.
+fn pointed(
+    roots: &[usize],
+    sums: &HashMap<usize, Point>,
+    normals: &[Point],
+    bends: &[f64],
+) -> Vec<bool> {
+    let (mut lean, mut bend) = (vec![0.0_f64; roots.len()], vec![0.0_f64; roots.len()]);
+    for (k, &root) in roots.iter().enumerate() {
+        lean[root] = lean[root].max(sums[&root].angle(&normals[k / 3]));
+        bend[root] = bend[root].max(bends[k / 3]);
+    }
+    let leans = lean.iter().zip(bend);
+    leans
+        .map(|(&lean, bend)| lean > TWO && lean > POINTED * bend)
+        .collect()
 }
 
 /// Of each face, twice the area over the perimeter of all that are in its plane and joined to it.
@@ -513,10 +553,14 @@ impl Obstacle<3> for Triangulated {
         let normals = DMatrix::from_fn(faces.len(), 3, |i, j| faces[i].normal[j]);
         let off = |face: &Face| (face.foot - x).dot(&face.normal);
         let off = DVector::from_iterator(faces.len(), faces.iter().map(off));
-        let way = normals.svd(true, true).solve(&off, 1e-6).ok()?;
-        let way = Point::new(way[0], way[1], way[2]);
-        let axis: Point = faces.iter().map(|face| face.normal).sum();
-        let axis = (axis * self.side).try_normalize(1e-6)?;
+        let planes = normals.svd(true, true);
+        let met = |values: &DVector<f64>| {
+            let met = planes.solve(values, 1e-6).ok()?;
+            Some(Point::new(met[0], met[1], met[2]))
+        };
+        let way = met(&off)?;
+        // As far from all normals.
+        let axis = met(&DVector::repeat(faces.len(), self.side))?.try_normalize(1e-6)?;
         let aside = (way - axis * axis.dot(&way)).norm();
         let angle = |face: &Face| axis.angle(&(face.normal * self.side));
         let half_angle = faces.iter().map(angle).fold(0.0, f64::max);

@@ -326,6 +326,32 @@ pub enum ModelError {
         /// Groups of the node whose displacements are prescribed.
         groups: Vec<String>,
     },
+    /// A node that is moved off the axis of symmetry.
+    #[error(
+        "step {step:?} moves node {node} by {value} mm across the axis of symmetry, by the conditions on {}: a body of \
+         revolution stays there without being held; keep the node out of the group",
+        names(groups)
+    )]
+    LeavesAxis {
+        /// The step.
+        step: String,
+        /// Groups that have the node and that the step moves.
+        groups: Vec<String>,
+        /// The node.
+        node: usize,
+        /// The displacement \[mm\].
+        value: f64,
+    },
+    /// A load that needs an area on the axis of symmetry, which has none.
+    #[error(
+        "step {step:?} loads {group:?}, which is on the axis of symmetry: it has no area, and nothing there moves across it"
+    )]
+    LoadOnAxis {
+        /// The step.
+        step: String,
+        /// The group.
+        group: String,
+    },
     /// A direction at the axis of symmetry, where nothing moves but along that.
     #[error(
         "step {step:?} prescribes the displacement of {group:?} along {}, but its node {node} is on the axis of \

@@ -1,6 +1,7 @@
 //! The sequence of increments, and where it ends: collapse and buckling; not the iteration of one.
 
 mod along;
+mod axis;
 mod bifurcation;
 pub(crate) mod buckling;
 mod equilibrium;

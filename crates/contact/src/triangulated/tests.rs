@@ -70,6 +70,32 @@ fn can(n: usize) -> Skin {
     (points, faces.collect())
 }
 
+/// The cone around the axis z from its tip at 0 up to a height of 2 and a radius, of n sides in rings.
+fn cone(n: usize, radius: f64, rings: usize) -> Skin {
+    let ring = |i: usize| {
+        let part = (i + 1) as f64 / rings as f64;
+        (0..n).map(move |k| {
+            let (s, c) = (TAU * k as f64 / n as f64).sin_cos();
+            [radius * part * c, radius * part * s, 2.0 * part]
+        })
+    };
+    let mut points: Vec<[f64; 3]> = (0..rings).flat_map(ring).collect();
+    points.extend([[0.0; 3], [0.0, 0.0, 2.0]]);
+    let (tip, middle) = (n * rings, n * rings + 1);
+    let mut faces = Vec::new();
+    for k in 0..n {
+        let l = (k + 1) % n;
+        let top = n * (rings - 1);
+        faces.extend([[tip, l, k], [top + k, top + l, middle]]);
+        for i in 1..rings {
+            let below = n * (i - 1);
+            faces.push([below + k, below + l, below + n + l]);
+            faces.push([below + k, below + n + l, below + n + k]);
+        }
+    }
+    (points, faces)
+}
+
 /// The torus of radii 3 and 1 around the axis z, of n by n quadrangles.
 fn torus(n: usize) -> Skin {
     let angle = |k: usize| TAU * k as f64 / n as f64;
@@ -472,6 +498,46 @@ fn what_is_no_closed_surface_is_refused() {
     let inwards: Vec<[usize; 3]> = faces.iter().map(|&[a, b, c]| [b, a, c]).collect();
     let cube = surface(&(points, inwards));
     assert!((cube.distance(&Point::new(0.5, 0.5, 2.0)) - 1.0).abs() < 1e-14);
+}
+
+/// However steep it is and whatever it is cut into: its sides are straight up to the tip, which has the cone of all normals
+/// there.
+#[test]
+fn a_cone_ends_in_its_tip() {
+    for (n, radius, rings) in [
+        (96, 2.0, 1),
+        (96, 2.0, 12),
+        (24, 5.6, 1),
+        (24, 5.6, 3),
+        (12, 5.6, 1),
+    ] {
+        let cone = surface(&cone(n, radius, rings));
+        let slope = Point::new(2.0, 0.0, -radius).normalize();
+        // A polygon of n sides is off by this part of the radius, and by a part of that beside it.
+        let flat = 1.0 - (PI / n as f64).cos();
+        for part in [0.05, 0.3, 0.6] {
+            let foot = Point::new(radius * part, 0.0, 2.0 * part);
+            let x = foot + slope * 0.3;
+            let off = (cone.distance(&x) - 0.3).abs();
+            assert!(
+                off < 1.1 * flat * radius * part + 1e-12,
+                "{n} {radius} {rings} {part}: {off:e}"
+            );
+        }
+        let tip = cone
+            .corner(&Point::new(0.0, 0.0, -0.1), 1e-6)
+            .expect("a tip");
+        assert!(tip.position.norm() < 1e-12);
+        assert!((tip.axis + Point::z()).norm() < 1e-9, "{:?}", tip.axis);
+        let leans = (radius * (PI / n as f64).cos()).atan2(2.0);
+        let faces = FRAC_PI_2 - leans;
+        assert!(
+            (tip.half_angle - faces).abs() < 1e-9,
+            "{} {faces}",
+            tip.half_angle
+        );
+        assert!((cone.distance(&Point::new(0.0, 0.0, -0.1)) - 0.1).abs() < 1e-12);
+    }
 }
 
 /// Straight ahead of an edge or a corner of a cube, at it, and beside it; from within there are none.

@@ -17,17 +17,24 @@ use std::collections::BTreeMap;
 /// The interface unknowns x of all contact nodes, on both sides, are expressed by the local
 /// displacements u and by as many others, y, as are left: x = T (u − u_now, y), so that B x =
 /// u − u_now. Contact forces do work on u alone, and y is condensed out of Tᵀ S T. A tool leaves no
-/// y.
+/// y. Contacts that are left out of the problem are without force too: their u are among the y.
 pub(crate) struct Condensation<const D: usize> {
     pub(crate) problem: CondensedProblem<D>,
     transformation: Transformation,
     rest: InternalUnknowns,
-    /// Components that are not switched off.
+    /// Contacts of the problem, and those that are left out of it.
+    pub(crate) contacts: Vec<usize>,
+    left_out: Vec<usize>,
+    /// Which of the motions of all contacts and then of the other unknowns the unknowns of the problem and its y are; `None`
+    /// where no contact is left out.
+    places: Option<Vec<usize>>,
+    /// Components of the problem that are not switched off.
     active: Vec<bool>,
 }
 
 impl<const D: usize> Condensation<D> {
-    /// Turns stiffness and load of the condensed system into the local frames of the contacts;
+    /// Turns stiffness and load of the condensed system into the local frames of the contacts, of which `among` are those of
+    /// the problem, in order;
     /// `previous` are the contact forces at the start of the step, `force` the last that were found, `springs` those of
     /// a penalty in series with the contacts \[mm/N\].
     ///
@@ -38,14 +45,14 @@ impl<const D: usize> Condensation<D> {
         system: &System,
         (stiffness, load): (DMatrix<f64>, &DVector<f64>),
         (points, motion_rows): (&[ContactPoint<D>], &[RelativeMotionRow<D>]),
-        kinematics: &[Kinematics<D>],
-        (previous, force, springs): (Vec<Local<D>>, &[Local<D>], &[Local<D>]),
+        (kinematics, among): (&[Kinematics<D>], Vec<usize>),
+        (previous, force, springs): (&[Local<D>], &[Local<D>], &[Local<D>]),
     ) -> Result<Self, ContactError> {
         let contacts = (points, motion_rows);
         let InFrames {
             transformation,
-            stiffness,
-            load,
+            mut stiffness,
+            mut load,
         } = InFrames::new(
             system,
             (stiffness, load),
@@ -53,27 +60,69 @@ impl<const D: usize> Condensation<D> {
             kinematics,
             (force, springs),
         )?;
-        let (mut stiffness, load, rest) =
-            InternalUnknowns::condense(stiffness, load, D * points.len())?;
-        // Components switched off: alone on their diagonal, of the size of their neighbours.
-        let typical = stiffness.diagonal().amax().max(f64::MIN_POSITIVE);
-        for (c, k) in kinematics.iter().enumerate() {
-            for j in (0..D).filter(|&j| !k.active[j]) {
-                stiffness[(D * c + j, D * c + j)] = typical;
-            }
+        let is_left_out = |c: &usize| among.binary_search(c).is_err();
+        let left_out: Vec<usize> = (0..points.len()).filter(is_left_out).collect();
+        let places = places::<D>(&among, &left_out, load.len());
+        if let Some(order) = &places {
+            switch_off(&mut stiffness, kinematics, left_out.iter().map(|&c| (c, c)));
+            load = DVector::from_iterator(order.len(), order.iter().map(|&k| load[k]));
+            let entry = |i: usize, j: usize| stiffness[(order[i], order[j])];
+            stiffness = DMatrix::from_fn(order.len(), order.len(), entry);
         }
-        let now: Vec<Local<D>> = kinematics.iter().map(|k| k.u).collect();
-        let laws = kinematics.iter().map(|k| k.law).collect();
+        let (mut stiffness, load, rest) =
+            InternalUnknowns::condense(stiffness, load, D * among.len())?;
+        switch_off(
+            &mut stiffness,
+            kinematics,
+            among.iter().copied().enumerate(),
+        );
+        let of = || among.iter().map(|&c| &kinematics[c]);
+        let now: Vec<Local<D>> = of().map(|k| k.u).collect();
+        let laws = of().map(|k| k.law).collect();
+        let previous = among.iter().map(|&c| previous[c]).collect();
         let problem = CondensedProblem::new(stiffness, load, now, laws, previous)?;
         Ok(Self {
             problem,
             transformation,
             rest,
-            active: kinematics
-                .iter()
-                .flat_map(|k| (0..D).map(|j| k.active[j]))
-                .collect(),
+            active: of().flat_map(|k| (0..D).map(|j| k.active[j])).collect(),
+            contacts: among,
+            left_out,
+            places,
         })
+    }
+
+    /// The motions of all contacts and then the other unknowns, from those of the problem and its y.
+    fn moved(&self, motion: &DVector<f64>, y: &DVector<f64>) -> DVector<f64> {
+        let values = motion.iter().chain(y.iter()).copied();
+        match &self.places {
+            None => DVector::from_iterator(motion.len() + y.len(), values),
+            Some(places) => {
+                let mut moved = DVector::zeros(places.len());
+                places
+                    .iter()
+                    .zip(values)
+                    .for_each(|(&k, value)| moved[k] = value);
+                moved
+            }
+        }
+    }
+
+    /// Forces on the motions of all contacts and then on the other unknowns, on those of the problem first.
+    fn seen(&self, forces: DVector<f64>) -> DVector<f64> {
+        match &self.places {
+            None => forces,
+            Some(places) => DVector::from_iterator(places.len(), places.iter().map(|&k| forces[k])),
+        }
+    }
+
+    /// Motions u − u_now of the contacts that are left out, each with its contact.
+    pub(crate) fn left_out(&self, motion: &[Local<D>]) -> Vec<(usize, Local<D>)> {
+        let components = motion.iter().flat_map(|u| (0..D).map(|j| u[j]));
+        let motion = DVector::from_iterator(D * motion.len(), components);
+        let y = self.rest.expand(&motion, self.rest.load.clone());
+        let of = |(i, &c): (usize, &usize)| (c, Local::from_fn(|j, _| y[D * i + j]));
+        self.left_out.iter().enumerate().map(of).collect()
     }
 
     /// Interface displacements x for displacements u − u_now.
@@ -81,7 +130,7 @@ impl<const D: usize> Condensation<D> {
         let components = motion.iter().flat_map(|u| (0..D).map(|j| u[j]));
         let motion = DVector::from_iterator(D * motion.len(), components);
         let y = self.rest.expand(&motion, self.rest.load.clone());
-        self.transformation.apply(&motion, &y)
+        self.transformation.apply(&self.moved(&motion, &y))
     }
 
     /// The interface as it is under these statuses; `None` if they leave it a rigid motion.
@@ -98,6 +147,30 @@ impl<const D: usize> Condensation<D> {
             factor,
             free,
         })
+    }
+}
+
+/// Components of the contacts of the problem, of those left out, and the unknowns after them, of so many in all; `None` where
+/// that is their order.
+fn places<const D: usize>(among: &[usize], left_out: &[usize], all: usize) -> Option<Vec<usize>> {
+    let contacts = among.iter().chain(left_out);
+    let components = contacts.flat_map(|&c| D * c..D * c + D);
+    let others = D * (among.len() + left_out.len())..all;
+    (!left_out.is_empty()).then(|| components.chain(others).collect())
+}
+
+/// Components that take no part in the law: alone on their diagonal, of the size of their neighbours. Contacts come with their
+/// places.
+fn switch_off<const D: usize>(
+    stiffness: &mut DMatrix<f64>,
+    kinematics: &[Kinematics<D>],
+    contacts: impl Iterator<Item = (usize, usize)>,
+) {
+    let typical = stiffness.diagonal().amax().max(f64::MIN_POSITIVE);
+    for (i, c) in contacts {
+        for j in (0..D).filter(|&j| !kinematics[c].active[j]) {
+            stiffness[(D * i + j, D * i + j)] = typical;
+        }
     }
 }
 
@@ -196,7 +269,7 @@ impl<const D: usize> Yielding<'_, D> {
             active,
             ..
         } = self.condensation;
-        let g = transformation.transposed(g);
+        let g = self.condensation.seen(transformation.transposed(g));
         let (own, load) = rest.reduce(&g, active.len());
         let mut x = DVector::from_iterator(self.free.len(), self.free.iter().map(|&k| own[k]));
         self.factor.forward_one(&mut x);
@@ -206,7 +279,7 @@ impl<const D: usize> Yielding<'_, D> {
             u[k] = *x;
         }
         let y = rest.expand(&u, load);
-        transformation.apply(&u, &y)
+        transformation.apply(&self.condensation.moved(&u, &y))
     }
 }
 

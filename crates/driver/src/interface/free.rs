@@ -68,6 +68,6 @@ impl Free {
         for (&k, own) in self.free.iter().zip(own.iter()) {
             z[k] = *own;
         }
-        self.transformation.apply(&z, &DVector::zeros(0))
+        self.transformation.apply(&z)
     }
 }

@@ -3,19 +3,14 @@
 
 use crate::driver::Driver;
 use crate::error::IncrementError;
-use crate::interface::condensation::Condensation;
 use crate::interface::tied::{Held, Tied};
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::model::points::Kinematics;
 use crate::report::counts::Counts;
-use crate::timings::Clock;
 use crate::vector::SparseVector;
 use crate::vector::largest;
-use moreau_algebra::Interface;
-use moreau_contact::{
-    CondensedProblem, ContactError, ContactSolution, Springs, TiedFactor, TiedProblem, solve_tied,
-};
+use moreau_contact::{ContactError, ContactSolution, Springs, TiedFactor, TiedProblem, solve_tied};
 use moreau_laws::Local;
 use nalgebra::DVector;
 
@@ -30,11 +25,8 @@ const CARRIED: f64 = 1e-2;
 /// Part of a motion that is left under the stiffer of both where it is not a load that moves the body.
 const PUSHED: f64 = 0.5;
 
-/// Proximal terms under which the problem of an unstable structure is tried, over the least that makes it stable.
-const STABLE: [f64; 4] = [2.0, 8.0, 32.0, 128.0];
-
 /// Part that a contact solution may keep of what increments are excused for as rounding, which is ample.
-const ROUNDED: f64 = 0.01;
+pub(super) const ROUNDED: f64 = 0.01;
 
 /// An increment linearised at an iterate.
 pub(crate) struct Linearised<'a, const D: usize> {
@@ -85,7 +77,7 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Motion beyond which a solution is looked for nearer by: the size of the mesh, or the largest gap.
-    fn reach(&self, kinematics: &[Kinematics<D>]) -> f64 {
+    pub(super) fn reach(&self, kinematics: &[Kinematics<D>]) -> f64 {
         let gaps = kinematics.iter().map(|k| k.u[0]);
         gaps.fold(self.mesh.size(), f64::max)
     }
@@ -176,115 +168,13 @@ impl<const D: usize> Driver<D> {
             growth,
         })
     }
-
-    fn answer_condensed(
-        &self,
-        system: &mut System,
-        linearised: &mut Linearised<'_, D>,
-        load: Vec<f64>,
-        counts: &mut Counts,
-    ) -> Result<Answer<D>, IncrementError> {
-        let (kinematics, guess) = (linearised.kinematics, linearised.guess);
-        let mut step = vec![0.0; load.len()];
-        linearised.missing.add_to(&mut step, 1.0);
-        let mut condensed = system.condense(load);
-        let mut stiffness = system.schur();
-        let border = linearised.border.map(|(load, compliance, missing)| {
-            system.border(
-                (&mut stiffness, &mut condensed),
-                load,
-                (compliance, missing),
-            )
-        });
-        let iteration = counts.newton;
-        let contact = |source: ContactError| IncrementError::Contact { iteration, source };
-        let clock = Clock::start();
-        let points = (self.points.as_slice(), self.footing.rows.as_slice());
-        let seam = (stiffness, &condensed.load);
-        let previous = self.previous_forces(kinematics);
-        let force = match guess {
-            Some(s) if counts.newton > 1 => s.force.clone(),
-            _ => previous.clone(),
-        };
-        let springs = self.compliances(kinematics);
-        let mut condensation = Condensation::new(
-            system,
-            seam,
-            points,
-            kinematics,
-            (previous, &force, &springs),
-        )
-        .map_err(contact)?;
-        let problem = &mut condensation.problem;
-        problem.hold(linearised.proximal);
-        problem.rounds(ROUNDED * linearised.rounding);
-        let method = &self.settings.contact;
-        let from =
-            |guessed: bool| method.approach(problem, guess.filter(|_| guessed), linearised.enough);
-        let found = nearer(self.reach(kinematics), farthest, from).or_else(|error| {
-            // Where stresses make the structure unstable there may be none.
-            if !self.has_large_strains() {
-                return Err(error);
-            }
-            let is_free = border.is_none() && linearised.proximal == 0.0;
-            let approach = |p: &_| method.approach(p, guess, linearised.enough).ok();
-            let held = is_free.then(|| stabilised(problem, approach)).flatten();
-            held.or_else(|| method.step(problem, &force)).ok_or(error)
-        });
-        let (loading, rounding) = (linearised.loading, linearised.rounding);
-        let is_held = |s: &ContactSolution<D>| self.is_held_by(loading, s, (rounding, true));
-        let error = match &found {
-            Ok(found) if system.floats && !is_held(found) => Some(ContactError::Singular),
-            Ok(_) => None,
-            Err(error) => Some(error.clone()),
-        };
-        let solution = match error {
-            None => found,
-            Some(error) => {
-                counts.undetermined |= error == ContactError::Singular;
-                let nearest = nearest(error, (system.shift(), rounding), |c| {
-                    problem.hold(c);
-                    let solution = method.solve(problem, guess)?;
-                    let scale = problem.force_scale(&solution.force);
-                    Ok((solution, (), scale))
-                });
-                nearest.map(|(solution, ())| solution).or(found)
-            }
-        };
-        let solution = solution.map_err(contact)?;
-        system.timings.contact += clock.elapsed();
-        // On a path, or held, the stiffness is not that of the structure alone.
-        counts.criticality = (border.is_none() && linearised.proximal == 0.0)
-            .then(|| condensation.problem.criticality(&solution.status))
-            .flatten();
-        let x = condensation.interface(&solution.motion);
-        let growth = border.map_or(0.0, |b| system.factor(&b, &mut condensed, &x));
-        let target = self.contact_forces(kinematics, &solution.force);
-        // A load of unknown factor is found with the interface.
-        let yielding = (!system.is_direct() && linearised.border.is_none())
-            .then(|| condensation.yielding(&solution.status))
-            .flatten();
-        let give = yielding
-            .as_ref()
-            .map(|y| |g: &DVector<f64>| y.displacement(g));
-        let interface = match &give {
-            Some(give) => Interface::Yields(give),
-            None => Interface::Held,
-        };
-        system.expand(condensed, &x, (&target, interface), &mut step)?;
-        Ok(Answer {
-            solution,
-            step,
-            growth,
-        })
-    }
 }
 
 /// The solution found from the guess, `solve(true)`; where its motion is beyond `reach`, that found from where the bodies
 /// are, `solve(false)`, if it moves less: contact forces that turn leave a driven tool a little stiffness of either sign,
 /// on which it is in balance far away with all of its contacts open. What is returned was solved last, as the factor with
 /// the contacts tied needs it.
-fn nearer<T>(
+pub(super) fn nearer<T>(
     reach: f64,
     motion: impl Fn(&T) -> f64,
     mut solve: impl FnMut(bool) -> Result<T, ContactError>,
@@ -301,23 +191,8 @@ fn nearer<T>(
 }
 
 /// The largest motion of a solution \[mm\].
-fn farthest<const D: usize>(solution: &ContactSolution<D>) -> f64 {
+pub(super) fn farthest<const D: usize>(solution: &ContactSolution<D>) -> f64 {
     largest(solution.motion.iter().flatten().copied())
-}
-
-/// The solution of the problem of an unstable structure with a proximal term that makes it stable; `None` where there is none
-/// either, or the structure is stable. The term is gone afterwards.
-fn stabilised<const D: usize>(
-    problem: &mut CondensedProblem<D>,
-    solve: impl Fn(&CondensedProblem<D>) -> Option<ContactSolution<D>>,
-) -> Option<ContactSolution<D>> {
-    let least = problem.stabilising()?;
-    let found = STABLE.iter().find_map(|times| {
-        problem.hold(times * least);
-        solve(problem)
-    });
-    problem.hold(0.0);
-    found
 }
 
 /// A contact problem that is singular, as where all that touches slips or nothing is left to press: of its
@@ -325,7 +200,7 @@ fn stabilised<const D: usize>(
 /// term c. There is none where a body falls or slides away: what holds it here would have to carry its
 /// load, of which `scale` tells the size, if that is more than `rounding` \[N\]. What a surface pushes away moves as far
 /// whatever holds it.
-fn nearest<const D: usize, T>(
+pub(super) fn nearest<const D: usize, T>(
     error: ContactError,
     (stiffest, rounding): (f64, f64),
     mut solve: impl FnMut(f64) -> Result<(ContactSolution<D>, T, f64), ContactError>,

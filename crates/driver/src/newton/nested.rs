@@ -163,9 +163,10 @@ impl<const D: usize> Driver<D> {
         let points = (self.points.as_slice(), self.footing.rows.as_slice());
         let seam = (system.schur(), &condensed.load);
         let springs = self.compliances(&kinematics);
-        let forces = (force.clone(), force.as_slice(), springs.as_slice());
+        let forces = (force.as_slice(), force.as_slice(), springs.as_slice());
+        let all = (0..kinematics.len()).collect();
         let condensation =
-            Condensation::new(system, seam, points, &kinematics, forces).map_err(contact)?;
+            Condensation::new(system, seam, points, (&kinematics, all), forces).map_err(contact)?;
         let problem = &condensation.problem;
         Ok(Uzawa {
             alpha: uzawa_steps(problem).map_err(contact)?,

@@ -9,9 +9,6 @@ use crate::vector::subspace::{PARALLEL, Subspace};
 use nalgebra::SVector;
 use std::collections::BTreeMap;
 
-/// A distance from the axis of symmetry below this part of the size of the mesh is none.
-const ON_AXIS: f64 = 1e-9;
-
 /// What is prescribed of the displacement u of a node: u·n for unit vectors n.
 type Along<const D: usize> = Vec<(SVector<f64, D>, f64)>;
 
@@ -62,30 +59,8 @@ impl<const D: usize> Driver<D> {
         Ok(directions)
     }
 
-    /// # Errors
-    /// [`ModelError::DirectionAtAxis`] for a node on the axis of symmetry and a direction that is none of the axes.
-    fn check_axis(
-        &self,
-        step: &Step<D>,
-        (on, node): (&str, usize),
-        n: &SVector<f64, D>,
-    ) -> Result<(), ModelError> {
-        let mesh = &self.mesh;
-        let at_axis = mesh.nodes()[node][0].abs() <= ON_AXIS * mesh.size();
-        // Under axial symmetry nothing is rigid but the translation along the axis.
-        if at_axis && self.measure.rigid_modes(&[0.0; D]).len() == 1 && !is_axis(n) {
-            return Err(ModelError::DirectionAtAxis {
-                step: step.name.clone(),
-                group: on.to_owned(),
-                node,
-                direction: n.iter().copied().collect(),
-            });
-        }
-        Ok(())
-    }
-
     /// Groups whose displacements a step prescribes and that have a node, each once.
-    fn prescribing(&self, step: &Step<D>, node: usize) -> Vec<String> {
+    pub(super) fn prescribing(&self, step: &Step<D>, node: usize) -> Vec<String> {
         let mut groups: Vec<String> = Vec::new();
         for condition in &step.conditions {
             let (Condition::Displace { on, .. } | Condition::DisplaceAlong { on, .. }) = condition
@@ -105,15 +80,15 @@ fn axis<const D: usize>(i: usize) -> SVector<f64, D> {
     SVector::from_fn(|j, _| f64::from(u8::from(i == j)))
 }
 
-fn is_axis<const D: usize>(n: &SVector<f64, D>) -> bool {
-    n.iter().filter(|x| **x != 0.0).count() == 1
-}
-
 /// A vector that follows from others, the component of u along it that they make, and the one that it prescribes.
 type Contradiction<const D: usize> = (SVector<f64, D>, f64, f64);
 
 /// The space that unit vectors span, and the components of u along its basis; those along vectors that follow from others
 /// must agree.
+pub(super) fn is_axis<const D: usize>(n: &SVector<f64, D>) -> bool {
+    n.iter().filter(|x| **x != 0.0).count() == 1
+}
+
 fn combined<const D: usize>(all: &Along<D>) -> Result<(Subspace<D>, Vec<f64>), Contradiction<D>> {
     let vectors: Vec<SVector<f64, D>> = all.iter().map(|(n, _)| *n).collect();
     let space = Subspace::spanned(&vectors);

@@ -113,8 +113,10 @@ impl<const D: usize> Driver<D> {
         let seam = (system.schur(), &condensed.load);
         let forces = self.previous_forces(&kinematics);
         let springs = self.compliances(&kinematics);
-        let forces = (forces.clone(), forces.as_slice(), springs.as_slice());
-        let condensation = Condensation::new(system, seam, points, &kinematics, forces).ok()?;
+        let forces = (forces.as_slice(), forces.as_slice(), springs.as_slice());
+        let all = (0..kinematics.len()).collect();
+        let condensation =
+            Condensation::new(system, seam, points, (&kinematics, all), forces).ok()?;
         let interface = condensation.yielding(&status)?;
         self.instability(system, &mut |system, force| {
             let mut v = vec![0.0; force.len()];

@@ -39,6 +39,9 @@ impl<const D: usize> Driver<D> {
                         }
                         continue;
                     }
+                    if force[0] != 0.0 {
+                        self.check_area(step, on)?;
+                    }
                     let nodes = mesh.node_group(on)?;
                     for &node in &nodes {
                         loading.push(node, 1.0 / nodes.len() as f64, force);
@@ -46,6 +49,7 @@ impl<const D: usize> Driver<D> {
                 }
                 Condition::Pressure { on, pressure } => {
                     let facets = mesh.facet_group(on)?;
+                    self.check_area(step, on)?;
                     if self.has_large_strains() {
                         facets.iter().for_each(|&f| loading.press(f, *pressure));
                         continue;
@@ -55,6 +59,7 @@ impl<const D: usize> Driver<D> {
                     }
                 }
                 Condition::Traction { on, traction } => {
+                    self.check_area(step, on)?;
                     for s in self.measure.facet_shares(mesh, mesh.facet_group(on)?) {
                         loading.push(s.node, s.area, traction);
                     }
@@ -71,6 +76,7 @@ impl<const D: usize> Driver<D> {
                 | Condition::Moment { .. } => {}
             }
         }
+        self.hold_axis(step, &mut moved)?;
         loading.directions = self.displace_along(step, &mut moved)?;
         self.move_tools(step, &mut moved)?;
         loading.turn = self.turns(step)?;

@@ -1,6 +1,7 @@
 //! A deck in memory, stepped from outside.
 
 mod ahead;
+mod axis;
 mod beside;
 mod cornered;
 mod driven;
@@ -8,6 +9,7 @@ mod interrupted;
 mod keys;
 mod laws;
 mod leaps;
+mod nearby;
 mod outside;
 mod points;
 mod replaced;
