@@ -453,27 +453,36 @@ impl<const D: usize> Driver<D> {
         Ok(self.displacement(self.tool_node(tool)))
     }
 
-    /// Sum of the contact forces on the nodes of a group \[N\]: on either surface of a pair, the
-    /// force that the other exerts on it. Of the surface opposite to a tie with what nodes behind it bear, which
-    /// bridges a distance.
+    /// Contact force on a group \[N\]: on a surface of contacts, on either side, what these exert on it, whatever other
+    /// contacts do at nodes that it shares with others; on any other group the sum over its nodes.
     ///
     /// # Errors
     /// An unknown group.
     pub fn contact_force(&self, group: &str) -> Result<SVector<f64, D>, ModelError> {
-        let mut sum = SVector::zeros();
         let nodes = self.mesh.node_group(group)?;
-        for &node in &nodes {
-            sum += self.nodal_contact_force(node);
+        if !self.is_contact_surface(group) {
+            return Ok(nodes.iter().map(|&a| self.nodal_contact_force(a)).sum());
         }
+        let mut sum = SVector::zeros();
         let rows = self.footing.rows.iter().zip(&self.state.contacts);
         for ((row, record), point) in rows.zip(&self.points) {
-            if point.tied.is_some() && self.contacts[point.contact].opposite == group {
-                let behind = row.opposite.iter();
-                let behind = behind.filter(|(b, _)| nodes.binary_search(b).is_err());
-                sum -= record.force * behind.map(|(_, w)| w).sum::<f64>();
+            let Contact {
+                surface, opposite, ..
+            } = &self.contacts[point.contact];
+            let weight = |side: &[(usize, f64)]| side.iter().map(|(_, w)| w).sum::<f64>();
+            if surface == group {
+                sum += record.force * weight(&row.own);
+            }
+            if opposite == group {
+                sum -= record.force * weight(&row.opposite);
             }
         }
         Ok(sum)
+    }
+
+    /// Whether a group is a surface of a contact, on either side.
+    pub fn is_contact_surface(&self, group: &str) -> bool {
+        (self.contacts.iter()).any(|c| c.surface == group || c.opposite == group)
     }
 
     /// Contact force on a node \[N\].

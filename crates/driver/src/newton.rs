@@ -2,7 +2,6 @@
 
 pub(crate) mod chord;
 pub(crate) mod commit;
-pub(crate) mod condensed;
 pub(crate) mod control;
 pub(crate) mod criteria;
 pub(crate) mod descent;

@@ -5,9 +5,6 @@ use crate::interface::elimination::Transformation;
 use moreau_algebra::{DenseCholesky, DenseLdlt};
 use nalgebra::{DMatrix, DVector};
 
-/// A negative pivot below this part of the largest diagonal is rounding, and a motion without stiffness.
-const NONE: f64 = 1e-12;
-
 /// The interface in the components of relative displacements that are free, and in the unknowns y that no contact
 /// force acts on.
 pub(crate) struct Free {
@@ -45,12 +42,12 @@ impl Free {
         }
     }
 
-    /// Negative eigenvalues of the stiffness.
-    pub(crate) fn negative(&self) -> usize {
+    /// Negative eigenvalues of the stiffness, but those below a part of the largest diagonal.
+    pub(crate) fn negative(&self, none: f64) -> usize {
         if DenseCholesky::new(self.stiffness.clone()).is_some() {
             return 0;
         }
-        let none = NONE * self.stiffness.diagonal().amax();
+        let none = none * self.stiffness.diagonal().amax();
         self.factor().map_or(0, |f| f.inertia(none).negative)
     }
 

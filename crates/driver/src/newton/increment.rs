@@ -178,7 +178,8 @@ impl<const D: usize> Driver<D> {
                 if !self.release(&solution.force) {
                     let state = (balance.kinematics.as_slice(), solution.status.as_slice());
                     let held = &mut increment.held;
-                    increment.counts.negative = self.negative_eigenvalues(system, state, held);
+                    increment.counts.negative =
+                        self.negative_eigenvalues(system, &increment.end, state, held);
                     increment.count(system);
                     return Ok((balance, solution));
                 }

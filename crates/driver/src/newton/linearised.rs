@@ -1,6 +1,8 @@
 //! A linearised increment and its contact problem: condensed on the interface, or tied in the factor; not
 //! the iteration that it is a step of.
 
+mod condensed;
+
 use crate::driver::Driver;
 use crate::error::IncrementError;
 use crate::interface::tied::{Held, Tied};
@@ -26,7 +28,7 @@ const CARRIED: f64 = 1e-2;
 const PUSHED: f64 = 0.5;
 
 /// Part that a contact solution may keep of what increments are excused for as rounding, which is ample.
-pub(super) const ROUNDED: f64 = 0.01;
+const ROUNDED: f64 = 0.01;
 
 /// An increment linearised at an iterate.
 pub(crate) struct Linearised<'a, const D: usize> {
@@ -77,7 +79,7 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Motion beyond which a solution is looked for nearer by: the size of the mesh, or the largest gap.
-    pub(super) fn reach(&self, kinematics: &[Kinematics<D>]) -> f64 {
+    fn reach(&self, kinematics: &[Kinematics<D>]) -> f64 {
         let gaps = kinematics.iter().map(|k| k.u[0]);
         gaps.fold(self.mesh.size(), f64::max)
     }
@@ -174,7 +176,7 @@ impl<const D: usize> Driver<D> {
 /// are, `solve(false)`, if it moves less: contact forces that turn leave a driven tool a little stiffness of either sign,
 /// on which it is in balance far away with all of its contacts open. What is returned was solved last, as the factor with
 /// the contacts tied needs it.
-pub(super) fn nearer<T>(
+fn nearer<T>(
     reach: f64,
     motion: impl Fn(&T) -> f64,
     mut solve: impl FnMut(bool) -> Result<T, ContactError>,
@@ -191,7 +193,7 @@ pub(super) fn nearer<T>(
 }
 
 /// The largest motion of a solution \[mm\].
-pub(super) fn farthest<const D: usize>(solution: &ContactSolution<D>) -> f64 {
+fn farthest<const D: usize>(solution: &ContactSolution<D>) -> f64 {
     largest(solution.motion.iter().flatten().copied())
 }
 
@@ -200,7 +202,7 @@ pub(super) fn farthest<const D: usize>(solution: &ContactSolution<D>) -> f64 {
 /// term c. There is none where a body falls or slides away: what holds it here would have to carry its
 /// load, of which `scale` tells the size, if that is more than `rounding` \[N\]. What a surface pushes away moves as far
 /// whatever holds it.
-pub(super) fn nearest<const D: usize, T>(
+fn nearest<const D: usize, T>(
     error: ContactError,
     (stiffest, rounding): (f64, f64),
     mut solve: impl FnMut(f64) -> Result<(ContactSolution<D>, T, f64), ContactError>,

@@ -123,7 +123,7 @@ impl<const D: usize> Driver<D> {
                 self.check_passage(&iterate.d_u, end)?;
                 let state = (response.kinematics.as_slice(), response.status.as_slice());
                 let held = &mut Held::default();
-                increment.counts.negative = self.negative_eigenvalues(system, state, held);
+                increment.counts.negative = self.negative_eigenvalues(system, end, state, held);
                 increment.count(system);
                 let out_of_balance = largest(residual.into_iter());
                 let candidate = candidate(increment, uzawa.force, response, out_of_balance);

@@ -6,9 +6,14 @@ use crate::interface::condensation::{InFrames, gives_way};
 use crate::interface::free::Free;
 use crate::interface::tied::{Held, Tied};
 use crate::linear::system::System;
+use crate::model::load::Loading;
 use crate::model::points::Kinematics;
 use moreau_laws::{Local, Status};
 use nalgebra::DVector;
+
+/// A negative pivot below this part of the largest diagonal is rounding, and a motion without stiffness: of a body that
+/// is held, and of one that may move as a rigid one, whose motions all terms of the stiffness cancel in.
+const NONE: [f64; 2] = [1e-12, 1e-9];
 
 impl<const D: usize> Driver<D> {
     /// Negative eigenvalues of the factorised tangent K on the displacements that statuses leave free: what is open
@@ -24,6 +29,7 @@ impl<const D: usize> Driver<D> {
     pub(crate) fn negative_eigenvalues(
         &self,
         system: &mut System,
+        loading: &Loading<D>,
         (kinematics, status): (&[Kinematics<D>], &[Status]),
         held: &mut Held<D>,
     ) -> usize {
@@ -36,7 +42,9 @@ impl<const D: usize> Driver<D> {
             return if holds { system.negative() } else { 0 };
         }
         let free = self.free(system, kinematics, status);
-        system.negative() + free.map_or(0, |free| free.negative())
+        let moves_rigidly = system.floats && !self.is_held(loading, status);
+        let none = NONE[usize::from(moves_rigidly)];
+        system.negative() + free.map_or(0, |free| free.negative(none))
     }
 
     /// Ties the contacts as the statuses tell, springs of a penalty in series; false where that leaves a motion

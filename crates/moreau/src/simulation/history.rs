@@ -121,10 +121,14 @@ impl History {
             }
         }
         for surface in &self.surfaces {
+            let contact = driver.contact_force(surface).ok();
             // What a probe is held by beside contact.
-            let held = driver.reaction(surface).ok();
-            let force = driver.contact_force(surface).ok().zip(held);
-            let force = force.map(|(contact, held)| contact + held);
+            let force = match driver.is_contact_surface(surface) {
+                true => contact,
+                false => contact
+                    .zip(driver.reaction(surface).ok())
+                    .map(|(f, held)| f + held),
+            };
             row.extend((0..D).map(|i| force.map_or(f64::NAN, |f| f[i])));
             row.extend(mean_displacement(driver, surface));
         }

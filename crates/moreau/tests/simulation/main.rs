@@ -5,6 +5,7 @@ mod axis;
 mod beside;
 mod cornered;
 mod driven;
+mod freed;
 mod interrupted;
 mod keys;
 mod laws;
@@ -16,6 +17,7 @@ mod replaced;
 mod saved;
 mod sheared;
 mod shears;
+mod surfaces;
 
 use moreau::deck::{Given, Meshes};
 use moreau::driver::IncrementError;
