@@ -105,13 +105,7 @@ pub fn open_with(text: &str, folder: &Path, given: &Given) -> (Deck, Option<Prob
     if grammar::includes_fail(&findings) {
         return (deck, None, findings);
     }
-    let at_hand = |entry: &FileEntry| {
-        let wanted = absolute(&entry.file.value).ok()?;
-        let is_wanted = |path: &Path| absolute(folder.join(path)).is_ok_and(|at| at == wanted);
-        let found = given.meshes.iter().find(|(path, _)| is_wanted(path));
-        found.map(|(_, bytes)| bytes.as_slice())
-    };
-    let files: Vec<Option<&[u8]>> = deck.mesh_files.iter().map(at_hand).collect();
+    let files = at_hand(&deck, folder, &given.meshes);
     deck.found_checksum = checksum(&deck, &files);
     check_checksum(&deck, &mut findings);
     let mut problem = build::build(&mut deck, &files, given, &mut findings);
@@ -140,6 +134,24 @@ pub fn open_with(text: &str, folder: &Path, given: &Given) -> (Deck, Option<Prob
         None => {}
     }
     (deck, problem.filter(|_| findings.errors() == 0), findings)
+}
+
+/// The checksum of the files that a deck reads, as its key `checksum` has it, with some meshes that are not on disk; none
+/// without files, or where one cannot be read.
+pub fn checksum_of(text: &str, folder: &Path, meshes: &Meshes) -> Option<String> {
+    let (deck, _) = grammar::read(text, folder, &BTreeMap::new());
+    checksum(&deck, &at_hand(&deck, folder, meshes))
+}
+
+/// Of each mesh file of a deck its content, if that is not on disk.
+fn at_hand<'a>(deck: &Deck, folder: &Path, meshes: &'a Meshes) -> Vec<Option<&'a [u8]>> {
+    let content = |entry: &FileEntry| {
+        let wanted = absolute(&entry.file.value).ok()?;
+        let is_wanted = |path: &Path| absolute(folder.join(path)).is_ok_and(|at| at == wanted);
+        let found = meshes.iter().find(|(path, _)| is_wanted(path));
+        found.map(|(_, bytes)| bytes.as_slice())
+    };
+    deck.mesh_files.iter().map(content).collect()
 }
 
 /// The checksum of the files that a deck reads, of which some are at hand; none without files, or where one cannot be read.

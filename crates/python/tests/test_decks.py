@@ -123,6 +123,44 @@ def test_a_mesh_of_arrays(tmp_path, monkeypatch):
         mc.Mesh(square().points, square().cells, {'a "b"': square().cells})
 
 
+def test_decks_in_one_folder_have_their_own_meshes(tmp_path):
+    def bar(length):
+        mesh = square()
+        return pulled(mc.Mesh(mesh.points * [length, 1.0], mesh.cells, mesh.groups))
+
+    (tmp_path / "mesh.msh").write_text("somebody else's")
+    decks = {tmp_path / f"w{length}.toml": bar(length) for length in (1, 2, 4)}
+    for path, deck in decks.items():
+        assert deck.to_toml(path) == path.read_text()
+    for path, deck in decks.items():
+        assert mc.Deck(path)["mesh.file"] == path.stem + ".msh" and force(path) == force(deck)
+    assert len({force(path) for path in decks}) == 3
+    assert (tmp_path / "mesh.msh").read_text() == "somebody else's"
+    # The same again is no loss; another deck or another mesh under the name is, and nothing of it is written.
+    path, other = tmp_path / "w1.toml", bar(8)
+    decks[path].to_toml(path)
+    before = {file: file.read_bytes() for file in tmp_path.iterdir()}
+    with pytest.raises(FileExistsError, match="w1.toml is there already"):
+        other.to_toml(path)
+    path.unlink()
+    with pytest.raises(FileExistsError, match="w1.msh is there already.*overwrite=True"):
+        other.to_toml(path)
+    assert not path.exists() and (tmp_path / "w1.msh").read_bytes() == before[tmp_path / "w1.msh"]
+    other.to_toml(path, overwrite=True)
+    assert force(path) == force(other)
+    # A deck knows its mesh, and lets go of that where another is given.
+    (tmp_path / "w1.msh").write_bytes(before[tmp_path / "w2.msh"])
+    with pytest.raises(mc.DeckError, match="checksum"):
+        mc.run(path)
+    assert force(mc.Deck(path).with_({"mesh": square()})) == force(bar(1))
+    # That of a simulation in another step too.
+    simulation = mc.Simulation(bar(2))
+    next(simulation)
+    simulation.step = bar(2)["step.0"] | {"name": "more"}
+    simulation.deck.to_toml(tmp_path / "more.toml")
+    assert mc.Deck(tmp_path / "more.toml")["mesh.file"] == "more.msh" and mc.run(tmp_path / "more.toml")
+
+
 def test_a_mesh_of_meshio_and_of_pyvista():
     mesh = square()
     block = lambda kind, data: SimpleNamespace(type=kind, data=np.array(data))

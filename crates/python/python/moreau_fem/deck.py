@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _toml, errors
+from . import _core, _toml, errors
 from ._core import Simulation as Core
 from .errors import DeckError, Finding
 from .law import Law, asked
@@ -100,6 +100,9 @@ class Deck:
                 plain[name] = value
             else:
                 plain[name] = _dashed(value)
+        if self.meshes:
+            # Of a mesh that this one replaces, in a deck that was written.
+            plain.pop("checksum", None)
         return plain
 
     def _mesh(self, given: Any) -> Any:
@@ -157,13 +160,53 @@ class Deck:
         changed.meshes = {**self.meshes, **changed.meshes}
         return changed
 
-    def to_toml(self, path: str | PathLike[str] | None = None) -> str:
-        """The deck as TOML; with a path it is also written there, with the mesh beside it that no file has."""
-        if path is not None:
-            Path(path).write_text(self.text, encoding="utf-8")
-            for name, content in self.meshes.items():
-                (Path(path).parent / name).write_bytes(content)
-        return self.text
+    def to_toml(self, path: str | PathLike[str] | None = None, *, overwrite: bool = False) -> str:
+        """The deck as TOML. With a path it is also written there, and beside it, under its name, the mesh that no file has:
+        ``ring.toml`` with ``ring.msh``, whose ``checksum`` the deck then tells, so that it runs on no other.
+
+        Raises
+        ------
+        FileExistsError
+            If there is a file already with something else in it, unless ``overwrite``; nothing is written then.
+        """
+        if path is None:
+            return self.text
+        path = Path(path)
+        text, meshes = self._on_disk(path)
+        files = {path: text.encode()} | {path.parent / name: content for name, content in meshes.items()}
+        for file, content in files.items():
+            if not overwrite and file.is_file() and file.read_bytes() != content:
+                raise FileExistsError(
+                    f"{file} is there already, with something else in it: give another name, or overwrite=True"
+                )
+        for file, content in files.items():
+            file.write_bytes(content)
+        return text
+
+    def _on_disk(self, path: Path) -> tuple[str, dict[str, bytes]]:
+        """The text as a file of this path has it, and the meshes beside that by their names."""
+        if not self.meshes:
+            return self.text, {}
+        keys, meshes = self.keys, {}
+        stem = path.name.removesuffix(".toml")
+        for entry, name in self._own(keys):
+            # Several decks in one folder have their meshes there.
+            entry["file"] = stem + name.removeprefix("mesh")
+            meshes[entry["file"]] = self.meshes[name]
+        checksum = _core.checksum(_toml.document(keys), path.parent, meshes)
+        if checksum is not None:
+            keys["checksum"] = checksum
+        return _toml.document(keys), meshes
+
+    def _own(self, keys: Mapping[str, Any]) -> list[tuple[dict[str, Any], str]]:
+        """The tables of keys whose mesh file is not on disk, and the name of each in :attr:`meshes`."""
+        mesh = keys.get("mesh")
+        if not isinstance(mesh, dict):
+            return []
+        paths = {self.folder / name: name for name in self.meshes}
+        tables = [table for table in [mesh, *mesh.get("part", [])] if isinstance(table.get("file"), str)]
+        found = [(table, paths.get(self.folder / table["file"])) for table in tables]
+        return [(table, name) for table, name in found if name is not None]
 
     def check(self) -> Any:
         """All that is wrong or doubtful, as a table with a row for each finding."""
