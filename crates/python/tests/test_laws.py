@@ -1,5 +1,7 @@
 """Laws in Python: the numbers of those of the core, what is wrong with them, and what they cost."""
 
+import copy
+import pickle
 import time
 from concurrent.futures import ThreadPoolExecutor
 
@@ -125,6 +127,8 @@ def test_a_state_goes_on_where_the_law_is_given_again(block):
     assert np.array_equal(again.displacement, simulation.displacement)
     with pytest.raises(ValueError, match="another model"):
         mc.Simulation.restore(saved)
+    assert np.array_equal(copy.copy(simulation).displacement, simulation.displacement)
+    assert np.array_equal(pickle.loads(pickle.dumps(simulation)).stress, simulation.stress)
     # A step that follows has the law too.
     simulation.step = dict(name="release", increments=2, fix=[dict(on="block.left", u=["x"])])
     for _ in simulation:

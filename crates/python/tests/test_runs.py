@@ -1,7 +1,10 @@
 """Runs: the same numbers as the command's, in threads, after interruptions; and what ends them."""
 
+import copy
 import csv
+import multiprocessing
 import os
+import pickle
 import signal
 import subprocess
 import sys
@@ -182,3 +185,55 @@ def test_a_state_that_is_none_is_refused(block):
         with pytest.raises(ValueError):
             mc.Simulation.restore(state)
     assert bits(mc.Simulation.restore(saved)) == bits(simulation)
+
+
+def end_of(deck):
+    return column(mc.run(deck).history, "force.punch.y")[-1]
+
+
+def test_errors_come_back_from_other_processes(block, collapsing):
+    good = mc.Deck(block)
+    wrong = good.with_({"contact.0.friction": -0.1})
+    with multiprocessing.get_context("spawn").Pool(2) as pool:
+        answers = [pool.apply_async(end_of, [deck]) for deck in (good, wrong, collapsing)]
+        assert answers[0].get(60) == end_of(good)
+        with pytest.raises(mc.DeckError, match="friction") as refused:
+            answers[1].get(60)
+        with pytest.raises(mc.Collapse) as collapse:
+            answers[2].get(60)
+    assert any(finding.label for finding in refused.value.findings)
+    assert collapse.value.load_factor == pytest.approx(0.5, rel=1e-5) and collapse.value.result is None
+
+
+def test_every_error_is_pickled_with_what_it_says(block, collapsing):
+    pulled = mc.Deck(block).with_({"step.0.load": [dict(on="punch", pressure=-10)]}).keys
+    del pulled["expect"], pulled["step"][0]["move"]
+    law = mc.LawError("at a point", 3, 1, (0.5, 0.25))
+    for deck, kind in [("a = 1\n", mc.DeckError), (pulled, mc.NotConverged), (collapsing, mc.Collapse), (law, mc.LawError)]:
+        with pytest.raises(kind) as caught:
+            if deck is law:
+                raise law
+            mc.run(deck)
+        error = caught.value
+        again = pickle.loads(pickle.dumps(error))
+        assert type(again) is kind and str(again) == str(error)
+        told = {"findings", "cell", "point", "position", "worst", "suggestion", "plastic_fraction", "load_factor", "upper"}
+        told &= set(dir(error))
+        assert told and all(getattr(again, name) == getattr(error, name) for name in told)
+
+
+def test_copies_and_pickled_simulations_go_on_by_themselves(block):
+    simulation = mc.Simulation(block)
+    for _ in range(3):
+        next(simulation)
+    before = bits(simulation)
+    others = [copy.copy(simulation), copy.deepcopy(simulation), pickle.loads(pickle.dumps(simulation))]
+    for other in others:
+        assert bits(other) == before
+        next(other)
+        assert bits(simulation) == before != bits(other)
+    next(simulation)
+    assert all(bits(other) == bits(simulation) for other in others)
+    result = mc.run(block)
+    again = pickle.loads(pickle.dumps(result))
+    assert str(again) == str(result) and bits(again.simulation) == bits(result.simulation)

@@ -52,6 +52,9 @@ class DeckError(ValueError):
         super().__init__(text)
         self.findings = found
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (*self.args, self.findings), self.__dict__
+
     def __str__(self) -> str:
         # On a line of its own, so that marks stand below what they point at.
         return "\n" + str(self.args[0])
@@ -81,11 +84,19 @@ class LawError(ValueError):
 class RunError(RuntimeError):
     """A run that did not come to its end. What converged before is in ``result``."""
 
-    result: Result
+    result: Result | None
+    """What converged before; ``None`` of an exception that was pickled, as by another process."""
+    outcome: dict[str, Any]
+    """How the run stood, as ``run.json`` tells it."""
 
-    def __init__(self, message: str, result: Result) -> None:
+    def __init__(self, message: str, result: Result | None = None) -> None:
         super().__init__(message)
         self.result = result
+        self.outcome = {} if result is None else result.outcome
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A result opens its deck again: that could fail where nobody catches it, as in the thread of a pool.
+        return type(self), self.args, {**self.__dict__, "result": None}
 
 
 class NotConverged(RunError):
@@ -93,7 +104,7 @@ class NotConverged(RunError):
 
     @property
     def _diagnosis(self) -> dict[str, Any]:
-        return self.result.outcome["diagnosis"] or {}
+        return self.outcome["diagnosis"] or {}
 
     @property
     def worst(self) -> list[dict[str, Any]]:
@@ -123,7 +134,7 @@ class Collapse(RunError):
     @property
     def load_factor(self) -> float:
         """Load factor at collapse, in parts of the loads of the step."""
-        return float(self.result.outcome["collapse"]["load_factor"])
+        return float(self.outcome["collapse"]["load_factor"])
 
     @property
     def lower(self) -> float:
@@ -133,7 +144,7 @@ class Collapse(RunError):
     @property
     def upper(self) -> float | None:
         """Kinematic bound of the load factor, if there is one."""
-        bound = self.result.outcome["collapse"]["upper_bound"]
+        bound = self.outcome["collapse"]["upper_bound"]
         return None if bound is None else float(bound)
 
 

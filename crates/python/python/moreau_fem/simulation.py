@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import warnings
 from collections.abc import Iterator, Mapping
 from os import PathLike
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from . import _toml, errors, tables
 from .deck import Deck, _dashed
-from .errors import DeckError
+from .errors import DeckError, DeckWarning
 from .law import Law
 from .tables import numbers
 
@@ -86,6 +87,8 @@ class Simulation:
 
     Ctrl-C leaves the last converged increment, also within the next one; going on ends with the same bits. All
     arrays are copies. A simulation belongs to one thread at a time, the interpreter is free for others meanwhile.
+    :func:`copy.copy` and :mod:`pickle` make another by :meth:`save` and :meth:`restore`, which goes on by itself, with the
+    same laws.
 
     ``laws`` are laws in Python, in place of those of materials of the deck, by the group that a material is ``on``: see
     :class:`Law`. They are for small strains. The elastic moduli and the yield stress of such a material are not used,
@@ -104,6 +107,7 @@ class Simulation:
 
     def __init__(self, deck: Source, *, laws: Mapping[str, Law] | None = None) -> None:
         self.deck = deck if isinstance(deck, Deck) else Deck(deck)
+        self._laws = dict(laws or {})
         self._core = self.deck.open(laws)
 
     def __iter__(self) -> Iterator[Increment]:
@@ -279,5 +283,16 @@ class Simulation:
         simulation._core.restore(numbers)
         return simulation
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Copies and what is pickled have a course of their own.
+        return _again, (type(self), self.save(), self._laws)
+
     def __repr__(self) -> str:
         return f"<simulation of {self.deck.file}: {self.increments} increments, {100 * self.done:.0f} %>"
+
+
+def _again(kind: type[Simulation], state: bytes, laws: Mapping[str, Law]) -> Simulation:
+    """A simulation that was saved, whose doubts have been told."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeckWarning)
+        return kind.restore(state, laws=laws)
