@@ -161,6 +161,55 @@ def test_decks_in_one_folder_have_their_own_meshes(tmp_path):
     assert mc.Deck(tmp_path / "more.toml")["mesh.file"] == "more.msh" and mc.run(tmp_path / "more.toml")
 
 
+def test_several_meshes_are_parts_of_one(tmp_path):
+    def bar(name, at):
+        mesh = square()
+        groups = {name + group: own for group, own in mesh.groups.items()}
+        return mc.Mesh(mesh.points + [at, 0.0], mesh.cells, groups)
+
+    def both(mesh, one="", two="b.", **more):
+        fix = [dict(on=f"{name}{side}", u=[axis]) for name in (one, two) for side, axis in [("left", "x"), ("bottom", "y")]]
+        move = [dict(on=f"{name}right", u=dict(x=u)) for name, u in [(one, 0.01), (two, 0.02)]]
+        material = [dict(on=[f"{one}body", f"{two}body"], young=1000.0, poisson=0.25)]
+        step = [dict(name="pull", increments=1, fix=fix, move=move)]
+        return mc.Deck(units="mm-N-MPa", analysis="plane-strain", mesh=mesh, material=material, step=step, **more)
+
+    def forces(deck, one="", two="b."):
+        history = mc.run(deck).history
+        return [float(np.asarray(history[f"force.{name}right.x"])[-1]) for name in (one, two)]
+
+    deck = both([bar("", 0.0), bar("b.", 5.0)])
+    assert forces(deck) == pytest.approx([PULL, 2 * PULL])
+    deck.to_toml(tmp_path / "two.toml")
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["two-2.msh", "two.msh", "two.toml"]
+    assert forces(tmp_path / "two.toml") == forces(deck)
+    # Beside a file of the name that it would have.
+    (tmp_path / "mesh.msh").write_bytes((tmp_path / "two.msh").read_bytes())
+    assert forces(both([bar("b.", 5.0), dict(file="mesh.msh")], folder=tmp_path)) == forces(deck)
+    # With names of parts, a mesh in place of a file; without, groups of one name are refused.
+    parts = [dict(file=square(), name="a"), dict(file=square(), name="b", position=[5, 0])]
+    assert forces(both(dict(part=parts), "a.", "b."), "a.", "b.") == forces(deck)
+    with pytest.raises(mc.DeckError, match='"body"'):
+        mc.run(both([square(), square()]))
+    with pytest.raises(TypeError, match="mesh.block is .* expected a list"):
+        both([dict(block=dict(name="b"))])
+
+
+def test_nodes_are_whole_numbers():
+    points, nodes = square().points, np.array([range(8)])
+    assert mc.Mesh(points, {"quad8": nodes.astype(float)}).cells["quad8"].tolist() == nodes.tolist()
+    for wrong, words in [
+        (nodes + 0.5, "quad8 has the node 0.5, expected whole numbers from 0"),
+        (nodes + np.nan, "the node nan"),
+        (nodes > 3, "values of the type bool"),
+        (nodes.astype(str), "expected numbers of nodes"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            mc.Mesh(points, {"quad8": wrong})
+        with pytest.raises(ValueError, match=words):
+            mc.Mesh(points, {"quad8": nodes}, {"body": {"quad8": wrong}})
+
+
 def test_a_mesh_of_meshio_and_of_pyvista():
     mesh = square()
     block = lambda kind, data: SimpleNamespace(type=kind, data=np.array(data))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import itertools
 import tomllib
 from collections.abc import Callable, Mapping
 from os import PathLike
@@ -35,8 +36,9 @@ class Deck:
     ``Deck(mapping)`` and ``Deck(units="mm-N-MPa", ...)`` that of keys, in which ``_`` stands for ``-``. Nothing is
     checked until :meth:`check`, :meth:`open` or a run does.
 
-    In keys, ``mesh`` may also be a :class:`Mesh`, a mesh of meshio or of pyvista, or a list of what
-    :func:`moreau_fem.block` returns; ``hardening`` of a material may be a function of the equivalent plastic strain:
+    In keys, ``mesh`` may also be a :class:`Mesh`, a mesh of meshio or of pyvista, or a list of these and of what
+    :func:`moreau_fem.block` returns, which share no node and no name of a group; so may ``file`` of its parts;
+    ``hardening`` of a material may be a function of the equivalent plastic strain:
     the stress that it adds to ``yield_stress``, sampled at 501 strains from 0 to 3; ``friction`` of a contact a function
     of the pressure: the bound of the shear, sampled at 1201 pressures from 0 to 1e15, each 4 % above the one before. Both
     may be objects of a class with ``__call__``, and are called for all points at once where they take arrays.
@@ -86,7 +88,7 @@ class Deck:
 
     def _plain(self, keys: Mapping[str, Any]) -> dict[str, Any]:
         """Keys as TOML has them."""
-        plain = {}
+        plain: dict[str, Any] = {}
         for name, value in keys.items():
             name = name.replace("_", "-")
             if name == "mesh":
@@ -105,17 +107,19 @@ class Deck:
             plain.pop("checksum", None)
         return plain
 
-    def _mesh(self, given: Any) -> Any:
-        if isinstance(given, Mapping):
-            return _dashed(given)
-        if isinstance(given, (list, tuple)):
-            whole: dict[str, Any] = {}
-            for part in map(self._mesh, given):
-                for name, value in part.items():
-                    whole[name] = whole.get(name, []) + value if isinstance(value, list) else value
-            return whole
-        self.meshes["mesh.msh"] = Mesh.of(given).to_gmsh().encode()
-        return {"file": "mesh.msh"}
+    def _mesh(self, given: Any) -> dict[str, Any]:
+        """The keys of a mesh. What no file has gets a name that no file of them has."""
+        keys = _joined(given)
+        tables = [table for table in [keys, *_parts_of(keys)] if "file" in table]
+        used = {Path(table["file"]).name for table in tables if isinstance(table["file"], (str, PathLike))}
+        for table in tables:
+            if not isinstance(table["file"], (str, PathLike)):
+                content = Mesh.of(table["file"]).to_gmsh().encode()
+                names = itertools.chain(["mesh.msh"], (f"mesh-{k}.msh" for k in itertools.count(2)))
+                table["file"] = next(name for name in names if name not in used)
+                used.add(table["file"])
+                self.meshes[table["file"]] = content
+        return keys
 
     @property
     def keys(self) -> dict[str, Any]:
@@ -136,7 +140,7 @@ class Deck:
     def __getitem__(self, path: str) -> Any:
         """The value at a path, as in ``deck["contact.0.friction"]``."""
         value: Any = self.keys
-        for part in _parts(path):
+        for part in _steps(path):
             value = value[part]
         return value
 
@@ -150,7 +154,7 @@ class Deck:
         """
         keys = self.keys
         for path, value in changes.items():
-            *parents, last = _parts(path)
+            *parents, last = _steps(path)
             at: Any = keys
             for part in parents:
                 at = at[part]
@@ -204,7 +208,7 @@ class Deck:
         if not isinstance(mesh, dict):
             return []
         paths = {self.folder / name: name for name in self.meshes}
-        tables = [table for table in [mesh, *mesh.get("part", [])] if isinstance(table.get("file"), str)]
+        tables = [table for table in [mesh, *_parts_of(mesh)] if isinstance(table.get("file"), str)]
         found = [(table, paths.get(self.folder / table["file"])) for table in tables]
         return [(table, name) for table, name in found if name is not None]
 
@@ -241,7 +245,37 @@ class Deck:
         return self.text
 
 
-def _parts(path: str) -> list[Any]:
+def _joined(given: Any) -> dict[str, Any]:
+    """The keys of a mesh that is given as keys, as what is a mesh itself, or as a list of these."""
+    if isinstance(given, Mapping):
+        keys: dict[str, Any] = _dashed(given)
+        return keys
+    if not isinstance(given, (list, tuple)):
+        return {"file": given}
+    whole: dict[str, Any] = {}
+    files = []
+    for keys in map(_joined, given):
+        if "file" in keys:
+            files.append(keys.pop("file"))
+        for name, value in keys.items():
+            whole.setdefault(name, [])
+            if not isinstance(value, list):
+                raise TypeError(f"mesh.{name} is {value!r}, expected a list")
+            whole[name] += value
+    if len(files) == 1:
+        whole["file"] = files[0]
+    elif files:
+        whole["part"] = [{"file": file} for file in files] + whole.get("part", [])
+    return whole
+
+
+def _parts_of(mesh: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The tables of ``[[mesh.part]]``."""
+    parts = mesh.get("part", [])
+    return [part for part in parts if isinstance(part, dict)] if isinstance(parts, list) else []
+
+
+def _steps(path: str) -> list[Any]:
     parts = path.split(".")
     # What users name is what they name it.
     if parts[0] == "parameters":

@@ -68,7 +68,7 @@ class Mesh:
     Raises
     ------
     ValueError
-        For a kind that is not known, for arrays of another shape, for nodes that do not exist, and for names of groups
+        For a kind that is not known, for arrays of another shape, for nodes that do not exist or are no whole numbers, and for names of groups
         with quotes or line breaks.
     """
 
@@ -90,7 +90,12 @@ class Mesh:
             kind = _NAMES.get(name)
             if kind is None:
                 raise ValueError(f"no cells are called {name!r}, expected one of {', '.join(_NODES)}")
-            nodes = np.asarray(given, dtype=np.int64)
+            nodes = np.asarray(given)
+            if nodes.dtype.kind not in "iuf":
+                raise ValueError(f"{kind} has values of the type {nodes.dtype}, expected numbers of nodes")
+            if (nodes % 1 != 0).any():
+                raise ValueError(f"{kind} has the node {nodes[nodes % 1 != 0][0]}, expected whole numbers from 0")
+            nodes = nodes.astype(np.int64)
             if nodes.ndim != 2 or nodes.shape[1] != _NODES[kind]:
                 raise ValueError(f"{kind} has the shape {nodes.shape}, expected (m, {_NODES[kind]})")
             if nodes.size and not (0 <= nodes.min() and nodes.max() < len(self.points)):
@@ -195,7 +200,7 @@ def _of_meshio(given: Any) -> tuple[Any, Any, dict[str, Any]]:
     blocks = [(_NAMES.get(block.type, block.type), np.asarray(block.data)) for block in given.cells]
     groups: dict[str, Any] = {}
     for name, members in (given.cell_sets or {}).items():
-        own = [(kind, nodes[np.asarray(index, dtype=int)])
+        own = [(kind, nodes[np.asarray(index)])
                for (kind, nodes), index in zip(blocks, members) if index is not None and len(index)]
         if own and not name.startswith("gmsh:"):
             groups[name] = _gathered(own)
@@ -208,5 +213,5 @@ def _of_meshio(given: Any) -> tuple[Any, Any, dict[str, Any]]:
             if own:
                 groups.setdefault(name, _gathered(own))
     for name, nodes in (given.point_sets or {}).items():
-        groups.setdefault(name, {"vertex": np.asarray(nodes, dtype=int)[:, None]})
+        groups.setdefault(name, {"vertex": np.asarray(nodes)[:, None]})
     return _flat(given.points), _gathered(blocks), groups
