@@ -237,3 +237,24 @@ def test_copies_and_pickled_simulations_go_on_by_themselves(block):
     result = mc.run(block)
     again = pickle.loads(pickle.dumps(result))
     assert str(again) == str(result) and bits(again.simulation) == bits(result.simulation)
+
+
+def test_the_deck_says_where_a_step_was_given_up(block):
+    simulation = mc.Simulation(block)
+    back = dict(increments=2, fix=[dict(on="block.left", u=["x"])])
+    move = lambda y: dict(move=[dict(on="punch", u=dict(y=y))])
+    for _ in range(5):
+        next(simulation)
+    simulation.step = dict(name="less", **back, **move(-0.001))
+    given_up = '# Step "press" was given up at 0.25 of it: run anew, it is done whole.\n'
+    assert given_up in simulation.deck.text
+    # One that was done whole is not given up; what was said stays, in what is saved and written too.
+    for _ in simulation:
+        pass
+    simulation.step = dict(name="more", **back, **move(-0.002))
+    assert simulation.deck.comments.count("given up") == 1
+    next(simulation)
+    again = mc.Simulation.restore(simulation.save())
+    again.step = dict(name="none", **back, **move(0.0))
+    assert given_up in again.deck.to_toml() and '"more" was given up at 0.5 of it' in again.deck.to_toml()
+    assert [step["name"] for step in again.deck["step"]] == ["press", "less", "more", "none"]

@@ -122,6 +122,11 @@ class Deck:
         return keys
 
     @property
+    def comments(self) -> str:
+        """The lines of the text before the first that is no comment."""
+        return "".join(itertools.takewhile(lambda line: line.startswith("#"), self.text.splitlines(keepends=True)))
+
+    @property
     def keys(self) -> dict[str, Any]:
         """The keys of the deck, a copy.
 
@@ -200,7 +205,7 @@ class Deck:
         checksum = _core.checksum(_toml.document(keys), path.parent, meshes)
         if checksum is not None:
             keys["checksum"] = checksum
-        return _toml.document(keys), meshes
+        return self.comments + _toml.document(keys), meshes
 
     def _own(self, keys: Mapping[str, Any]) -> list[tuple[dict[str, Any], str]]:
         """The tables of keys whose mesh file is not on disk, and the name of each in :attr:`meshes`."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tomllib
 import warnings
 from collections.abc import Iterator, Mapping
 from os import PathLike
@@ -103,7 +104,8 @@ class Simulation:
     """
 
     deck: Deck
-    """The deck; after :attr:`step` was set the one with that step."""
+    """The deck. After :attr:`step` was set it is the one with that step, which :meth:`restore` needs, and no record of what
+    was done: a step that gave way stands in it whole, with a comment that says where it was given up."""
 
     def __init__(self, deck: Source, *, laws: Mapping[str, Law] | None = None) -> None:
         self.deck = deck if isinstance(deck, Deck) else Deck(deck)
@@ -151,14 +153,24 @@ class Simulation:
             raise DeckError(refused, errors.findings(found))
         errors.warn(errors.findings(found))
         before = self.deck
-        self.deck = Deck(self._core.resolved(), folder=before.folder)
+        told = before.comments
+        *steps, _ = tomllib.loads(self._core.resolved())["step"]
+        part = self._time() - len(steps) + 1
+        if steps and part < 1.0 - 1e-9:
+            told += f"# Step \"{steps[-1]['name']}\" was given up at {part:.6g} of it: run anew, it is done whole.\n"
+        self.deck = Deck(told + self._core.resolved(), folder=before.folder)
         self.deck.file, self.deck.meshes = before.file, before.meshes
+
+    def _time(self) -> float:
+        """Steps done, with the part of the one under way."""
+        return float(tables.last(self._core.history())["time"]) if self.increments else 0.0
 
     step = property(
         None,
         _set_step,
         doc="""Set to the keys of a step, what is left of the step under way and the steps after it give way to it. A
-        step that does not fit is a :class:`DeckError`, and changes nothing.""",
+        step that does not fit is a :class:`DeckError`, and changes nothing. What is done up to then is in no deck: the
+        record of it is the code that sets the step, :attr:`history` and what :meth:`save` leaves.""",
     )
 
     @property
