@@ -14,7 +14,7 @@ import moreau_fem as mc
 from conftest import EXAMPLES
 
 
-def pulled(mesh, analysis="plane-strain", on="body", **more):
+def pulled(mesh, analysis="plane-strain", on="body", folder=None, **more):
     """A bar that is pulled, uniformly strained."""
     axes = ["x", "y", "z"][: 3 if analysis == "solid" else 2]
     fix = [dict(on=f"{side}", u=[axis]) for side, axis in zip(["left", "bottom", "back"], axes)]
@@ -24,6 +24,7 @@ def pulled(mesh, analysis="plane-strain", on="body", **more):
         mesh=mesh,
         material=[dict(on=on, young=1000.0, poisson=0.25, **more)],
         step=[dict(name="pull", increments=1, fix=fix, move=[dict(on="right", u=dict(x=0.01))])],
+        folder=folder,
     )
 
 
@@ -154,10 +155,10 @@ def test_decks_in_one_folder_have_their_own_meshes(tmp_path):
         mc.run(path)
     assert force(mc.Deck(path).with_({"mesh": square()})) == force(bar(1))
     # That of a simulation in another step too.
-    simulation = mc.Simulation(bar(2))
+    simulation = mc.Simulation(bar(2).with_({"step.0.increments": 2}))
     next(simulation)
     simulation.step = bar(2)["step.0"] | {"name": "more"}
-    simulation.deck.to_toml(tmp_path / "more.toml")
+    assert '"pull" was given up at 0.5' in simulation.deck.to_toml(tmp_path / "more.toml")
     assert mc.Deck(tmp_path / "more.toml")["mesh.file"] == "more.msh" and mc.run(tmp_path / "more.toml")
 
 
@@ -377,3 +378,52 @@ def test_functions_are_called_for_all_points_at_once_where_they_take_arrays():
     # The points are the same the next time.
     assert tomllib.loads(text(in_place, lambda p: 250.0 * p)) == tomllib.loads(together)
     assert tomllib.loads(text(law, lambda p: 250.0 * p)) == tomllib.loads(together)
+
+
+def test_keys_of_another_shape_are_refused(block):
+    keys = tomllib.loads(block.read_text())
+    for name in ("material", "contact", "tool", "step"):
+        (table,) = keys.get(name) or [dict(name="die")]
+        with pytest.raises(mc.DeckError, match=f"{name} is one table, expected a list"):
+            mc.Simulation({**keys, name: table})
+    with pytest.raises(mc.DeckError, match="material is one table"):
+        mc.Simulation({**keys, "material": {**keys["material"][0], "hardening": lambda p: 250.0 * p}})
+    for wrong in (3.0, "block", ["block"], [3.0]):
+        with pytest.raises(mc.DeckError, match="material is"):
+            mc.Simulation({**keys, "material": wrong})
+    # Whatever goes through it once is a list.
+    assert mc.Deck({**keys, "material": iter(keys["material"])}).keys == keys
+    for wrong in ({1: 2}, {"output": {1: 2}}, {"step": [{1: 2}]}, {"material": [{1: 2}]}):
+        with pytest.raises(TypeError, match="a deck has the key 1, expected a text"):
+            mc.Deck(wrong)
+    with pytest.raises(TypeError, match="'yield-stress' twice"):
+        mc.Deck(material=[{"yield_stress": 1.0, "yield-stress": 2.0}])
+
+
+def test_what_is_wrong_with_a_mesh_of_arrays_is_said_of_arrays(tmp_path):
+    points, cells, groups = square().points, square().cells, square().groups
+    for given, words in [
+        (groups | {"top": np.arange(3)}, "the group 'top' is given as ndarray, expected nodes by kind of cell"),
+        (groups | {"top": [[2, 3, 6]]}, "the group 'top' is given as list"),
+    ]:
+        with pytest.raises(TypeError, match=words):
+            mc.Mesh(points, cells, given)
+    with pytest.raises(TypeError, match="cells is given as ndarray"):
+        mc.Mesh(points, cells["quad8"])
+    for value in (np.nan, np.inf):
+        wrong = points.copy()
+        wrong[3, 1] = value
+        with pytest.raises(ValueError, match=rf"points\[3\] is \[0.0, {value}\], expected finite coordinates"):
+            mc.Mesh(wrong, cells, groups)
+    beside = mc.Mesh(points, cells, groups | {"left": {"line3": [[3, 1, 7]]}})
+    deck = pulled(beside, folder=tmp_path)
+    with pytest.raises(mc.DeckError) as refused:
+        mc.run(deck)
+    told = r"the mesh mesh.msh (arrays; its nodes and elements count from 1): "
+    assert told in str(refused.value) and told in refused.value.findings[0].message
+    assert str(tmp_path) not in str(refused.value) and "[4, 2, 8]" in str(refused.value)
+    # Of a file on disk as ever.
+    deck.to_toml(tmp_path / "bar.toml")
+    with pytest.raises(mc.DeckError) as refused:
+        mc.run(tmp_path / "bar.toml")
+    assert f"the mesh {tmp_path / 'bar.msh'}: " in str(refused.value)

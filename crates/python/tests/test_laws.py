@@ -206,6 +206,9 @@ class Spoilt(VonMises):
         (lambda s, t, z: (s, t[0], z), r"tangent of Spoilt has the shape \(6, 6\), expected \(80, 6, 6\)"),
         (lambda s, t, z: (s, t, z[:, :6]), r"state of Spoilt has the shape \(80, 6\), expected \(80, 7\)"),
         (lambda s, t, z: (s, t, "nothing"), "state of Spoilt is no array of numbers"),
+        (lambda s, t, z: (s.astype(np.float32), t, z), "stress of Spoilt is in float32, expected float64"),
+        (lambda s, t, z: (s, t, z.astype(np.float16)), "state of Spoilt is in float16, expected float64"),
+        (lambda s, t, z: (s, t + 0j, z), "tangent of Spoilt is in complex128, expected float64"),
     ],
 )
 def test_arrays_of_another_shape_are_refused(block, spoil, told):
@@ -278,6 +281,7 @@ def test_what_is_no_law_is_refused(block):
 
     for law, told in [
         (Nothing(), "has no method respond"),
+        (VonMises, r"VonMises is a class, expected a law of it: VonMises\(\.\.\.\)"),
         (Counted(1.0, 0.3, 1.0), "Counted.state is -1"),
         (Named(1.0, 0.3, 1.0), "'stress' of 6 numbers"),
         (Odd(1.0, 0.3, 1.0), "'pair' of 2 numbers"),
@@ -285,6 +289,8 @@ def test_what_is_no_law_is_refused(block):
     ]:
         with pytest.raises(mc.LawError, match=told):
             mc.Simulation(block, laws={"block": law})
+    with pytest.raises(TypeError, match="laws is VonMises, expected laws by the group"):
+        mc.Simulation(block, laws=steel())
     weak = steel()
     weak.elastic = weak.elastic - 2 * weak.bulk * np.outer(D, D)
     with pytest.raises(mc.DeckError, match="not symmetric and positive definite"):

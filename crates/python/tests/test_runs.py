@@ -258,3 +258,14 @@ def test_the_deck_says_where_a_step_was_given_up(block):
     again.step = dict(name="none", **back, **move(0.0))
     assert given_up in again.deck.to_toml() and '"more" was given up at 0.5 of it' in again.deck.to_toml()
     assert [step["name"] for step in again.deck["step"]] == ["press", "less", "more", "none"]
+
+
+def test_what_is_no_step_is_refused(block):
+    simulation = mc.Simulation(block)
+    with pytest.raises(IndexError, match="no increment has converged yet"):
+        simulation.last
+    next(simulation)
+    for wrong in (3, [dict(name="more", increments=2)], None):
+        with pytest.raises(TypeError, match=r"step is .*, expected the keys of one, as dict\(name="):
+            simulation.step = wrong
+    assert simulation.last == mc.Simulation.restore(simulation.save()).last

@@ -93,8 +93,17 @@ def test_pictures(block):
     assert result.plot("von_mises").svg.startswith("<svg")
     page = result._repr_html_()
     assert page.count("<svg") == 3 and "certificate" in page
-    with pytest.raises(ValueError, match="von_mises"):
-        result.plot("von_missis")
+    assert result.plot("stress.xx").svg.startswith("<svg")
+    for field, magnification, words in [
+        ("von_missis", None, "no field 'von_missis', expected one of displacement, .*; did you mean 'von_mises'"),
+        ("stress", None, "'stress' is drawn by its components, expected one of stress.xx, .*, stress.xz"),
+        ("stress.rr", None, "no field 'stress.rr'.*stress.xx"),
+        ("von_mises", float("nan"), "magnification is nan, expected a finite number"),
+    ]:
+        with pytest.raises(ValueError, match=words):
+            result.plot(field, magnification)
+    with pytest.raises(ValueError, match="no increment has converged yet"):
+        mc.Result(mc.Simulation(block)).plot()
     pyvista = pytest.importorskip("pyvista")
     grid = result.grid()
     assert isinstance(grid, pyvista.UnstructuredGrid)

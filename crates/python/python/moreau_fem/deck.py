@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import itertools
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -89,14 +89,13 @@ class Deck:
     def _plain(self, keys: Mapping[str, Any]) -> dict[str, Any]:
         """Keys as TOML has them."""
         plain: dict[str, Any] = {}
-        for name, value in keys.items():
-            name = name.replace("_", "-")
+        for name, value in _named(keys).items():
             if name == "mesh":
                 plain[name] = self._mesh(value)
             elif name == "material":
-                plain[name] = [_dashed(_sampled(material)) for material in value]
+                plain[name] = _dashed(_each(_sampled, value))
             elif name == "contact":
-                plain[name] = [_dashed(_bounded(contact)) for contact in value]
+                plain[name] = _dashed(_each(_bounded, value))
             elif name in ("expect", "parameters"):
                 # Their keys are names of columns, and of the user's own.
                 plain[name] = value
@@ -224,7 +223,13 @@ class Deck:
 
     def _open(self, laws: Mapping[str, Law] | None = None) -> tuple[Core | None, list[Finding], str]:
         core, found, shown = Core.open(self.text, self.folder, self.file, self.meshes, asked(laws))
-        return core, errors.findings(found), shown
+        return core, [f._replace(message=self._of_arrays(f.message)) for f in errors.findings(found)], self._of_arrays(shown)
+
+    def _of_arrays(self, told: str) -> str:
+        """What is told of a mesh that no file has, with how its numbers are meant."""
+        for name in self.meshes:
+            told = told.replace(str(self.folder / name), f"{name} (arrays; its nodes and elements count from 1)")
+        return told
 
     def open(self, laws: Mapping[str, Law] | None = None) -> Core:
         """The deck under way, as a simulation has it within, with laws in place of those of its materials. Doubts are
@@ -288,10 +293,32 @@ def _steps(path: str) -> list[Any]:
     return [int(part) if part.isdigit() else part.replace("_", "-") for part in parts]
 
 
+def _named(keys: Mapping[str, Any]) -> dict[str, Any]:
+    """Keys with ``-`` in place of ``_``."""
+    named: dict[str, Any] = {}
+    for name, value in keys.items():
+        if not isinstance(name, str):
+            raise TypeError(f"a deck has the key {name!r}, expected a text")
+        dashed = name.replace("_", "-")
+        if dashed in named:
+            raise TypeError(f"a deck has the key {name!r} twice, once with '-' and once with '_'")
+        named[dashed] = value
+    return named
+
+
+def _each(change: Callable[[Mapping[str, Any]], Any], tables: Any) -> Any:
+    """Tables with a change to each; what is none is left to whoever reads the deck."""
+    if isinstance(tables, Mapping):
+        return change(tables)
+    if isinstance(tables, str) or not isinstance(tables, Iterable):
+        return tables
+    return [change(table) if isinstance(table, Mapping) else table for table in tables]
+
+
 def _dashed(value: Any) -> Any:
-    """Keys with ``-`` in place of ``_``, in what is in them too."""
+    """The same of what is in them too."""
     if isinstance(value, Mapping):
-        return {name.replace("_", "-"): _dashed(v) for name, v in value.items()}
+        return {name: _dashed(v) for name, v in _named(value).items()}
     if isinstance(value, (list, tuple)):
         return [_dashed(v) for v in value]
     return value
@@ -299,7 +326,7 @@ def _dashed(value: Any) -> Any:
 
 def _sampled(material: Mapping[str, Any]) -> dict[str, Any]:
     """A material with a function of hardening as a table."""
-    given = {name.replace("_", "-"): value for name, value in material.items()}
+    given = _named(material)
     hardening: Callable[[Any], Any] | Any = given.get("hardening")
     if not callable(hardening):
         return given
@@ -353,7 +380,7 @@ def _above(x: np.ndarray[Any, Any], y: np.ndarray[Any, Any]) -> tuple[np.ndarray
 
 def _bounded(contact: Mapping[str, Any]) -> dict[str, Any]:
     """A contact with a function of friction as a table, up to a pressure that no contact reaches."""
-    given = {name.replace("_", "-"): value for name, value in contact.items()}
+    given = _named(contact)
     friction: Callable[[Any], Any] | Any = given.get("friction")
     if not callable(friction):
         return given

@@ -60,7 +60,7 @@ class Law(Protocol):
         self, strain: NDArray[np.float64], state: NDArray[np.float64], /
     ) -> tuple[ArrayLike, ArrayLike, ArrayLike]:
         """Stresses (n, 6), tangents ∂stress/∂strain (n, 6, 6) and states (n, s) at the end of a step, from its strain
-        increments (n, 6) and the states at its start (n, s), which are copies.
+        increments (n, 6) and the states at its start (n, s), which are copies. All are in float64.
 
         An exception leaves the simulation at the last converged increment, and goes through it as it is. A stress that
         is no number says that the strain is too large: the step is shortened, or the increment cut.
@@ -83,6 +83,8 @@ class Asked:
     symmetric: bool
 
     def __init__(self, law: Law) -> None:
+        if isinstance(law, type):
+            raise LawError(f"{law.__name__} is a class, expected a law of it: {law.__name__}(...)")
         self.law = law
         self.name = type(law).__name__
         if not callable(getattr(law, "respond", None)):
@@ -131,9 +133,15 @@ class Asked:
 
     def _array(self, what: str, given: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
         try:
-            array = np.ascontiguousarray(given, dtype=np.float64)
+            array = np.asarray(given)
+            if array.dtype.kind not in "fc":
+                array = array.astype(np.float64)
         except (TypeError, ValueError) as error:
             raise LawError(f"the {what} of {self.name} is no array of numbers: {error}") from error
+        if array.dtype.kind == "c" or array.dtype.itemsize < 8:
+            # With the digits of float32 no increment is balanced.
+            raise LawError(f"the {what} of {self.name} is in {array.dtype}, expected float64")
+        array = np.ascontiguousarray(array, dtype=np.float64)
         if array.shape != shape:
             raise LawError(f"the {what} of {self.name} has the shape {array.shape}, expected {shape}")
         return array
@@ -141,4 +149,6 @@ class Asked:
 
 def asked(laws: Mapping[str, Law] | None) -> dict[str, Asked]:
     """Laws by the groups of cells that they are on, as the core asks them."""
+    if laws is not None and not isinstance(laws, Mapping):
+        raise TypeError(f"laws is {type(laws).__name__}, expected laws by the group that a material is on, as {{\"block\": law}}")
     return {on: Asked(law) for on, law in (laws or {}).items()}

@@ -68,8 +68,10 @@ class Mesh:
     Raises
     ------
     ValueError
-        For a kind that is not known, for arrays of another shape, for nodes that do not exist or are no whole numbers, and for names of groups
+        For coordinates that are no numbers, for a kind of cell that is not known, for arrays of another shape, for nodes that do not exist or are no whole numbers, and for names of groups
         with quotes or line breaks.
+    TypeError
+        For cells, or a group, that are not given by kind.
     """
 
     def __init__(
@@ -78,13 +80,22 @@ class Mesh:
         self.points = np.asarray(points, dtype=float)
         if self.points.ndim != 2 or self.points.shape[1] not in (2, 3):
             raise ValueError(f"points have the shape {self.points.shape}, expected (n, 2) or (n, 3)")
-        self.cells = self._checked(cells)
-        self.groups = {name: self._checked(members) for name, members in (groups or {}).items()}
+        unknown = np.flatnonzero(~np.isfinite(self.points).all(axis=1))
+        if unknown.size:
+            at = int(unknown[0])
+            raise ValueError(f"points[{at}] is {self.points[at].tolist()}, expected finite coordinates")
+        self.cells = self._checked("cells", cells)
+        self.groups = {name: self._checked(f"the group {name!r}", members) for name, members in (groups or {}).items()}
         unfit = [name for name in self.groups if not name.isprintable() or '"' in name]
         if unfit:
             raise ValueError(f"groups are called {unfit}, expected names without quotes and line breaks")
 
-    def _checked(self, cells: Cells) -> dict[str, NDArray[np.int64]]:
+    def _checked(self, what: str, cells: Cells) -> dict[str, NDArray[np.int64]]:
+        if not isinstance(cells, Mapping):
+            raise TypeError(
+                f"{what} is given as {type(cells).__name__}, expected nodes by kind of cell, as "
+                '{"quad8": (m, 8)}, of sides {"line3": (k, 3)}, of nodes {"vertex": (k, 1)}'
+            )
         checked = {}
         for name, given in cells.items():
             kind = _NAMES.get(name)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
 import html
+import math
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
@@ -11,6 +13,9 @@ from .deck import Deck
 from .law import Law
 from .simulation import Simulation, Source
 from .tables import frame
+
+# Suffixes of the components of vectors and of tensors.
+_SUFFIXES = {3: ["x", "y", "z"], 6: ["xx", "yy", "zz", "xy", "yz", "xz"]}
 
 
 class Picture:
@@ -60,19 +65,38 @@ class Result:
         return self.simulation.grid(which)
 
     def plot(self, field: str | None = None, magnification: float | None = None) -> Picture:
-        """The deformed body of a plane problem, with a field of ``arrays("body")`` or a component of one, as in
-        ``"displacement.x"``, and displacements drawn so many times as large.
+        """The deformed body, in space seen from one side, with a field of ``arrays("body")`` or a component of one, as in
+        ``"displacement.x"`` and ``"stress.xx"``, and displacements drawn so many times as large. Tensors are drawn by their
+        components.
 
         Raises
         ------
         ValueError
-            For a field that there is not, and for bodies in space: see :meth:`grid`.
+            For a field that there is not, for a magnification that is no number, and before the first increment.
         """
+        if magnification is not None and not math.isfinite(magnification):
+            raise ValueError(f"the magnification is {magnification}, expected a finite number")
         pictures = dict(self.simulation._core.pictures(field, magnification))
         if "deformed" not in pictures:
-            fields = ", ".join(self.simulation.arrays().point_data)
-            raise ValueError(f"nothing to draw of {field!r}; in the plane there are {fields}")
+            raise ValueError(self._nothing_of(field))
         return Picture(pictures["deformed"])
+
+    def _nothing_of(self, field: str | None) -> str:
+        """Why there is nothing to draw of a field."""
+        if not self.simulation.increments:
+            return "there is nothing to draw: no increment has converged yet"
+        fields = self.simulation.arrays().point_data
+        components = {
+            name: [f"{name}.{suffix}" for suffix in _SUFFIXES.get(values.shape[-1] if values.ndim > 1 else 1, [])]
+            for name, values in fields.items()
+        }
+        # Of a vector its length is drawn, of a tensor its components alone.
+        if field in components:
+            return f"{field!r} is drawn by its components, expected one of {', '.join(components[field])}"
+        names = [name for name, own in components.items() if len(own) < 6] + sum(components.values(), [])
+        near = difflib.get_close_matches(str(field), names, 1)
+        hint = f"; did you mean {near[0]!r}?" if near else ""
+        return f"there is no field {field!r}, expected one of {', '.join(names)}{hint}"
 
     def __str__(self) -> str:
         return self.simulation.summary.rstrip()

@@ -109,8 +109,8 @@ class Simulation:
 
     def __init__(self, deck: Source, *, laws: Mapping[str, Law] | None = None) -> None:
         self.deck = deck if isinstance(deck, Deck) else Deck(deck)
-        self._laws = dict(laws or {})
         self._core = self.deck.open(laws)
+        self._laws = dict(laws or {})
 
     def __iter__(self) -> Iterator[Increment]:
         return self
@@ -144,10 +144,14 @@ class Simulation:
         IndexError
             Before the first.
         """
+        if not self.increments:
+            raise IndexError("no increment has converged yet")
         row = tables.last(self._core.history())
         return Increment(**{name: row[name] for name in Increment._fields})
 
     def _set_step(self, keys: Mapping[str, Any]) -> None:
+        if not isinstance(keys, Mapping):
+            raise TypeError(f"step is {keys!r}, expected the keys of one, as dict(name=\"unload\", increments=2)")
         found, refused = self._core.replace_step(_toml.body(_dashed(keys)))
         if refused is not None:
             raise DeckError(refused, errors.findings(found))
