@@ -186,7 +186,16 @@ def test_several_meshes_are_parts_of_one(tmp_path):
     assert forces(tmp_path / "two.toml") == forces(deck)
     # Beside a file of the name that it would have.
     (tmp_path / "mesh.msh").write_bytes((tmp_path / "two.msh").read_bytes())
-    assert forces(both([bar("b.", 5.0), dict(file="mesh.msh")], folder=tmp_path)) == forces(deck)
+    beside = both([bar("b.", 5.0), dict(file="mesh.msh")], folder=tmp_path)
+    assert forces(beside) == forces(deck)
+    # Written elsewhere it does not take another file of that name.
+    (tmp_path / "away").mkdir()
+    beside.to_toml(tmp_path / "away" / "two.toml")
+    (tmp_path / "away" / "mesh.msh").write_bytes((tmp_path / "two-2.msh").read_bytes())
+    with pytest.raises(mc.DeckError, match="checksum"):
+        mc.run(tmp_path / "away" / "two.toml")
+    (tmp_path / "away" / "mesh.msh").write_bytes((tmp_path / "two.msh").read_bytes())
+    assert forces(tmp_path / "away" / "two.toml") == forces(deck)
     # With names of parts, a mesh in place of a file; without, groups of one name are refused.
     parts = [dict(file=square(), name="a"), dict(file=square(), name="b", position=[5, 0])]
     assert forces(both(dict(part=parts), "a.", "b."), "a.", "b.") == forces(deck)

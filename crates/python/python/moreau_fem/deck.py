@@ -201,7 +201,8 @@ class Deck:
             # Several decks in one folder have their meshes there.
             entry["file"] = stem + name.removeprefix("mesh")
             meshes[entry["file"]] = self.meshes[name]
-        checksum = _core.checksum(_toml.document(keys), path.parent, meshes)
+        # With files that are on disk as this deck finds them, wherever it is written.
+        checksum = _core.checksum(_toml.document(keys), self.folder, meshes)
         if checksum is not None:
             keys["checksum"] = checksum
         return self.comments + _toml.document(keys), meshes
