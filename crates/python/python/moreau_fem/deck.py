@@ -144,7 +144,7 @@ class Deck:
     def __getitem__(self, path: str) -> Any:
         """The value at a path, as in ``deck["contact.0.friction"]``."""
         value: Any = self.keys
-        for part in _steps(path):
+        for part in _split(path):
             value = value[part]
         return value
 
@@ -158,7 +158,7 @@ class Deck:
         """
         keys = self.keys
         for path, value in changes.items():
-            *parents, last = _steps(path)
+            *parents, last = _split(path)
             at: Any = keys
             for part in parents:
                 at = at[part]
@@ -286,7 +286,7 @@ def _parts_of(mesh: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [part for part in parts if isinstance(part, dict)] if isinstance(parts, list) else []
 
 
-def _steps(path: str) -> list[Any]:
+def _split(path: str) -> list[Any]:
     parts = path.split(".")
     # What users name is what they name it.
     if parts[0] == "parameters":
