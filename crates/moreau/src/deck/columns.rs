@@ -105,9 +105,9 @@ const NAMED: &str = "NAME is a group that a step fixes or moves, a tool, a surfa
 const FORCE: Described = Described::new(
     "force.NAME.AXIS",
     Unit::Force,
-    "Force on the body: of a group along the directions in which the step holds or moves it, of a tool, and of a surface by \
-     contact, by ties and by what holds it. Loads are no part of it. Groups that share nodes with one that is held share \
-     its reactions. Under axial symmetry x is the sum of radial forces, all around.",
+    "Force on the body: of a group along the directions in which the step holds or moves it, of a tool, of a surface by \
+     its own contacts and ties, and of a probe by all contacts and what holds it. Loads are no part of it. Groups that share \
+     nodes with one that is held share its reactions. Under axial symmetry x is the sum of radial forces, all around.",
 )
 .when(NAMED);
 const DISPLACEMENT: Described = Described::new(
