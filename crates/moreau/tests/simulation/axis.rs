@@ -83,6 +83,19 @@ fn nothing_crosses_the_axis() {
         let area = "loads \"b.left\", which is on the axis of symmetry: it has no area";
         assert!(loaded.contains(area), "{loaded}");
     }
+    let ball = |x: f64| {
+        let conditions = format!("{hold}tools = [{{ name = \"cone\", move = [{x}, -0.02] }}]");
+        let polyline = "polyline = [[8, 12], [0, 4], [-8, 12]]";
+        disc("small", &conditions).replace(polyline, "sphere = { center = [0, 9], radius = 5 }")
+    };
+    let (moved, findings) = Simulation::open(&ball(1.0), &examples(), &Given::default());
+    assert!(
+        moved.is_none()
+            && findings
+                .render("deck", &ball(1.0), false)
+                .contains("is a torus")
+    );
+    finish(simulation(&ball(0.0)));
     // A force along the axis is one of points.
     let along = format!("{hold}load = [{{ on = \"b.left\", force = [0, -10] }}]");
     finish(simulation(&disc("small", &along)));
