@@ -9,4 +9,5 @@ pub(crate) mod passage;
 pub(crate) mod rigid;
 pub(crate) mod smallness;
 pub(crate) mod supports;
+pub(crate) mod unjoined;
 pub(crate) mod untied;

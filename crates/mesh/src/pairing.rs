@@ -11,6 +11,7 @@ mod mortar;
 mod overlap;
 mod patches;
 mod polygon;
+mod seams;
 mod segments;
 mod tree;
 
@@ -20,6 +21,7 @@ use crate::mesh::{Change, Facet, Mesh, NodeKind};
 use crate::sample::facet_samples;
 use face::{Face, Values, unit};
 pub use fold::Fold;
+pub use overlap::Intrusion;
 use std::collections::BTreeMap;
 use tree::Tree;
 

@@ -13,6 +13,7 @@ mod parts;
 mod penetrations;
 mod slips;
 mod ties;
+mod unjoined;
 
 use super::Given;
 use super::entries::{Action, Analysis, Deck, Method, Shape};
@@ -204,6 +205,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     amplitudes::check(deck, findings);
     conditions::inner_surfaces(deck, &groups, findings);
     slips::warn(deck, &groups, surface, findings);
+    unjoined::warn(deck, &driver, &groups, findings);
     let held = conditions::held(deck, &groups);
     Some(Setup {
         driver,

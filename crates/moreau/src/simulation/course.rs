@@ -118,7 +118,8 @@ impl<const D: usize> Course<D> {
             if ramp.is_done() {
                 // Its loads were to grow until nothing carries them.
                 let step = stage.step.name().to_owned();
-                self.tally.warnings.end_of_step(driver, self.stage);
+                let stage = (self.stage, stage.until_collapse);
+                self.tally.warnings.end_of_step(driver, stage);
                 self.ramp = Some(ramp);
                 return Err(self.fail(deck, StepError::Carried { step }));
             }
@@ -170,7 +171,8 @@ impl<const D: usize> Course<D> {
 
     fn end_step(&mut self) {
         let (warnings, driver) = (&mut self.tally.warnings, &mut self.setup.driver);
-        warnings.end_of_step(driver, self.stage);
+        let to_collapse = self.setup.stages[self.stage].until_collapse;
+        warnings.end_of_step(driver, (self.stage, to_collapse));
         self.stage += 1;
         self.ramp = None;
     }

@@ -37,9 +37,11 @@ enum Kind {
     Leap,
     /// A tool that bears on a node which it does not reach.
     Ahead,
+    /// Bodies that have moved into each other where nothing joins them.
+    Through,
 }
 
-const KINDS: [Kind; 14] = [
+const KINDS: [Kind; 15] = [
     Kind::Strain,
     Kind::Rotation,
     Kind::Inverted,
@@ -54,6 +56,7 @@ const KINDS: [Kind; 14] = [
     Kind::Distorted,
     Kind::Leap,
     Kind::Ahead,
+    Kind::Through,
 ];
 
 /// Quality below which a cell is distorted: that of a rectangle 1 : 20, or of a square sheared by 4.2.
@@ -271,7 +274,14 @@ impl Warnings {
     }
 
     /// Takes note of the state at the end of a step: loads grow up to there.
-    pub(super) fn end_of_step<const D: usize>(&mut self, driver: &mut Driver<D>, stage: usize) {
+    pub(super) fn end_of_step<const D: usize>(
+        &mut self,
+        driver: &mut Driver<D>,
+        (stage, to_collapse): (usize, bool),
+    ) {
+        if !to_collapse {
+            self.through(driver, stage);
+        }
         // Large strains see it themselves.
         if driver.has_large_strains() {
             return;
@@ -283,6 +293,17 @@ impl Warnings {
             numbers.extend(buckling.direction);
             let at = (buckling.node, buckling.position.to_vec());
             self.note(Kind::Buckling, numbers, at, stage);
+        }
+    }
+
+    /// Takes note of bodies that have moved into each other where neither a contact nor a tie is between them.
+    fn through<const D: usize>(&mut self, driver: &Driver<D>, stage: usize) {
+        let within = driver.unjoined_since();
+        if let Some(deepest) = within.iter().max_by(|a, b| a.depth.total_cmp(&b.depth)) {
+            let cells = deepest.cells.map(|cell| cell as f64);
+            let numbers = vec![deepest.depth, within.len() as f64, cells[0], cells[1]];
+            let at = driver.mesh().nodes()[deepest.node].to_vec();
+            self.note(Kind::Through, numbers, (deepest.node, at), stage);
         }
     }
 
@@ -403,6 +424,7 @@ impl Worst {
                 deck.units.length()
             ),
             Kind::Buckling => self.buckling(deck),
+            Kind::Through => self.through(driver, deck),
         }
     }
 
@@ -464,6 +486,21 @@ impl Worst {
         )
     }
 
+    fn through<const D: usize>(&self, driver: &Driver<D>, deck: &Deck) -> String {
+        let (index, at) = (self.index, place(&self.position, DIGITS));
+        let step = deck.steps.get(self.when);
+        let step = step.map_or("", |s| s.name.value.as_str());
+        let [own, other] = [2, 3].map(|k| body_name(driver, self.number(k) as usize));
+        format!(
+            "{} nodes have moved into another body at the end of step \"{step}\", as node {index} of {own}, at {at} in the \
+             mesh, by {} {} into {other}: neither a contact nor a tie is between them there, and bodies pass through each \
+             other where no contact is given; add one of their surfaces there",
+            shown(self.number(1), 9),
+            shown(self.number(0), 3),
+            deck.units.length()
+        )
+    }
+
     fn corner<const D: usize>(&self, driver: &Driver<D>) -> String {
         let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
         let (surface, tool) = driver.contact_name(self.number(1) as usize);
@@ -519,6 +556,18 @@ impl Worst {
              most, along {direction}; {what}: load less, or hold it against that motion",
             shown(factor, 3)
         )
+    }
+}
+
+/// The smallest group of cells with a cell, in words.
+fn body_name<const D: usize>(driver: &Driver<D>, cell: usize) -> String {
+    let mesh = driver.mesh();
+    let groups = mesh.group_names();
+    let groups = groups.filter_map(|name| Some((name, mesh.cell_group(name).ok()?)));
+    let holds = groups.filter(|(_, cells)| cells.binary_search(&cell).is_ok());
+    match holds.min_by_key(|(_, cells)| cells.len()) {
+        Some((name, _)) => format!("\"{name}\""),
+        None => format!("the body of cell {cell}"),
     }
 }
 

@@ -19,6 +19,7 @@ mod schema;
 mod supports;
 mod surfaces;
 mod ties;
+mod unjoined;
 mod values;
 
 use moreau::deck::{Class, Problem, open, open_in};

@@ -18,6 +18,7 @@ mod saved;
 mod sheared;
 mod shears;
 mod surfaces;
+mod unjoined;
 
 use moreau::deck::{Given, Meshes};
 use moreau::driver::IncrementError;
