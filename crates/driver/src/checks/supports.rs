@@ -14,6 +14,9 @@ use moreau_contact::ContactSolution;
 use moreau_laws::{Local, Status};
 use nalgebra::SVector;
 
+/// Part of the size of the mesh that is no motion.
+const MOVED: f64 = 1e-6;
+
 /// A rigid motion of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RigidMotion {
@@ -259,6 +262,35 @@ impl<const D: usize> Driver<D> {
         let motions = rows.free().into_iter();
         motions
             .map(|(body, motion)| format!("{motion} of {}", whose(body)))
+            .collect()
+    }
+
+    /// Rigid motions in words of bodies that have moved and that only contacts hold, none of which presses by more than
+    /// rounding there: what pushes a body that nothing holds on its other side.
+    pub fn pushed_motions(&self) -> Vec<String> {
+        let loading = &self.state.loading;
+        if !self.floats(loading) {
+            return Vec::new();
+        }
+        let rounding = self.rounding_of_forces();
+        let pressing = |driver: &Self, k: usize| match driver.state.contacts[k].t.norm() > rounding
+        {
+            true if driver.resisting(k) > 0 => driver.may_resist(k),
+            _ if driver.points[k].law.is_tie() => D,
+            _ => 0,
+        };
+        let rows = self.resisted(loading, pressing);
+        let bodies = self.mesh.bodies();
+        let has_moved = |body: &usize| {
+            let nodes = bodies[*body].iter().flat_map(|&c| self.mesh.cell_nodes(c));
+            nodes
+                .copied()
+                .any(|a| self.displacement(a).norm() > MOVED * self.mesh.size())
+        };
+        let motions = rows.free().into_iter();
+        let moved = motions.filter(|(body, _)| *body < bodies.len() && has_moved(body));
+        moved
+            .map(|(body, motion)| format!("{motion} of the body of cell {}", rows.cells[body]))
             .collect()
     }
 

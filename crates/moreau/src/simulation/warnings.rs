@@ -227,8 +227,12 @@ impl Warnings {
             let at = driver.mesh().nodes()[node].iter().copied().collect();
             self.note(Kind::Leap, vec![moved], (node, at), when);
         }
-        if !report.free_motions.is_empty() {
-            let numbers = vec![report.free_motions.len() as f64];
+        let free = match report.free_motions.len() {
+            0 => driver.pushed_motions().len(),
+            some => some,
+        };
+        if free > 0 {
+            let numbers = vec![free as f64];
             self.note(Kind::Free, numbers, (0, Vec::new()), when);
         }
     }
@@ -513,7 +517,10 @@ impl Worst {
 
     fn free<const D: usize>(&self, driver: &Driver<D>) -> String {
         let when = self.when;
-        let now = driver.free_motions();
+        let mut now = driver.free_motions();
+        if now.is_empty() {
+            now = driver.pushed_motions();
+        }
         let now = match now.is_empty() {
             true => String::new(),
             false => format!(" (at the end: {})", now.join(", ")),

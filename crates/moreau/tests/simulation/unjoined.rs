@@ -51,3 +51,53 @@ move = [{{ on = "l.left", u = {{ x = {by:?}, y = 0 }} }}]
         assert!(!pushed(strain, 0.5, contact), "{strain}");
     }
 }
+
+/// A die on a block that lies on nothing, and on one that a floor or a condition holds.
+#[test]
+fn a_body_that_is_pushed_and_not_held_is_told() {
+    let pressed = |strain: &str, floor: &str, fix: &str| {
+        let pressed = finish(simulation(&format!(
+            r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+strain = "{strain}"
+[[mesh.block]]
+name = "b"
+element = "quad8"
+x = [0, 40]
+y = [0, 10]
+cells = [8, 4]
+[[material]]
+on = "b"
+young = 210000
+poisson = 0.3
+[[tool]]
+name = "die"
+plane = {{ point = [0, 10], normal = [0, -1] }}
+[[contact]]
+surface = "b.top"
+against = "die"
+friction = 0.1
+{floor}
+[[step]]
+name = "press"
+increments = 2
+fix = [{{ on = "b.left", u = ["x"] }}{fix}]
+tools = [{{ name = "die", move = [0, -0.05] }}]
+"#
+        )));
+        warned(&pressed, "neither conditions nor contact decide")
+    };
+    let floor = r#"[[tool]]
+name = "floor"
+plane = { point = [0, 0], normal = [0, 1] }
+[[contact]]
+surface = "b.bottom"
+against = "floor"
+friction = 0.1"#;
+    for strain in ["small", "finite"] {
+        assert!(pressed(strain, "", ""), "{strain}");
+        assert!(!pressed(strain, floor, ""), "{strain}");
+        let held = ", { on = \"b.bottom\", u = [\"y\"] }";
+        assert!(!pressed(strain, "", held), "{strain}");
+    }
+}
