@@ -178,6 +178,13 @@ fn checksum(deck: &Deck, at_hand: &[Option<&[u8]>]) -> Option<String> {
 
 /// The files of a deck that tells their checksum must have it.
 fn check_checksum(deck: &Deck, findings: &mut Findings) {
+    let tools = deck.tools.iter().map(|t| &t.shape.value);
+    let reads =
+        !deck.mesh_files.is_empty() || tools.into_iter().any(|t| matches!(t, Shape::Triangles(_)));
+    if let (Some(told), false) = (&deck.checksum, reads) {
+        let message = "checksum of a deck that reads no file: it is that of its meshes and of surfaces of tools";
+        findings.warning(&told.span, message, "of nothing");
+    }
     if let (Some(told), Some(found)) = (&deck.checksum, &deck.found_checksum)
         && told.value != *found
     {

@@ -435,3 +435,63 @@ step = [{ name = "s", increments = 1, fix = [{ on = "b.bottom", u = ["x", "y", "
         "{told:?}"
     );
 }
+
+/// A table of a tensile test by its total strains, a plateau of a stress, and a modulus beyond that of elasticity.
+#[test]
+fn hardening_that_is_hardly_meant_is_told() {
+    let told = |hardening: &str| {
+        let hard = format!("yield-stress = 300.0\nhardening = {hardening}");
+        let text = DECK.replacen("yield-stress = 300.0", &hard, 1);
+        let (_, problem, findings) = open(&text);
+        assert!(problem.is_some());
+        findings
+            .iter()
+            .map(|f| f.message.clone())
+            .collect::<Vec<_>>()
+    };
+    let total = told("{ table = [[0.0015, 300], [0.0035, 700]] }");
+    assert!(
+        total[0].contains("plastic strain of 0.0015 with the yield stress"),
+        "{total:?}"
+    );
+    let steep = told("{ linear = 1e9 }");
+    assert!(
+        steep[0].contains("more than its Young's modulus"),
+        "{steep:?}"
+    );
+    for hardening in [
+        "{ table = [[0.02, 300], [0.1, 400]] }",
+        "{ table = [[0.0015, 330], [0.1, 400]] }",
+        "{ table = [[0, 300], [0.1, 400]] }",
+        "{ linear = 2000 }",
+    ] {
+        assert!(told(hardening).is_empty(), "{hardening}");
+    }
+}
+
+/// What is misspelt is the only thing that is said of it.
+#[test]
+fn a_misspelt_kind_of_hardening_is_told_once() {
+    let text = DECK.replacen(
+        "yield-stress = 300.0",
+        "yield-stress = 300.0\nhardening = { linera = 500 }",
+        1,
+    );
+    let (_, _, findings) = open(&text);
+    let all: Vec<_> = findings.iter().map(|f| f.message.as_str()).collect();
+    assert!(
+        all.len() == 1 && all[0].contains("did you mean \"linear\"?"),
+        "{all:?}"
+    );
+    let text = text.replacen("{ linera = 500 }", "{}", 1);
+    assert!(open(&text).2.iter().any(|f| f.message.contains("0 curves")));
+}
+
+/// A checksum is one of files.
+#[test]
+fn a_checksum_of_no_file_is_told() {
+    let text = format!("checksum = \"00000000\"\n{DECK}");
+    let (_, problem, findings) = open(&text);
+    let told = |f: &moreau::deck::Finding| f.message.contains("reads no file");
+    assert!(problem.is_some() && findings.iter().any(told));
+}

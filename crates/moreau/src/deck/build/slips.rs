@@ -2,14 +2,18 @@
 
 use super::groups::Groups;
 use super::parts::Surface;
-use crate::deck::entries::{Action, Deck, FrictionEntry};
-use crate::deck::finding::Findings;
+use crate::deck::entries::{Action, Curve, Deck, FrictionEntry};
+use crate::deck::finding::{At, Findings};
 use crate::numbers::shown;
 use nalgebra::SVector;
 
 /// Part of Young's modulus that the yield stress of a solid stays below: metals a hundredth, polymers
 /// a twentieth.
 const STRONGEST: f64 = 0.1;
+
+/// Part of a yield stress, and of an elastic strain, that is rounded off in a deck.
+const SAME_YIELD: f64 = 0.01;
+const ELASTIC: f64 = 0.2;
 
 /// Young's modulus of diamond, rounded up, and of soft rubber \[Pa\].
 const STIFFEST: f64 = 2e12;
@@ -25,6 +29,8 @@ pub(super) fn warn<const D: usize>(
     findings: &mut Findings,
 ) {
     soft(deck, findings);
+    steep(deck, findings);
+    total(deck, findings);
     stiff(deck, findings);
     rough(deck, findings);
     far(deck, groups, findings);
@@ -45,6 +51,55 @@ fn soft(deck: &Deck, findings: &mut Findings) {
                 material.on.value, strength.value, material.young.value
             );
             findings.warning(&material.young.span, message, "in another unit?");
+        }
+    }
+}
+
+/// A hardening modulus beyond that of elasticity.
+fn steep(deck: &Deck, findings: &mut Findings) {
+    let unit = deck.units.stress();
+    for material in &deck.materials {
+        let Some(hardening) = &material.isotropic else {
+            continue;
+        };
+        let (modulus, young) = (hardening.value.linear, material.young.value);
+        if modulus > young {
+            let message = format!(
+                "\"{}\" hardens by {modulus:?} {unit}, more than its Young's modulus of {young:?} {unit}: a slope of stress \
+                 over plastic strain, both in {unit}",
+                material.on.value
+            );
+            findings.warning(&hardening.span, message, "in another unit?");
+        }
+    }
+}
+
+/// A table of total strains: it has the yield stress at the elastic strain, and not at 0.
+fn total(deck: &Deck, findings: &mut Findings) {
+    let unit = deck.units.stress();
+    for material in &deck.materials {
+        let curve = material.isotropic.as_ref().map(|h| &h.value.curve);
+        let (Some(Some(Curve::Table(rows))), Some(strength)) = (curve, &material.yield_stress)
+        else {
+            continue;
+        };
+        let Some(At {
+            value: [p, stress],
+            span,
+        }) = rows.first()
+        else {
+            continue;
+        };
+        let elastic = stress / material.young.value;
+        let is_near = |a: f64, b: f64, part: f64| (a - b).abs() <= part * b;
+        if is_near(*stress, strength.value, SAME_YIELD) && is_near(*p, elastic, ELASTIC) {
+            let message = format!(
+                "the hardening of \"{}\" begins at a plastic strain of {p:?} with the yield stress, which is there from 0 on: \
+                 {stress:?} {unit} over Young's modulus is an elastic strain of {}; take it from all strains of the table",
+                material.on.value,
+                shown(elastic, 3)
+            );
+            findings.warning(span, message, "total strains?");
         }
     }
 }

@@ -119,7 +119,12 @@ fn isotropic(table: &Table<'_>) -> Option<At<Hardening>> {
         .iter()
         .filter_map(|(k, v)| Some((*k, (*v)?)))
         .collect();
+    let is_misspelt = given.is_empty() && !inner.entries().is_empty();
     inner.finish();
+    if is_misspelt {
+        // Which has been told.
+        return None;
+    }
     let linear = match given.first() {
         Some(&("linear", modulus)) => reader::number(modulus, "linear", log)?.value,
         _ => 0.0,
