@@ -5,6 +5,7 @@ mod tool;
 
 pub use law::{LawFault, Place};
 pub use tool::ToolOutOfContact;
+use tool::direction;
 
 use crate::report::collapse::Collapse;
 use moreau_contact::ContactError;
@@ -222,13 +223,14 @@ pub enum ModelError {
     },
     /// A tool driven away from all that it may touch.
     #[error(
-        "tool {tool:?} is driven by the force {force:?} away from every surface that it may touch: \
-         nothing can stand up to that; turn the force round, or prescribe the tool's motion"
+        "tool {tool:?} is driven by a force along {:?}, away from every surface that it may touch: \
+         nothing can stand up to that; turn the force round, or prescribe the tool's motion",
+        direction(force)
     )]
     PulledTool {
         /// The tool.
         tool: String,
-        /// The force on it \[N\].
+        /// The force on it at the end of the increment \[N\].
         force: Vec<f64>,
     },
     /// A tool driven by a force or a moment that no contact has.

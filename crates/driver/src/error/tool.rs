@@ -25,6 +25,12 @@ fn significant(values: &[f64]) -> Vec<f64> {
     values.iter().map(short).collect()
 }
 
+/// A force of length 1.
+pub(super) fn direction(force: &[f64]) -> Vec<f64> {
+    let size = force.iter().fold(0.0, |size: f64, f| size.hypot(*f));
+    significant(&force.iter().map(|f| f / size).collect::<Vec<_>>())
+}
+
 impl fmt::Display for ToolOutOfContact {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self {

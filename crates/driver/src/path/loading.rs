@@ -82,7 +82,7 @@ impl<const D: usize> Driver<D> {
         loading.turn = self.turns(step)?;
         for condition in &step.conditions {
             if let Condition::Push { name, axis, force } = condition {
-                let dof = self.pushed(name, *axis)?;
+                let dof = self.pushed(name, *axis, *force)?;
                 moved.remove(&dof);
                 loading.force.add(dof, *force);
             }
@@ -150,7 +150,8 @@ impl<const D: usize> Driver<D> {
         for condition in &step.conditions {
             if let Condition::Turn { name, axis, angle } = condition {
                 let tool = tool_index(&self.tools, name)?;
-                let by = self.turn(name, axis, *angle)? - before.turn_of(tool);
+                let told = ("turn in degrees of", angle.to_degrees());
+                let by = self.axle(name, axis, told)? * *angle - before.turn_of(tool);
                 (0..3).for_each(|i| turns.add(3 * tool + i, by[i]));
             }
         }
@@ -170,7 +171,7 @@ impl<const D: usize> Driver<D> {
                 continue;
             };
             let tool = tool_index(&self.tools, name)?;
-            let axle = self.turn(name, axis, 1.0)?;
+            let axle = self.axle(name, axis, ("moment on", *moment))?;
             let axle = axle * axle[axle.iamax()].signum();
             let turned = self.state.loading.turn_of(tool);
             if axle.cross(&turned).norm() > TILTED * turned.norm() {
@@ -193,22 +194,27 @@ impl<const D: usize> Driver<D> {
     }
 
     /// The degree of freedom along which a force drives a tool.
-    fn pushed(&self, name: &str, axis: Axis) -> Result<usize, ModelError> {
+    fn pushed(&self, name: &str, axis: Axis, force: f64) -> Result<usize, ModelError> {
         let node = self.tool_node(tool_index(&self.tools, name)?);
         let translations = self.measure.rigid_modes(&[0.0; D]);
         let along = |m: &[f64; D]| m.get(axis.index()) == Some(&1.0);
         if !translations.iter().any(along) {
             return Err(ModelError::OutOfRange {
-                what: format!("direction of the force on tool {name:?}"),
-                value: axis.index() as f64,
-                expected: "a direction in which the analysis lets a tool move",
+                what: format!("force along {} on tool {name:?}", axis_letter(axis.index())),
+                value: force,
+                expected: "none: the analysis lets no tool move along it",
             });
         }
         Ok(D * node + axis.index())
     }
 
-    /// A turn of a tool about an axis of any length by an angle \[rad\].
-    fn turn(&self, name: &str, axis: &[f64; 3], angle: f64) -> Result<Turn, ModelError> {
+    /// The unit vector along an axis of any length, about which a tool is to turn as is told.
+    fn axle(
+        &self,
+        name: &str,
+        axis: &[f64; 3],
+        (what, value): (&str, f64),
+    ) -> Result<Turn, ModelError> {
         let axis = Turn::from(*axis);
         let unit = axis
             .try_normalize(0.0)
@@ -225,12 +231,12 @@ impl<const D: usize> Driver<D> {
         };
         if self.measure.rigid_modes(&[1.0; D]).len() < 3 {
             return Err(ModelError::OutOfRange {
-                what: format!("turn of tool {name:?}"),
-                value: angle,
+                what: format!("{what} tool {name:?}"),
+                value,
                 expected: "none: the analysis lets no tool turn",
             });
         }
-        Ok(unit * angle)
+        Ok(unit)
     }
 
     /// The loadings at the times within a step at which an amplitude has a row, from those at its ends.

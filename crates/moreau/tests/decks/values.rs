@@ -487,6 +487,39 @@ fn a_misspelt_kind_of_hardening_is_told_once() {
     assert!(open(&text).2.iter().any(|f| f.message.contains("0 curves")));
 }
 
+/// What the analysis lets no tool do is told by what the deck says.
+#[test]
+fn what_a_tool_cannot_do_is_told_as_it_is_given() {
+    let text = |what: &str| {
+        format!(
+            r#"units = "mm-N-MPa"
+analysis = "axisymmetric"
+mesh = {{ block = [{{ name = "b", element = "quad4", x = [0, 10], y = [0, 10], cells = [2, 2] }}] }}
+material = [{{ on = "b", young = 1000, poisson = 0.3 }}]
+tool = [{{ name = "p", plane = {{ point = [0, 10], normal = [0, -1] }} }}]
+contact = [{{ surface = "b.top", against = "p", friction = 0.1 }}]
+step = [{{ name = "s", increments = 1, fix = [{{ on = "b.bottom", u = ["y"] }}], tools = [{{ name = "p", {what} }}] }}]
+"#
+        )
+    };
+    for (what, said) in [
+        (
+            "move = [0, -0.1], turn = 2",
+            "turn in degrees of tool \"p\" is 2,",
+        ),
+        ("move = [0, -0.1], moment = 0", "moment on tool \"p\" is 0,"),
+        (
+            "force = [-5000, 0]",
+            "force along x on tool \"p\" is -5000,",
+        ),
+    ] {
+        let text = text(what);
+        let (_, problem, findings) = open(&text);
+        let shown = flat(&findings.render("deck.toml", &text, false));
+        assert!(problem.is_none() && shown.contains(said), "{shown}");
+    }
+}
+
 /// A checksum is one of files.
 #[test]
 fn a_checksum_of_no_file_is_told() {
