@@ -166,7 +166,7 @@ pub(super) fn is_ours(name: &str) -> bool {
     name == "failed.vtu" || numbered.is_some_and(digits)
 }
 
-/// Number, time and file of the bodies listed in a directory; none without a list.
+/// Number, time and file of the bodies listed in a directory that are still there; none without a list.
 pub(super) fn bodies(directory: &Path) -> Vec<(usize, f64, PathBuf)> {
     let text = std::fs::read_to_string(directory.join(LIST)).unwrap_or_default();
     let body = |line: &str| {
@@ -174,7 +174,9 @@ pub(super) fn bodies(directory: &Path) -> Vec<(usize, f64, PathBuf)> {
         let (number, _) = file.strip_prefix("body_")?.split_once('.')?;
         let number = number.parse();
         let time = attribute(line, "timestep")?.parse().ok()?;
-        Some((number.ok()?, time, directory.join(file)))
+        let file = directory.join(file);
+        // Who has removed some to make room still has pictures of the others.
+        file.exists().then_some((number.ok()?, time, file))
     };
     text.lines().filter_map(body).collect()
 }

@@ -291,3 +291,18 @@ fn a_deck_is_drawn_before_it_is_run() {
     let second = read("plan-2.svg");
     assert!(second.contains(">(0.3, 0, 0.4) mm<") && second.contains(": step drag<"));
 }
+
+/// Files of a run that somebody removed are not drawn, and keep none of the others from it.
+#[test]
+fn what_was_removed_is_not_drawn() {
+    let (status, _, err, results) = run("removed", &punched(), &["--quiet"]);
+    assert_eq!(status, 0, "{err}");
+    fs::remove_file(results.join("body_00007.vtu")).expect("a body");
+    let at = results.to_str().expect("a path");
+    let output = moreau(&["plot", at]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let output = moreau(&["plot", at, "--increment", "7"]);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(told.contains("the body of increment 7"), "{told}");
+}
