@@ -5,6 +5,7 @@ pub(crate) mod beside;
 pub(crate) mod between;
 pub(crate) mod gaps;
 pub(crate) mod loose;
+pub(crate) mod narrow;
 pub(crate) mod passage;
 pub(crate) mod rigid;
 pub(crate) mod smallness;

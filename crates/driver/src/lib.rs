@@ -54,6 +54,7 @@ pub use checks::ahead::Ahead;
 pub use checks::beside::Beside;
 pub use checks::between::Between;
 pub use checks::gaps::LeastGap;
+pub use checks::narrow::Narrow;
 pub use checks::rigid::Stopper;
 pub use checks::smallness::{Deformation, Extent};
 pub use checks::supports::{RigidMotion, Support};

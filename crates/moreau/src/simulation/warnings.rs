@@ -39,9 +39,11 @@ enum Kind {
     Ahead,
     /// Bodies that have moved into each other where nothing joins them.
     Through,
+    /// A round tool that bears on one node, being narrower than a facet.
+    Narrow,
 }
 
-const KINDS: [Kind; 15] = [
+const KINDS: [Kind; 16] = [
     Kind::Strain,
     Kind::Rotation,
     Kind::Inverted,
@@ -57,6 +59,7 @@ const KINDS: [Kind; 15] = [
     Kind::Leap,
     Kind::Ahead,
     Kind::Through,
+    Kind::Narrow,
 ];
 
 /// Quality below which a cell is distorted: that of a rectangle 1 : 20, or of a square sheared by 4.2.
@@ -191,6 +194,12 @@ impl Warnings {
             let numbers = vec![ahead.distance, ahead.pressed, ahead.contact as f64];
             let at = (ahead.node, ahead.position.to_vec());
             self.note(Kind::Ahead, numbers, at, report.increment);
+        }
+        if let Some(narrow) = driver.narrow_tools() {
+            let ratio = narrow.beside / narrow.radius;
+            let numbers = vec![ratio, narrow.radius, narrow.beside, narrow.contact as f64];
+            let at = (narrow.node, narrow.position.to_vec());
+            self.note(Kind::Narrow, numbers, at, report.increment);
         }
         self.undecided(driver, report);
     }
@@ -429,6 +438,7 @@ impl Worst {
             ),
             Kind::Buckling => self.buckling(deck),
             Kind::Through => self.through(driver, deck),
+            Kind::Narrow => self.narrow(driver, deck),
         }
     }
 
@@ -502,6 +512,20 @@ impl Worst {
             shown(self.number(1), 9),
             shown(self.number(0), 3),
             deck.units.length()
+        )
+    }
+
+    fn narrow<const D: usize>(&self, driver: &Driver<D>, deck: &Deck) -> String {
+        let length = deck.units.length();
+        let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
+        let (surface, tool) = driver.contact_name(self.number(3) as usize);
+        format!(
+            "\"{tool}\", of a radius of {} {length} there, bears on node {index} of \"{surface}\" at {at} and on none beside it \
+             in increment {when}, where the nearest is {} {length} away: contact acts at nodes, and a node is pressed in with \
+             all of the facets around it, which makes forces too large; use facets of a fifth of that radius, or less, where \
+             \"{tool}\" touches",
+            shown(self.number(1), 3),
+            shown(self.number(2), 3)
         )
     }
 

@@ -11,6 +11,7 @@ mod keys;
 mod laws;
 mod leaps;
 mod nearby;
+mod narrow;
 mod outside;
 mod points;
 mod replaced;
