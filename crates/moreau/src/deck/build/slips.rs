@@ -2,8 +2,9 @@
 
 use super::groups::Groups;
 use super::parts::Surface;
-use crate::deck::entries::{Action, Curve, Deck, FrictionEntry};
+use crate::deck::entries::{Action, ContactEntry, Curve, Deck, FrictionEntry};
 use crate::deck::finding::{At, Findings};
+use crate::mesh::Facet;
 use crate::numbers::shown;
 use nalgebra::SVector;
 
@@ -18,6 +19,12 @@ const ELASTIC: f64 = 0.2;
 /// Young's modulus of diamond, rounded up, and of soft rubber \[Pa\].
 const STIFFEST: f64 = 2e12;
 const SOFTEST: f64 = 1e6;
+
+/// Cosine of the angle between an outward normal and the direction to a tool, from which on a surface faces it.
+const FACES: f64 = 0.1;
+
+/// Distance from a tool, in sizes of the mesh, that is not rounding.
+const OUTSIDE: f64 = 1e-6;
 
 /// Coefficient of friction from which on a number is rather one in percent.
 const ROUGHEST: f64 = 10.0;
@@ -35,6 +42,7 @@ pub(super) fn warn<const D: usize>(
     rough(deck, findings);
     far(deck, groups, findings);
     inside(deck, groups, surface, findings);
+    away(deck, groups, surface, findings);
 }
 
 /// A modulus in another unit than the yield stress.
@@ -203,6 +211,53 @@ fn inside<const D: usize>(
                 contact.surface.value, tool.name.value
             );
             findings.warning(&tool.shape.span, message, "turned round?");
+        }
+    }
+}
+
+/// Tools that no surface given to them faces: only its edge can touch.
+fn away<const D: usize>(
+    deck: &Deck,
+    groups: &Groups<D>,
+    surface: Surface<D>,
+    findings: &mut Findings,
+) {
+    let steps = deck.steps.iter().flat_map(|s| &s.conditions);
+    let turns = |tool: &str| {
+        let is_turn = |a: &Action| matches!(a, Action::Tool(_, Some(_)) | Action::Moment(_));
+        steps
+            .clone()
+            .any(|c| c.on.value == tool && is_turn(&c.action))
+    };
+    let mesh = &groups.mesh;
+    for tool in deck.tools.iter().filter(|t| !turns(&t.name.value)) {
+        let against = |c: &&ContactEntry| c.against.value == tool.name.value;
+        let contacts: Vec<&ContactEntry> = deck.contacts.iter().filter(against).collect();
+        let (Some(first), Some(Ok(obstacle))) = (contacts.first(), surface(&tool.shape.value))
+        else {
+            continue;
+        };
+        let facets = contacts
+            .iter()
+            .filter_map(|c| mesh.facet_group(&c.surface.value).ok());
+        let facets: Vec<Facet> = facets.flatten().copied().collect();
+        let normals = mesh.node_normals(mesh.nodes(), &facets);
+        let faces = |(&node, normal): (&usize, &[f64; D])| {
+            let x = SVector::from(mesh.nodes()[node]);
+            -SVector::from(*normal).dot(&obstacle.normal(&x)) > FACES
+        };
+        // What is inside of a tool is told to have it turned round.
+        let is_outside = |node: &usize| {
+            let x = SVector::from(mesh.nodes()[*node]);
+            obstacle.distance(&x) > OUTSIDE * mesh.size()
+        };
+        if normals.keys().any(is_outside) && !normals.iter().any(faces) {
+            let message = format!(
+                "\"{}\" does not face the tool \"{}\" anywhere: only its edge can touch, and what lies beside it passes into the \
+                 tool; give the side of the body that is opposite",
+                first.surface.value, tool.name.value
+            );
+            findings.warning(&first.surface.span, message, "another side?");
         }
     }
 }
