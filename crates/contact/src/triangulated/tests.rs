@@ -445,6 +445,11 @@ proptest! {
         };
         let Some(d) = Point::from(x).try_normalize(0.1) else { return Ok(()) };
         let x = center + d * 4.0;
+        // Opposite a corner of the rim the curvature is that of a point.
+        let turn = x.y.atan2(x.x) / TAU * 16.0;
+        if which == 1 && (turn - turn.round()).abs() < 1e-3 {
+            return Ok(());
+        }
         let (n, h) = (surface.normal(&x), 1e-5);
         prop_assert!((n.norm() - 1.0).abs() < 1e-12);
         let curvature = surface.curvature(&x);
