@@ -153,6 +153,7 @@ impl<const D: usize> Driver<D> {
         if linearised.proximal > 0.0 {
             return None;
         }
+        let reach = self.reach(kinematics);
         let (previous, last, _) = seam.forces;
         let mut among = nearby(kinematics, (previous, last))?;
         let mut iterations = 0;
@@ -162,7 +163,14 @@ impl<const D: usize> Driver<D> {
             let guess = linearised.guess.map(|guess| part(guess, &among));
             let problem = &mut condensation.problem;
             let method = &self.settings.contact;
-            let approach = |p: &_| method.approach(p, guess.as_ref(), linearised.enough);
+            let approach = |p: &_| {
+                let found = method.approach(p, guess.as_ref(), linearised.enough)?;
+                // What an unstable structure has far away is not what is looked for.
+                match farthest(&found) <= reach {
+                    true => Ok(found),
+                    false => Err(ContactError::Singular),
+                }
+            };
             let mut own = self.stable(problem, linearised, approach).ok()?;
             iterations += own.iterations;
             own.iterations = iterations;
@@ -170,7 +178,7 @@ impl<const D: usize> Driver<D> {
             let closing = closing(kinematics, &left_out, seam.system.shift());
             if closing.is_empty() {
                 let all = whole(kinematics, (&among, &own), &left_out);
-                let is_near = farthest(&all) <= self.reach(kinematics);
+                let is_near = farthest(&all) <= reach;
                 let is_found = is_near && self.decides(seam.system, linearised, &all);
                 return is_found.then_some(Found {
                     condensation,
