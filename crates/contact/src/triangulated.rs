@@ -283,8 +283,9 @@ const ROUNDED: f64 = 1e-4;
 /// Least angle around a corner of what a fillet rounds off: half of a turn, less a corner of an outline \[rad\].
 const HALF: f64 = 2.6;
 
-/// How much farther the faces around a point lean from their mean than they bend: around a corner of a smooth surface, where n
-/// of them meet, 1/(2 sin π/n), or half of that of the next ones.
+/// Where faces lean this many times farther from their mean normal than neighbours among them meet at, their corner is a point.
+/// Where a surface is smooth and n faces meet, they lean 1/(2 sin π/n) times as far, and at a pole half as far as faces bend
+/// across its first ring.
 const POINTED: f64 = 1.5;
 
 /// How much longer than others the triangles of a wall are, and how much broader a plane.
@@ -435,8 +436,8 @@ fn smooth(at: &[Point], faces: &[[usize; 3]], sharp: f64) -> Result<Vec<Patch>, 
         .collect())
 }
 
-/// Which corners, by the least of those that smooth edges join, are points, as the tip of a cone: the faces around lean
-/// farther away from the mean normal than those of a surface do that is smooth there, whose bends are along their edges.
+/// Which of the corners that smooth edges join, each known by the least of them, are points, as the tip of a cone: see
+/// [`POINTED`].
 fn pointed(
     roots: &[usize],
     sums: &HashMap<usize, Point>,

@@ -5,13 +5,13 @@ use crate::model::points::Kinematics;
 use moreau_contact::ContactSolution;
 use moreau_laws::{Local, Status};
 
-/// Contacts that are kept beside those that bear, over these: the nearest.
+/// How many of the others are kept for each contact that bears: those with the smallest gaps.
 const BESIDE: usize = 2;
 
-/// As many more.
+/// How many are kept besides, where few bear.
 const AT_LEAST: usize = 16;
 
-/// Part of the contacts beyond which none is left out: what is saved is less than what it costs to look at them.
+/// Part of the contacts from which on none is left out: to look at the others would cost more than it saves.
 const MOST: f64 = 0.5;
 
 /// Contacts that bore at the start of the step or in the last solution, that overlap or are tied, and those with the smallest
