@@ -306,7 +306,12 @@ fn forces_that_nothing_stands_up_to_are_refused_by_name() {
         other => panic!("{other:?}"),
     };
     let mut driver = cylinder(0.0);
-    match refused(&mut driver, &supports().push("ball", Axis::Y, 10.0)) {
+    let error = refused(&mut driver, &supports().push("ball", Axis::Y, 10.0));
+    assert!(
+        error.to_string().contains("along [0.0, 1.0], away"),
+        "{error}"
+    );
+    match error {
         ModelError::PulledTool { tool, force } => {
             assert_eq!((tool.as_str(), force[1]), ("ball", 10.0))
         }
