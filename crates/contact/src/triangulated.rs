@@ -1,5 +1,6 @@
 //! A rigid closed surface in space, given by triangles and smooth between them; no file that it comes from.
 
+mod parts;
 mod patch;
 
 use crate::{ContactError, Corner, Obstacle};
@@ -26,15 +27,25 @@ type Point = Vector3<f64>;
 #[derive(Debug, Clone)]
 pub struct Triangulated {
     patches: Vec<Patch>,
-    /// Boxes around the patches.
-    boxes: RTree<GeomWithData<Rectangle<[f64; 3]>, usize>>,
+    boxes: Boxes,
+    /// For edge k of patch f, which is 3 f + k, the same edge of the other patch.
+    opposite: Vec<usize>,
+    /// Angle from which on an edge is sharp \[rad\].
+    sharp: f64,
     first: Point,
     size: f64,
     side: f64,
 }
 
+/// Boxes around patches, by their numbers.
+type Boxes = RTree<GeomWithData<Rectangle<[f64; 3]>, usize>>;
+
 /// The point of the surface nearest to another.
+#[derive(Clone)]
 struct Foot {
+    patch: usize,
+    /// The edges of the patch that it is on.
+    on: [bool; 3],
     jet: Jet,
     /// Out of the obstacle, of the patch.
     normal: Point,
@@ -102,15 +113,13 @@ impl Triangulated {
         if volume < 0.0 {
             faces.iter_mut().for_each(|face| face.swap(1, 2));
         }
-        let patches = smooth(&at, &faces, sharp)?;
-        let boxed = patches.iter().enumerate().map(|(k, patch)| {
-            let [low, high] = patch.around();
-            GeomWithData::new(Rectangle::from_corners(low, high), k)
-        });
-        let boxes = RTree::bulk_load(boxed.collect());
+        let opposite = across(&at, &faces)?;
+        let patches = smooth(&at, &faces, &opposite, sharp)?;
         Ok(Self {
+            boxes: boxes(&patches, |_| true),
             patches,
-            boxes,
+            opposite,
+            sharp,
             first: at[faces[0][0]],
             size,
             side: 1.0,
@@ -123,8 +132,13 @@ impl Triangulated {
     }
 
     fn foot(&self, x: &Point) -> Foot {
+        self.foot_among(&self.boxes, x)
+    }
+
+    /// The nearest point of the patches in these boxes, of which there is one at least.
+    fn foot_among(&self, boxes: &Boxes, x: &Point) -> Foot {
         let mut best: Option<(f64, Foot)> = None;
-        let near = self.boxes.nearest_neighbor_iter([x[0], x[1], x[2]]);
+        let near = boxes.nearest_neighbor_iter([x[0], x[1], x[2]]);
         for found in near {
             let least = found.geom().distance_2(&[x[0], x[1], x[2]]).sqrt();
             if best
@@ -155,8 +169,11 @@ impl Triangulated {
                 }
             };
             if best.as_ref().is_none_or(nearer) {
-                let edge = edge_of(&at, &jet, &from);
+                let on = edges_at(&at);
+                let edge = edge_of(on, &jet, &from);
                 let foot = Foot {
+                    patch: found.data,
+                    on,
                     jet,
                     normal,
                     from,
@@ -168,6 +185,25 @@ impl Triangulated {
         }
         let (_, foot) = best.expect("a surface has patches");
         foot
+    }
+
+    /// [`Obstacle::way`] from one foot to another.
+    fn way_between(&self, start: &Foot, end: &Foot) -> Point {
+        let [before, now] = [start, end].map(|foot| foot.normal(self.size));
+        let chord = end.jet.x - start.jet.x;
+        // What of the chord the normal turns along is that of an arc.
+        let turn = now - before;
+        let (half, squared) = (0.5 * turn.norm(), turn.norm_squared());
+        let round = match half > 0.0 && half < 1.0 {
+            true => turn * (turn.dot(&chord) / squared * (half.asin() / half - 1.0)),
+            false => Point::zeros(),
+        };
+        let way = chord + round;
+        let along = way - now * now.dot(&way);
+        match along.norm() > 0.0 {
+            true => along * (way.norm() / along.norm()),
+            false => along,
+        }
     }
 }
 
@@ -217,14 +253,28 @@ impl Triangulated {
     }
 }
 
+/// Boxes around some of the patches.
+fn boxes(patches: &[Patch], is_in: impl Fn(usize) -> bool) -> Boxes {
+    let some = patches.iter().enumerate().filter(|(k, _)| is_in(*k));
+    let boxed = some.map(|(k, patch)| {
+        let [low, high] = patch.around();
+        GeomWithData::new(Rectangle::from_corners(low, high), k)
+    });
+    RTree::bulk_load(boxed.collect())
+}
+
+/// Whether a point of a patch is on its edges, of which edge k goes from corner k to the next.
+fn edges_at(at: &Vector2<f64>) -> [bool; 3] {
+    [at.y, 1.0 - at.x - at.y, at.x].map(|c| c < EDGE)
+}
+
 /// Along the edge that a point of a patch is on, none inside and at corners: as long as the root of how far the point
 /// of the edge that is nearest to another, `from` there, goes as that goes along.
-fn edge_of(at: &Vector2<f64>, jet: &Jet, from: &Point) -> Option<Point> {
-    let on = [1.0 - at.x - at.y, at.x, at.y].map(|c| c < EDGE);
+fn edge_of(on: [bool; 3], jet: &Jet, from: &Point) -> Option<Point> {
     let along = match on {
-        [true, false, false] => Vector2::new(-1.0, 1.0),
-        [false, true, false] => Vector2::new(0.0, 1.0),
-        [false, false, true] => Vector2::new(1.0, 0.0),
+        [true, false, false] => Vector2::new(1.0, 0.0),
+        [false, true, false] => Vector2::new(-1.0, 1.0),
+        [false, false, true] => Vector2::new(0.0, 1.0),
         _ => return None,
     };
     let direction = jet.d * along;
@@ -234,6 +284,12 @@ fn edge_of(at: &Vector2<f64>, jet: &Jet, from: &Point) -> Option<Point> {
 }
 
 impl Foot {
+    /// Moves it to where the perpendicular from x meets the tangent plane.
+    fn onto_plane(&mut self, x: &Point) {
+        let ahead = self.normal * self.normal.dot(&self.from);
+        (self.jet.x, self.from, self.aside) = (x - ahead, ahead, 0.0);
+    }
+
     /// Whether the point is opposite a sharp edge or corner, not of the face beside it.
     fn is_off(&self, size: f64) -> bool {
         self.aside > 1e-9 * size
@@ -338,7 +394,12 @@ fn mean_normal(mut planes: Vec<Plane>) -> Point {
 }
 
 /// The patches of faces, oriented outwards.
-fn smooth(at: &[Point], faces: &[[usize; 3]], sharp: f64) -> Result<Vec<Patch>, ContactError> {
+fn smooth(
+    at: &[Point],
+    faces: &[[usize; 3]],
+    opposite: &[usize],
+    sharp: f64,
+) -> Result<Vec<Patch>, ContactError> {
     let mut normals = Vec::with_capacity(faces.len());
     for face in faces {
         let [a, b, c] = face.map(|k| at[k]);
@@ -352,7 +413,6 @@ fn smooth(at: &[Point], faces: &[[usize; 3]], sharp: f64) -> Result<Vec<Patch>, 
         }
         normals.push(area.normalize());
     }
-    let opposite = across(at, faces)?;
     // Corner k of face f is 3 f + k; those that a smooth edge joins have one normal.
     let mut joined: Vec<usize> = (0..3 * faces.len()).collect();
     let is_smooth = |f: usize, g: usize| normals[f].angle(&normals[g]) <= sharp + ROUNDED;
@@ -374,7 +434,7 @@ fn smooth(at: &[Point], faces: &[[usize; 3]], sharp: f64) -> Result<Vec<Patch>, 
             }
         }
     }
-    let breadths = breadths(at, faces, &opposite, &plane);
+    let breadths = breadths(at, faces, opposite, &plane);
     let sums = |roots: &[usize]| -> HashMap<usize, Point> {
         let mut around: BTreeMap<usize, BTreeMap<usize, Plane>> = BTreeMap::new();
         for (k, &own) in roots.iter().enumerate() {
@@ -526,28 +586,16 @@ impl Obstacle<3> for Triangulated {
     }
 
     fn way(&self, from: &Point, to: &Point) -> Point {
-        let [start, end] = [from, to].map(|x| self.foot(x));
-        let [before, now] = [&start, &end].map(|foot| foot.normal(self.size));
-        let chord = end.jet.x - start.jet.x;
-        // What of the chord the normal turns along is that of an arc.
-        let turn = now - before;
-        let (half, squared) = (0.5 * turn.norm(), turn.norm_squared());
-        let round = match half > 0.0 && half < 1.0 {
-            true => turn * (turn.dot(&chord) / squared * (half.asin() / half - 1.0)),
-            false => Point::zeros(),
-        };
-        let way = chord + round;
-        let along = way - now * now.dot(&way);
-        match along.norm() > 0.0 {
-            true => along * (way.norm() / along.norm()),
-            false => along,
-        }
+        self.way_between(&self.foot(from), &self.foot(to))
     }
 
     fn reference(&self) -> Point {
         self.first
     }
 
+    fn parts(&self) -> Vec<Box<dyn Obstacle<3>>> {
+        parts::of(self)
+    }
     fn corner(&self, x: &Point, tolerance: f64) -> Option<Corner<3>> {
         let faces = self.faces_at(&self.foot(x).jet.x, 2.0 * tolerance)?;
         // To where their planes meet: a line, or a point.

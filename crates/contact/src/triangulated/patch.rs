@@ -149,6 +149,10 @@ impl Patch {
         }
     }
 
+    pub(super) fn corners(&self) -> &[Point; 3] {
+        &self.corners
+    }
+
     /// What its distance from a point is at least \[mm\].
     pub(super) fn away(&self, x: &Point) -> f64 {
         let [a, b, c] = self.corners;

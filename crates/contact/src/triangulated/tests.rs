@@ -572,3 +572,162 @@ fn edges_and_corners_of_a_cube_have_their_cones() {
     let hollow = cube.hollow();
     assert_eq!(hollow.corner(&Point::new(1.0, 0.3, 1.0), 1e-6), None);
 }
+
+/// Rings of four corners each, the first and the last of which are closed.
+fn nested(rings: &[(f64, f64)]) -> Skin {
+    let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let ring = |&(half, z): &(f64, f64)| signs.map(|[x, y]| [x * half, y * half, z]);
+    let points: Vec<[f64; 3]> = rings.iter().flat_map(ring).collect();
+    let last = points.len() - 4;
+    let mut faces = vec![
+        [0, 1, 2],
+        [0, 2, 3],
+        [last, last + 2, last + 1],
+        [last, last + 3, last + 2],
+    ];
+    for k in (0..last).step_by(4) {
+        for i in 0..4 {
+            let [a, b] = [k + i, k + (i + 1) % 4];
+            faces.extend([[a, a + 4, b + 4], [a, b + 4, b]]);
+        }
+    }
+    (points, faces)
+}
+
+/// A square pocket of half sides 3, 4 deep, in a block; its rim is rounded by 1, so that its walls are one smooth surface
+/// around the ends of the edges between them.
+fn pocket() -> Skin {
+    let round = (0..=4).map(|k| {
+        let (sin, cos) = (FRAC_PI_2 * f64::from(k) / 4.0).sin_cos();
+        (4.0 - cos, sin - 1.0)
+    });
+    let rings: Vec<_> = [(3.0, -4.0)]
+        .into_iter()
+        .chain(round)
+        .chain([(8.0, 0.0), (8.0, -8.0)])
+        .collect();
+    nested(&rings)
+}
+
+fn distances(parts: &[Box<dyn Obstacle<3>>], x: &Point) -> Vec<f64> {
+    let mut all: Vec<f64> = parts.iter().map(|part| part.distance(x)).collect();
+    all.sort_by(f64::total_cmp);
+    all
+}
+
+/// In a room all pairs of walls are parts, within it and behind its walls.
+#[test]
+fn a_corner_of_a_room_is_three_planes() {
+    let room = surface(&cube()).hollow();
+    let parts = room.parts();
+    assert_eq!(parts.len(), 3);
+    for x in directions(200) {
+        let x = Point::repeat(0.5) + x * 0.7;
+        let mut planes: Vec<f64> = x.iter().map(|x| x.min(1.0 - x)).collect();
+        planes.sort_by(f64::total_cmp);
+        for (part, plane) in distances(&parts, &x).iter().zip(planes) {
+            assert!((part - plane).abs() < 1e-12, "{x} {part} {plane}");
+        }
+    }
+    assert!(surface(&cube()).parts().is_empty());
+    assert!(surface(&ball(2)).hollow().parts().is_empty());
+    // Ways go on with the planes.
+    let [from, to] = [Point::new(1.05, 1.02, 0.3), Point::new(1.08, 1.06, 0.4)];
+    for part in &parts {
+        let (n, chord) = (part.normal(&to), to - from);
+        assert!((part.way(&from, &to) - (chord - n * n.dot(&chord))).norm() < 1e-12);
+    }
+    // In the corner itself, and in an edge.
+    let [corner, edge] = [Point::zeros(), Point::new(0.0, 0.4, 1.0)].map(|x| distances(&parts, &x));
+    assert_eq!(corner, [0.0; 3]);
+    assert_eq!((edge[0], edge[1], edge[2] > 0.1), (0.0, 0.0, true));
+}
+
+/// In front of a pocket one part is as near as its surface, and none nearer; in its corners there are three, between its
+/// walls two.
+#[test]
+fn a_pocket_with_a_rounded_rim_has_parts() {
+    let pocket = surface(&pocket());
+    let parts = pocket.parts();
+    assert_eq!(parts.len(), 3);
+    let near = |x: [f64; 3], expected: &[f64]| {
+        let found = distances(&parts, &x.into());
+        let (near, far) = found.split_at(expected.len());
+        let same = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9;
+        assert!(near.iter().zip(expected).all(same), "{x:?} {found:?}");
+        assert!(far.iter().all(|&d| d > 0.5), "{x:?} {found:?}");
+    };
+    for (sx, sy) in [(1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)] {
+        near([2.9 * sx, 2.8 * sy, -3.7], &[0.1, 0.2, 0.3]);
+        near([3.1 * sx, 3.2 * sy, -4.3], &[-0.3, -0.2, -0.1]);
+        near([3.1 * sx, 2.8 * sy, -3.9], &[-0.1, 0.1, 0.2]);
+        near([3.1 * sx, 3.05 * sy, -2.0], &[-0.1, -0.05]);
+        near([3.0 * sx, 2.8 * sy, -2.0], &[0.0, 0.2]);
+        near([3.0 * sx, 3.0 * sy, -4.0], &[0.0; 3]);
+        near([3.2 * sx, 0.3 * sy, -4.1], &[-0.2, -0.1]);
+        // On the rim and beside the block, also where the edges between walls have ended.
+        near([6.0 * sx, 6.0 * sy, 0.2], &[0.2]);
+        near([6.0 * sx, 6.0 * sy, -0.2], &[-0.2]);
+        near([4.1 * sx, 4.1 * sy, 0.0], &[0.0]);
+        near([8.1 * sx, 0.4 * sy, -3.0], &[0.1]);
+        near([1.0 * sx, 0.4 * sy, -8.1], &[0.1]);
+    }
+}
+
+/// Where parts meet along an edge that is not concave, the nearest does not hang on rounding.
+#[test]
+fn the_first_of_parts_is_at_their_seam() {
+    let parts = surface(&pocket()).parts();
+    for (k, sx) in [1.0, -1.0].into_iter().enumerate() {
+        let at = |by: f64| {
+            let x = Point::new(sx * (6.0 + by), 6.0 - by, 0.0);
+            parts.iter().position(|part| part.distance(&x) < 0.1)
+        };
+        let places = [-1e-12, 0.0, 1e-12, 3e-12].map(at);
+        assert!(
+            places
+                .iter()
+                .all(|&part| part == places[0] && part.is_some()),
+            "{k} {places:?}"
+        );
+    }
+}
+
+/// In a round groove around a pocket with a round wall, what is before the wall is before the floor of the pocket, too,
+/// though its plane goes on there into the rest of the block.
+#[test]
+fn what_is_before_a_surface_is_behind_none_of_its_parts() {
+    let half = |middle: f64, z: f64, up: f64| {
+        (0..=4).map(move |k| {
+            let (sin, cos) = (PI * f64::from(k) / 4.0).sin_cos();
+            (middle - cos, z + up * sin)
+        })
+    };
+    let (wall, groove) = (half(4.0, -1.0, 1.0), half(6.0, -6.0, -1.0));
+    let rest = [(7.0, 0.0), (12.0, 0.0), (12.0, -14.0)];
+    let rings = [(3.0, -2.0)].into_iter().chain(wall).chain(groove);
+    let block = surface(&nested(&rings.chain(rest).collect::<Vec<_>>()));
+    let found = distances(&block.parts(), &Point::new(5.5, 0.4, -3.5));
+    assert!((found[0] - 0.5).abs() < 1e-9 && found[1] > 0.5, "{found:?}");
+}
+
+proptest! {
+    #[test]
+    fn parts_are_as_near_as_their_surface(at in prop::array::uniform3(-1.0..1.0f64)) {
+        let pocket = surface(&pocket());
+        let parts = pocket.parts();
+        let x = Point::new(9.0 * at[0], 9.0 * at[1], 5.0 * at[2] - 4.0);
+        let (whole, found) = (pocket.distance(&x), distances(&parts, &x));
+        // Behind an edge that they go on from, planes are nearer than the edge.
+        let is_near = if whole > 0.0 { (found[0] - whole).abs() < 1e-9 } else { found[0] > whole - 1e-9 };
+        prop_assert!(is_near && found[0] * whole >= 0.0, "{x} {whole} {found:?}");
+        for part in parts.iter().filter(|part| part.distance(&x).abs() < 0.8) {
+            let (n, h) = (part.normal(&x), 1e-6);
+            prop_assert!((n.norm() - 1.0).abs() < 1e-12);
+            let [ahead, back] = [h, -h].map(|step| part.distance(&(x + n * step)) - part.distance(&x));
+            // Beside where another side counts it jumps.
+            let jumps = ahead.abs().max(back.abs()) > 1e-2;
+            prop_assert!(jumps || ((ahead - back) / (2.0 * h) - 1.0).abs() < 1e-3, "{x}");
+        }
+    }
+}

@@ -23,7 +23,7 @@ pub(super) const COLUMNS: [Described; 23] = [
     Described::new(
         "against",
         Unit::None,
-        "Name of the tool or surface opposite; a node has a row for each part of a polyline between its concave corners.",
+        "Name of the tool or surface opposite; a node has a row for each part of a polyline or of a surface between its concave corners.",
     ),
     Described::new(
         "node",

@@ -1,6 +1,6 @@
 //! Nodes between several tools, and at sharp corners of one.
 
-use moreau_contact::{Penalty, Plane, Polyline};
+use moreau_contact::{Penalty, Plane, Polyline, Triangulated};
 use moreau_driver::{Axis, Driver, Increments, Model, Seam, Settings, Step};
 use moreau_laws::{Coulomb, Elastic, Status, VonMises};
 use moreau_mesh::{CellKind, Integration, PlaneStrain, Solid, block2, block3, uniform};
@@ -350,4 +350,70 @@ fn a_concave_corner_of_one_tool_is_two_tools() {
     let expected = [-250.0, -1000.0 / 0.52 * (0.7 * 0.02 + 0.3 * 0.01) * 10.0];
     assert!((smooth[0][0] - expected[0]).abs() < 1e-6, "{smooth:?}");
     assert!((smooth[1][1] - expected[1]).abs() < 1e-6, "{smooth:?}");
+}
+
+/// The walls of a room from the origin to (20, 20, 20).
+fn room() -> Triangulated {
+    let points: Vec<[f64; 3]> = (0..8)
+        .map(|k| [k & 1, (k >> 1) & 1, k >> 2].map(|b| 20.0 * f64::from(b)))
+        .collect();
+    let walls = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let halves = walls.map(|[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    let room = Triangulated::new(&points, halves.as_flattened(), 0.5);
+    room.expect("closed").hollow()
+}
+
+/// The same in space: a block in the corner of a room touches three walls, which are one tool of triangles or three planes.
+#[test]
+fn a_concave_corner_of_a_surface_is_three_tools() {
+    let pressed = |kind: CellKind, mu: f64, large: bool, one: bool| {
+        let lines = uniform(0.0, 10.0, 2);
+        let mut mesh = block3("b", kind, &lines, &lines, &lines).expect("valid");
+        let sides = ["b.left", "b.bottom", "b.back"];
+        let sides = sides.map(|g| mesh.facet_group(g).expect("there")).concat();
+        mesh.add_facet_group("sides", sides).expect("a new name");
+        let model = match large {
+            true => Model::with_large_strains(mesh, Solid),
+            false => Model::new(mesh, Solid),
+        };
+        let law = Elastic::new(1000.0, 0.3).expect("valid");
+        let mut model = model.material("b", law, kind.integration()).expect("valid");
+        if one {
+            model = (model.tool("room", room()))
+                .and_then(|m| m.contact("sides", "room", coulomb(mu)))
+                .expect("valid");
+        }
+        for (k, name) in ["x", "y", "z"].into_iter().enumerate().filter(|_| !one) {
+            let normal = std::array::from_fn(|i| f64::from(i == k));
+            let wall = Plane::new([0.0; 3], normal).expect("valid");
+            model = (model.tool(name, wall))
+                .and_then(|m| m.contact("sides", name, coulomb(mu)))
+                .expect("valid");
+        }
+        let mut driver = Driver::new(model, Settings::default()).expect("valid");
+        let step = Step::new("press")
+            .displace("b.right", Axis::X, -0.1)
+            .displace("b.top", Axis::Y, -0.2)
+            .displace("b.front", Axis::Z, -0.15);
+        driver.run(&step, 2, |_, _| {}).expect("converges");
+        ["b.right", "b.top", "b.front"].map(|g| driver.reaction(g).expect("there"))
+    };
+    for kind in [CellKind::Hex8, CellKind::Hex20] {
+        for (mu, large) in [(0.0, false), (0.0, true), (0.2, false), (0.2, true)] {
+            let [one, three] = [true, false].map(|one| pressed(kind, mu, large, one));
+            for (a, b) in one.iter().zip(&three) {
+                assert!(
+                    (a - b).norm() < 1e-6 * b.norm(),
+                    "{kind:?} {mu} {large}: {a} {b}"
+                );
+            }
+        }
+    }
 }
