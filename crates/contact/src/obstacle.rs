@@ -32,6 +32,12 @@ pub trait Obstacle<const D: usize>: Send + Sync {
         SVector::zeros()
     }
 
+    /// What rounding makes of its distances and ways beyond that of the coordinates of points \[mm\]. Nothing of an
+    /// obstacle that is one formula.
+    fn rounding(&self) -> f64 {
+        0.0
+    }
+
     /// The parts between its sharp concave corners, in which a node touches more than one; empty of an obstacle that has
     /// no such corners. None goes on where it would come out of the obstacle again.
     fn parts(&self) -> Vec<Box<dyn Obstacle<D>>> {
@@ -60,6 +66,10 @@ pub struct Corner<const D: usize> {
 }
 
 impl<const D: usize, T: Obstacle<D> + ?Sized> Obstacle<D> for Box<T> {
+    fn rounding(&self) -> f64 {
+        (**self).rounding()
+    }
+
     fn parts(&self) -> Vec<Box<dyn Obstacle<D>>> {
         (**self).parts()
     }

@@ -60,6 +60,9 @@ struct Foot {
 /// Distances that are one, in parts of the size of the surface.
 const SAME: f64 = 1e-11;
 
+/// Rounding of a point of a patch, which is a sum of many powers, in parts of its coordinates.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
 /// Barycentric coordinates on an edge.
 const EDGE: f64 = 1e-9;
 
@@ -591,6 +594,10 @@ impl Obstacle<3> for Triangulated {
 
     fn reference(&self) -> Point {
         self.first
+    }
+
+    fn rounding(&self) -> f64 {
+        ROUNDING * (self.size + self.first.amax())
     }
 
     fn parts(&self) -> Vec<Box<dyn Obstacle<3>>> {

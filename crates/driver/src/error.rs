@@ -542,6 +542,23 @@ pub enum IncrementError {
         /// The largest load that was in balance, in parts of that of the step.
         limit: f64,
     },
+    /// The structure has moved by its own size under the loads of a step, and carries ever more: there is no limit load
+    /// on the way. The state is in equilibrium.
+    #[error(
+        "step {step:?} has no limit load up to load factor {factor:.6}: the structure has moved by its own size there, and \
+         still carries {:.3} % more where the work of its loads doubles, because it hardens or is elastic. Load less, to at \
+         most what small displacements bear; for a limit load let it be perfectly plastic, at the stress that hardening \
+         reaches at strains that matter",
+        100.0 * .growth
+    )]
+    RunsAway {
+        /// Name of the step.
+        step: String,
+        /// The load factor, of the way from the loads at the start of the step to its own.
+        factor: f64,
+        /// Its growth, over itself, while the work of the loads doubled.
+        growth: f64,
+    },
     /// The tangent is not positive definite: a mechanism.
     #[error(
         "the stiffness is not positive definite at node {node}, u_{axis} ({position:?}): \
@@ -593,7 +610,7 @@ pub enum IncrementError {
     Interrupted,
     /// The structure does not carry the loads of the step: an answer, not a failure. The state is
     /// that of the mechanism, in equilibrium with what the structure carries.
-    #[error("step {step:?}: {collapse}, in parts of its loads: the structure does not carry more")]
+    #[error("step {step:?}: {collapse}: the structure does not carry more")]
     Collapse {
         /// Name of the step.
         step: String,

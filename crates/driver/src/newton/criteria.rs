@@ -142,7 +142,8 @@ impl<const D: usize> Driver<D> {
         // Below this the difference of two positions is rounding.
         let (low, high) = self.mesh.bounds();
         let reach = largest(low.iter().chain(&high).copied());
-        16.0 * f64::EPSILON * reach * system.shift()
+        let tools = largest(self.tools.iter().map(|tool| tool.obstacle.rounding()));
+        (16.0 * f64::EPSILON * reach + tools) * system.shift()
     }
 
     /// By how much gaps and slips do not obey the law with the forces of a solution \[N\].

@@ -102,6 +102,8 @@ struct Path {
     peak: f64,
     /// [`Collapse::growth`] in the last increment; infinite before the first.
     growth: f64,
+    /// How far its increments have moved the structure at most \[mm\].
+    moved: f64,
     /// Whether that was the end.
     ended: bool,
 }
@@ -116,6 +118,9 @@ const SPRING: f64 = 1e-2;
 /// Motion in an increment along a path of large strains, in sizes of the mesh, up to which it is doubled: the path
 /// is to be seen.
 const SEEN: f64 = 5e-3;
+
+/// Part of the loads of a step that forces at its start are rounding below.
+const NONE: f64 = 1e-9;
 
 /// Part of the largest load that is left where a body that snaps takes leave of what pushes it.
 const LEFT: f64 = 0.05;
@@ -159,7 +164,8 @@ impl<const D: usize> Saved for Ramp<D> {
         numbers.option(&mut self.path, Path::default, |path, numbers| {
             let (compliance, length) = (&mut path.compliance, &mut path.length);
             let (last, peak) = (&mut path.last, &mut path.peak);
-            for value in [compliance, length, last, peak, &mut path.growth] {
+            let (growth, moved) = (&mut path.growth, &mut path.moved);
+            for value in [compliance, length, last, peak, growth, moved] {
                 numbers.value(value)?;
             }
             numbers.flag(&mut path.ended)
@@ -203,6 +209,12 @@ impl<const D: usize> Ramp<D> {
             _ if at_end => (next, true),
             _ => (reach, false),
         }
+    }
+
+    /// Whether forces other than by rounding are there at the start.
+    fn begins_under_forces(&self) -> bool {
+        let most = |loading: &Loading<D>| largest(loading.force.iter().map(|(_, f)| f));
+        most(&self.start) > NONE * most(&self.end)
     }
 
     /// Whether something that the step prescribes is moved.
@@ -304,7 +316,8 @@ impl<const D: usize> Driver<D> {
     ///
     /// # Errors
     /// [`IncrementError::Collapse`] where displacements grow at a constant load, and
-    /// [`IncrementError::SnapsAway`] where they lead away from what pushes;
+    /// [`IncrementError::RunsAway`] where they grow with a load that does, [`IncrementError::SnapsAway`] where they lead away
+    /// from what pushes;
     /// [`IncrementError::Stopped`] when the increment has been halved as often as the settings allow;
     /// what converged before is kept. [`IncrementError::Model`] for a step that makes no sense;
     /// [`IncrementError::Interrupted`] where `watch` breaks off, and [`IncrementError::Law`] where a law does.
@@ -438,6 +451,7 @@ impl<const D: usize> Driver<D> {
             last: factor,
             peak: ramp.done,
             growth: f64::INFINITY,
+            moved: 0.0,
             ended: false,
         })
     }
@@ -451,11 +465,19 @@ impl<const D: usize> Driver<D> {
     ) -> Result<IncrementReport, IncrementError> {
         let load = self.load(ramp);
         let grows = ramp.end.increment_from(&ramp.start);
+        if path.ended && path.growth > Collapse::SLOW {
+            return Err(IncrementError::RunsAway {
+                step: ramp.step.clone(),
+                factor: ramp.done,
+                growth: path.growth,
+            });
+        }
         if path.ended {
             return Err(IncrementError::Collapse {
                 step: ramp.step.clone(),
                 collapse: Collapse {
                     load_factor: path.peak,
+                    added: ramp.begins_under_forces(),
                     growth: path.growth,
                     upper_bound: self.upper_bound(&load, ramp.done),
                 },
@@ -505,11 +527,12 @@ impl<const D: usize> Driver<D> {
                     path.peak = path.peak.max(report.fraction);
                     path.growth = path.last * (ramp.work / work).abs() / path.peak;
                     let size = self.mesh.size();
-                    let moved = &self.state.displacement[..self.mesh_dofs()];
-                    let motion = largest(moved.iter().copied());
+                    path.moved += self.last_motion();
                     // Where strains are large, loads may fall and rise again.
                     let flat = path.growth <= Collapse::FLAT && !self.has_large_strains();
-                    path.ended = flat || motion > size || self.tools_motion() > size;
+                    let is_far = path.moved > size || self.tools_motion() > size;
+                    let rises = self.has_large_strains() && path.growth > Collapse::SLOW;
+                    path.ended = flat || is_far && !rises;
                     let easy = report.newton_iterations <= 2 * Increments::EASY && halved == 0;
                     if easy && !(self.has_large_strains() && self.last_motion() > SEEN * size) {
                         path.length *= 2.0;

@@ -7,8 +7,11 @@
 pub struct Collapse {
     /// The largest λ in equilibrium.
     pub load_factor: f64,
+    /// Whether there were forces F₀ at the start of the step, loads of the step before or what held initial stresses: λ is
+    /// then no part of the loads.
+    pub added: bool,
     /// Growth of λ, over λ, while the work of the loads doubled: what is left to be gained; at most
-    /// [`Collapse::FLAT`], unless the displacements had grown to the size of the mesh, and negative
+    /// [`Collapse::FLAT`], or [`Collapse::SLOW`] where the displacements had grown to the size of the mesh, and negative
     /// past a maximum.
     pub growth: f64,
     /// Kinematic bound from the mechanism; `None` where a law has no dissipation of strain rates
@@ -41,17 +44,32 @@ pub struct UpperBound {
 impl Collapse {
     /// Growth of λ at which it counts as constant.
     pub const FLAT: f64 = 1e-6;
+
+    /// Growth of λ at which it counts as constant once the structure has moved by its own size. What grows faster
+    /// still hardens, and has no limit load there.
+    pub const SLOW: f64 = 1e-3;
+
+    /// Whether the kinematic bound is one: λ no longer changes, and no friction in the mechanism depends on normal forces;
+    /// `None` without a bound.
+    pub fn is_strict(&self) -> Option<bool> {
+        let flat = self.growth.abs() <= Self::FLAT;
+        self.upper_bound.map(|bound| flat && !bound.coulomb)
+    }
 }
 
 impl std::fmt::Display for Collapse {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "collapse at load factor {:.6}", self.load_factor)?;
+        if self.added {
+            write!(f, " of the way from the forces at its start to its loads")?;
+        }
         let Some(bound) = &self.upper_bound else {
             return Ok(());
         };
-        let what = match bound.coulomb {
-            true => "kinematic estimate (Coulomb friction: no bound)",
-            false => "upper bound",
+        let what = match (self.is_strict(), bound.coulomb) {
+            (Some(true), _) => "upper bound",
+            (_, true) => "kinematic estimate (Coulomb friction: no bound)",
+            _ => "kinematic estimate (not constant yet: no bound)",
         };
         write!(f, ", {what} {:.6}", bound.load_factor)
     }

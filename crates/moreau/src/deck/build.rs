@@ -367,6 +367,19 @@ fn heated_collapse(deck: &Deck, findings: &mut Findings) {
             "leave out the temperature",
         );
     }
+    let first = deck.steps.first().filter(|step| step.until_collapse);
+    let stressed = deck
+        .initial
+        .iter()
+        .find(|i| i.stress.iter().any(Option::is_some));
+    if let (Some(_), Some(initial)) = (first, stressed) {
+        findings.error_with(
+            &initial.span,
+            "until = \"collapse\" in the first step with a stress at the start, which what holds it would falsify",
+            "is held until the end of the first step",
+            "begin with a step that lets it go, of the same `fix` and without loads, or with those that balance it",
+        );
+    }
 }
 
 /// What large strains do not go with.

@@ -182,9 +182,11 @@ impl<const D: usize> Course<D> {
         let error = error.into();
         let diagnosis = match &error {
             StepError::Carried { .. }
-            | StepError::Increment(IncrementError::Model(_) | IncrementError::Collapse { .. }) => {
-                None
-            }
+            | StepError::Increment(
+                IncrementError::Model(_)
+                | IncrementError::Collapse { .. }
+                | IncrementError::RunsAway { .. },
+            ) => None,
             StepError::Increment(cause) => {
                 let (driver, trace) = (&self.setup.driver, &self.trace);
                 let step = self.setup.stages.get(self.stage).map(|s| &s.step);

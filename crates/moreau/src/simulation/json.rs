@@ -235,8 +235,14 @@ const COLLAPSE: &[Key<(String, Collapse)>] = &[
     key(
         "load_factor",
         Unit::None,
-        "The largest load in equilibrium, in parts of the loads of the step.",
+        "The largest load in equilibrium, in parts of the way from the forces at the start of the step to its loads.",
         |(_, c)| json!(c.load_factor),
+    ),
+    key(
+        "added",
+        Unit::None,
+        "Whether there are forces at the start of the step, of the step before or that hold initial stresses: the load factor is then no part of the loads.",
+        |(_, c)| json!(c.added),
     ),
     key(
         "growth",
@@ -259,8 +265,8 @@ const COLLAPSE: &[Key<(String, Collapse)>] = &[
     key(
         "strict",
         Unit::None,
-        "Whether no friction in the mechanism depends on normal forces; with Coulomb's the bound holds for those at collapse.",
-        |(_, c)| json!(c.upper_bound.map(|b| !b.coulomb)),
+        "Whether the bound is one: the load factor no longer grows, and no friction in the mechanism depends on normal forces; with Coulomb's the bound holds for those at collapse.",
+        |(_, c)| json!(c.is_strict()),
     ),
 ];
 

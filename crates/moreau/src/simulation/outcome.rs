@@ -178,6 +178,7 @@ impl Saved for Tally {
         numbers.option(&mut self.collapse, none, |(stage, collapse), numbers| {
             numbers.count(stage)?;
             numbers.value(&mut collapse.load_factor)?;
+            numbers.flag(&mut collapse.added)?;
             numbers.value(&mut collapse.growth)?;
             let bound = &mut collapse.upper_bound;
             numbers.option(bound, UpperBound::default, |bound, numbers| {

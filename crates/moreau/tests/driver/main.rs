@@ -34,3 +34,4 @@ mod team;
 mod thermal;
 mod ties;
 mod tools;
+mod triangles;

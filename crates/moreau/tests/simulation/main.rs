@@ -10,6 +10,7 @@ mod interrupted;
 mod keys;
 mod laws;
 mod leaps;
+mod limits;
 mod narrow;
 mod nearby;
 mod outside;

@@ -133,7 +133,7 @@ class Collapse(RunError):
 
     @property
     def load_factor(self) -> float:
-        """Load factor at collapse, in parts of the loads of the step."""
+        """Load factor at collapse, of the way from the forces at the start of the step to its loads."""
         return float(self.outcome["collapse"]["load_factor"])
 
     @property

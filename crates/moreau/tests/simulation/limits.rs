@@ -1,0 +1,92 @@
+//! Limit loads: what has none, and what the load factor is of.
+
+use super::*;
+
+/// A bar of 1 mm² that flows at 300 MPa, hardens as told, and is stressed at the start; its steps follow.
+fn bar(hardening: &str, stress: f64, steps: &str) -> String {
+    let initial = match stress == 0.0 {
+        true => String::new(),
+        false => format!("initial = [{{ on = \"b\", stress = {{ yy = {stress:?} }} }}]"),
+    };
+    format!(
+        r#"units = "mm-N-MPa"
+analysis = "solid"
+mesh = {{ block = [{{ name = "b", element = "hex20", x = [0, 1], y = [0, 1], z = [0, 1], cells = [1, 1, 1] }}] }}
+material = [{{ on = "b", young = 210e3, poisson = 0.3, yield-stress = 300.0{hardening} }}]
+{initial}
+{steps}"#
+    )
+}
+
+const HELD: &str = r#"fix = [{ on = "b.left", u = ["x"] }, { on = "b.bottom", u = ["y"] }, { on = "b.back", u = ["z"] }]"#;
+
+fn pulled(name: &str, load: f64, more: &str) -> String {
+    format!(
+        "[[step]]\nname = \"{name}\"\nincrements = 5\n{more}\n{HELD}\nload = [{{ on = \"b.top\", pressure = {:?} }}]\n",
+        -load
+    )
+}
+
+const COLLAPSE: &str = "until = \"collapse\"";
+
+#[test]
+fn what_hardens_has_no_limit_load() {
+    let ended = |hardening: &str, until: &str| {
+        let mut run = simulation(&bar(hardening, 0.0, &pulled("s", 1000.0, until)));
+        while let Ok(Some(_)) = run.advance(&mut |_, _| ControlFlow::Continue(())) {}
+        (run.outcome().status, run.outcome().collapse)
+    };
+    for hardening in ["linear = 10", "voce = [100, 1]", "voce = [100, 0.01]"] {
+        for until in [COLLAPSE, ""] {
+            let (status, collapse) = ended(&format!(", hardening = {{ {hardening} }}"), until);
+            let told = matches!(&status, RunStatus::NotConverged(text) if text.contains("no limit load up to"));
+            assert!(told && collapse.is_none(), "{hardening} {until} {status:?}");
+        }
+    }
+    let (status, collapse) = ended(", hardening = { voce = [100, 20] }", COLLAPSE);
+    let (_, collapse) = collapse.expect("a limit");
+    assert!(status == RunStatus::Done && !collapse.added, "{status:?}");
+    assert!((collapse.load_factor - 0.4).abs() < 1e-6);
+    assert_eq!(collapse.is_strict(), Some(true));
+}
+
+/// From 200 N of a step before to −1000 N: −300 N is an eighth of 800 N beyond, and told as such.
+#[test]
+fn a_load_factor_under_forces_is_a_part_of_the_way() {
+    let steps = pulled("pull", 200.0, "") + &pulled("more", 1000.0, COLLAPSE);
+    let run = finish(simulation(&bar("", 0.0, &steps)));
+    let (_, collapse) = run.outcome().collapse.clone().expect("a limit");
+    assert!(
+        collapse.added && (collapse.load_factor - 0.125).abs() < 1e-6,
+        "{collapse}"
+    );
+    assert!(
+        collapse
+            .to_string()
+            .contains("of the way from the forces at its start")
+    );
+}
+
+/// What holds a stress at the start would be a part of the load; let go before, it is none.
+#[test]
+fn a_stress_at_the_start_is_let_go_before_a_limit_load() {
+    let at_once = bar("", 100.0, &pulled("s", 1000.0, COLLAPSE));
+    let (refused, findings) = Simulation::open(&at_once, &examples(), &Given::default());
+    let said = findings.render("deck", &at_once, false);
+    assert!(refused.is_none());
+    assert!(
+        said.contains("in the first step with a stress at the start"),
+        "{said}"
+    );
+    let before = format!("[[step]]\nname = \"let-go\"\nincrements = 1\n{HELD}\n");
+    let run = finish(simulation(&bar(
+        "",
+        100.0,
+        &(before + &pulled("s", 1000.0, COLLAPSE)),
+    )));
+    let (_, collapse) = run.outcome().collapse.clone().expect("a limit");
+    assert!(
+        !collapse.added && (collapse.load_factor - 0.3).abs() < 1e-6,
+        "{collapse}"
+    );
+}
