@@ -47,9 +47,8 @@ pub enum ModelError {
     },
     /// A stress at the start that a law does not bear.
     #[error(
-        "cell {cell} starts at {position:?} outside of its yield surface: von Mises' stress is {} and the mean stress {}, of \
-         which the law bears {} and {}",
-        rounded(stress[0]), rounded(stress[1]), rounded(borne[0]), rounded(borne[1])
+        "cell {cell} starts at {position:?} outside of its yield surface{}",
+        overstress(stress, borne)
     )]
     Overstressed {
         /// The cell.
@@ -690,6 +689,27 @@ fn worst_nodes(worst: &[Imbalance]) -> String {
 /// To six digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+/// Part of a stress that is rounding, as what is left of von Mises' stress at the apex of a cone.
+const NO_STRESS: f64 = 1e-9;
+
+/// Von Mises' stress and the mean stress, and what a law bears of them, in words.
+fn overstress(stress: &[f64; 2], borne: &[f64; 2]) -> String {
+    let largest = stress[0].max(stress[1].abs());
+    let clean = |v: f64| match v.abs() <= NO_STRESS * largest {
+        true => 0.0,
+        false => rounded(v),
+    };
+    let [q, mean, q_borne, mean_borne] = [stress[0], stress[1], borne[0], borne[1]].map(clean);
+    let is_beyond_apex = q_borne == 0.0 && mean_borne < mean;
+    let apex = match is_beyond_apex {
+        true => ", beyond the apex of its cone",
+        false => "",
+    };
+    format!(
+        "{apex}: von Mises' stress is {q:?} and the mean stress {mean:?}, of which the law bears {q_borne:?} and {mean_borne:?}"
+    )
 }
 
 fn collapse_hint(

@@ -13,6 +13,39 @@ fn said(text: &str) -> String {
     flat(&findings.render("deck.toml", text, false))
 }
 
+/// At the tip of its cone a soil bears a mean stress alone, and what is left of von Mises' is rounding.
+#[test]
+fn a_start_beyond_the_apex_of_a_soil_is_told() {
+    let start = |stress: &str| {
+        let initial = format!("[[initial]]\non = \"block\"\nstress = {{ {stress} }}");
+        let soil = "cohesion = 0.5\nfriction-angle = 30";
+        said(&with(&initial).replace("yield-stress = 300.0", soil))
+    };
+    let beyond = start("xx = 10, yy = 10.1, zz = 10");
+    for words in [
+        "outside of its yield surface, beyond the apex of its cone: von Mises' stress is 0.1 and the mean stress 10.0333",
+        "of which the law bears 0.0 and 0.866025",
+    ] {
+        assert!(beyond.contains(words), "{words:?} in {beyond}");
+    }
+    for stress in [
+        "xx = 10, yy = 10, zz = 12, xy = 1.3",
+        "xx = 7.7, yy = 3.1, zz = 9.3, xy = 0.7",
+        "xx = 101, yy = 97, zz = 99.9, xy = 0.3",
+    ] {
+        let beyond = start(stress);
+        assert!(
+            beyond.contains("the law bears 0.0 and 0.866025"),
+            "{beyond}"
+        );
+    }
+    let beside = start("xx = -10");
+    assert!(
+        beside.contains("outside of its yield surface: von Mises"),
+        "{beside}"
+    );
+}
+
 /// A part of a body starts otherwise than the rest, and the deck that is written out says the same.
 #[test]
 fn a_part_of_a_body_starts_under_a_stress() {
