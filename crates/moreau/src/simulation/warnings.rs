@@ -103,17 +103,21 @@ struct Balance {
     /// The largest change in one increment, and that increment.
     change: f64,
     increment: usize,
+    /// The work that what was left out of balance may have done so far.
+    rounding: f64,
 }
 
 impl Balance {
-    /// Takes note of the energies after an increment, of which so much is the work of rounding.
+    /// Takes note of the energies after an increment, of which so much is the work of rounding. That of the increments
+    /// before stays in the balance: what an early one left may be more than all that follows.
     fn add(&mut self, energies: &Energies, increment: usize, rounding: f64) {
+        self.rounding += rounding;
         let imbalance = energies.imbalance();
         let change = imbalance - self.last;
         if change.abs() > self.change.abs() {
             (self.change, self.increment) = (change, increment);
         }
-        if imbalance.abs() > self.worst[0].abs().max(rounding) {
+        if imbalance.abs() > self.worst[0].abs().max(self.rounding) {
             self.worst = [imbalance, energies.external_work, energies.taken()];
         }
         self.last = imbalance;
@@ -360,7 +364,7 @@ impl Saved for Warnings {
             })?;
         }
         let b = &mut self.balance;
-        for value in [&mut b.last, &mut b.most, &mut b.change] {
+        for value in [&mut b.last, &mut b.most, &mut b.change, &mut b.rounding] {
             numbers.value(value)?;
         }
         numbers.count(&mut b.increment)?;
