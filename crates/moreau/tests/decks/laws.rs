@@ -94,7 +94,11 @@ fn hardening_that_is_none_is_pointed_at() {
         ),
         (
             "{ table = [[0, 200], [1, 300]] }",
-            "hardening starts at a stress of 200",
+            "the hardening table starts at a stress of 200.0, but yield-stress is 300.0: let both be the same number",
+        ),
+        (
+            "{ table = [[0, 301], [1, 400]] }",
+            "starts at a stress of 301.0, but yield-stress is 300.0",
         ),
         (
             "{ table = [[0.1, 350], [0.2, 340]] }",

@@ -25,8 +25,11 @@ pub(super) enum Law {
     Given(Arc<dyn PanelLaw>),
 }
 
-/// Relative difference of a yield stress and that at which a curve starts: what is rounded off in a
-/// deck, not another material.
+/// Relative difference of a yield stress and the first stress of a table: what six digits round off. The table begins at
+/// the yield stress, so that more would shift all of it.
+const SAME_STRESS: f64 = 1e-5;
+
+/// The same of Swift's curve, which starts at k e₀ⁿ: what an e₀ of two digits rounds off.
 const SAME_YIELD: f64 = 0.01;
 
 /// Isotropic hardening, which must start at the yield stress; or what is wrong with it, and where.
@@ -35,16 +38,7 @@ pub(super) fn hardening(
     yield_stress: &At<f64>,
 ) -> Result<Isotropic, (Range<usize>, String)> {
     let wrong = |error: LawError| (given.span.clone(), error.to_string());
-    let start = |stress: f64, span: &Range<usize>| match (stress / yield_stress.value - 1.0).abs() {
-        difference if difference <= SAME_YIELD => Ok(()),
-        _ => Err((
-            span.clone(),
-            format!(
-                "hardening starts at a stress of {stress:.6}, but yield-stress is {}",
-                yield_stress.value
-            ),
-        )),
-    };
+    let is_start = |stress: f64, part: f64| (stress / yield_stress.value - 1.0).abs() <= part;
     let linear = given.value.linear;
     let Some(curve) = &given.value.curve else {
         return Isotropic::linear(linear).map_err(wrong);
@@ -53,18 +47,20 @@ pub(super) fn hardening(
         Curve::Voce([saturation, rate]) => Isotropic::voce(*saturation, *rate).map_err(wrong),
         Curve::Swift([strength, offset, exponent]) => {
             let law = Isotropic::swift(*strength, *offset, *exponent).map_err(wrong)?;
-            // k e0ⁿ is the yield stress.
-            let fits = (yield_stress.value / strength).powf(1.0 / exponent);
-            let told = |(at, what): (Range<usize>, String)| match fits.is_finite() {
-                true => (
-                    at,
-                    format!("{what}, which it does with e0 = {}", shown(fits, 6)),
-                ),
-                false => (at, what),
-            };
-            law.initial()
-                .map_or(Ok(()), |s| start(s, &given.span))
-                .map_err(told)?;
+            let start = law.initial().filter(|&s| !is_start(s, SAME_YIELD));
+            if let Some(stress) = start {
+                // k e0ⁿ is the yield stress.
+                let fits = (yield_stress.value / strength).powf(1.0 / exponent);
+                let remedy = match fits.is_finite() {
+                    true => format!(", which it does with e0 = {}", shown(fits, 6)),
+                    false => String::new(),
+                };
+                let message = format!(
+                    "hardening starts at a stress of {stress:.6}, but yield-stress is {}{remedy}",
+                    yield_stress.value
+                );
+                return Err((given.span.clone(), message));
+            }
             Ok(law)
         }
         Curve::Table(rows) => {
@@ -76,8 +72,15 @@ pub(super) fn hardening(
                     points.insert(0, [0.0, yield_stress.value]);
                     added = 1;
                 }
-                Some(&[_, stress]) => start(stress, &rows[0].span)?,
-                None => {}
+                Some(&[_, stress]) if !is_start(stress, SAME_STRESS) => {
+                    let message = format!(
+                        "the hardening table starts at a stress of {stress:?}, but yield-stress is {:?}: let both be the same \
+                         number",
+                        yield_stress.value
+                    );
+                    return Err((rows[0].span.clone(), message));
+                }
+                _ => {}
             }
             Isotropic::table(&points).map_err(|error| match error {
                 LawError::Table { row, problem } if row > added && row - added <= rows.len() => {

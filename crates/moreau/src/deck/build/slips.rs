@@ -12,8 +12,8 @@ use nalgebra::SVector;
 /// a twentieth.
 const STRONGEST: f64 = 0.1;
 
-/// Part of a yield stress, and of an elastic strain, that is rounded off in a deck.
-const SAME_YIELD: f64 = 0.01;
+/// Part of a yield stress, and of an elastic strain, by which a table of total strains may miss both.
+const NEAR_YIELD: f64 = 0.01;
 const ELASTIC: f64 = 0.2;
 
 /// Young's modulus of diamond, rounded up, and of soft rubber \[Pa\].
@@ -100,7 +100,7 @@ fn total(deck: &Deck, findings: &mut Findings) {
         };
         let elastic = stress / material.young.value;
         let is_near = |a: f64, b: f64, part: f64| (a - b).abs() <= part * b;
-        if is_near(*stress, strength.value, SAME_YIELD) && is_near(*p, elastic, ELASTIC) {
+        if is_near(*stress, strength.value, NEAR_YIELD) && is_near(*p, elastic, ELASTIC) {
             let message = format!(
                 "the hardening of \"{}\" begins at a plastic strain of {p:?} with the yield stress, which is there from 0 on: \
                  {stress:?} {unit} over Young's modulus is an elastic strain of {}; take it from all strains of the table",
