@@ -177,6 +177,12 @@ impl CellKind {
         kind && matches!(integration, Integration::Reduced)
     }
 
+    /// Whether flat cells of this kind and rule are too soft across their longer sides: where corners move by 2 and the nodes
+    /// between them by −1 the points of the rule see no strain but a shear in parts of thickness over side, from cell to cell.
+    pub const fn soft_if_flat(self, integration: Integration) -> bool {
+        matches!(self, Self::Quad8 | Self::Hex20) && matches!(integration, Integration::Reduced)
+    }
+
     /// Values at a node of the shape functions of the linear cell with the same corners \[–\]: what a
     /// linear field has there of every corner.
     pub fn corner_shape(self, node: usize) -> Vec<f64> {

@@ -4,6 +4,7 @@
 mod amplitudes;
 mod axes;
 mod conditions;
+mod flat;
 mod groups;
 mod initial;
 mod laws;
@@ -205,6 +206,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     amplitudes::check(deck, findings);
     conditions::inner_surfaces(deck, &groups, findings);
     slips::warn(deck, &groups, surface, findings);
+    flat::warn(deck, &groups, findings);
     unjoined::warn(deck, &driver, &groups, findings);
     let held = conditions::held(deck, &groups);
     Some(Setup {

@@ -163,6 +163,7 @@ tools = [{ name = "t", move = [0, -0.8] }]
     );
     let short = deck.replace("y = [0, 40]", "y = [0, 2]");
     let short = short
+        .replace("cells = [1, 16]", "cells = [1, 4]")
         .replace("point = [0, 40]", "point = [0, 2]")
         .replace("-0.8", "-0.01");
     tells("not buckled", &short, &[]);
@@ -216,6 +217,24 @@ fix = [{ on = "b.right", u = ["y", "z"] }]
 move = [{ on = "b.right", u = { x = 0.1 } }]
 "#;
     tells("reactions", cube, &[&["never closed"]]);
+}
+
+/// A body that is heated freely has next to no energy, and what its first increments left out of balance is more.
+#[test]
+fn what_early_increments_leave_out_of_balance_is_rounding() {
+    let deck = r#"
+units = "mm-N-MPa"
+analysis = "axisymmetric"
+strain = "finite"
+mesh.block = [{ name = "b", element = "quad8", x = [0, 1], y = [0, 1], cells = [1, 1] }]
+material = [{ on = "b", young = 210e3, poisson = 0.3, expansion = 1.2e-5 }]
+[[step]]
+name = "heat"
+increments = 4
+fix = [{ on = "b.bottom", u = ["y"] }]
+load = [{ on = "b", temperature = 100 }]
+"#;
+    tells("heated", deck, &[]);
 }
 
 /// A cylinder through 100 mm of air and 0.1 mm into a block in one increment, with friction all the way; with

@@ -5,6 +5,7 @@ mod axis;
 mod beside;
 mod cornered;
 mod driven;
+mod flat;
 mod freed;
 mod interrupted;
 mod keys;

@@ -195,7 +195,11 @@ fn soil(soil: &SoilEntry) -> Result<DruckerPrager, (Range<usize>, String)> {
 }
 
 /// The rule that the deck asks for, or else the one of the element.
-fn quadrature(kind: CellKind, material: &MaterialEntry, analysis: Hypothesis) -> Integration {
+pub(super) fn quadrature(
+    kind: CellKind,
+    material: &MaterialEntry,
+    analysis: Hypothesis,
+) -> Integration {
     let asked = material.quadrature.as_ref().map(|rule| rule.value);
     asked.unwrap_or(match analysis {
         Hypothesis::PlaneStress => kind.integration_in_plane_stress(),
