@@ -560,7 +560,7 @@ impl<const D: usize> Driver<D> {
             } => self.nested_increment(&mut system, &start, end, (tolerance, iterations), watch),
         };
         let other = match &outcome {
-            Err(error) => self.other_seam(&system, error, end)?,
+            Err(error) => self.other_seam(&mut system, error, end)?,
             Ok(_) => None,
         };
         let Some(mut other) = other else {
@@ -583,7 +583,7 @@ impl<const D: usize> Driver<D> {
     /// it turn away.
     fn other_seam(
         &mut self,
-        system: &System,
+        system: &mut System,
         error: &IncrementError,
         end: &Loading<D>,
     ) -> Result<Option<System>, ModelError> {
@@ -595,6 +595,7 @@ impl<const D: usize> Driver<D> {
             return Ok(None);
         }
         let tied = self.elastic_system(end, None, Seam::Tied)?;
+        system.lose_others();
         Ok(Some(tied).filter(System::is_tied))
     }
 
@@ -648,7 +649,13 @@ impl<const D: usize> Driver<D> {
                 && s.prescribed().directions == loading.directions
                 && (!s.is_tied() || s.paired == paired)
         }) {
-            return Ok(system);
+            if !system.has_lost_others() {
+                return Ok(system);
+            }
+            // The same again, with its times.
+            let seam = system.seam();
+            self.system = Some(system);
+            return self.elastic_system(loading, pivot, seam);
         }
         self.check_rigid_motions(loading)?;
         self.elastic_system(loading, pivot, self.settings.seam)

@@ -377,3 +377,61 @@ fn a_deck_with_errors_is_told_once_and_ends_all() {
     let text = String::from_utf8_lossy(&told.stderr).into_owned();
     assert_eq!(text.matches("deck.toml:2").count(), 1, "{text}");
 }
+
+/// A body that only its contact holds upwards, which the second step lifts off: no increment of that has a balance, with
+/// contacts condensed or tied.
+const LIFTED: &str = r#"
+units = "mm-N-MPa"
+analysis = "plane-strain"
+mesh.block = [{ name = "a", element = "quad4", x = [0, 20], y = [0, 10], cells = [4, 2] }]
+material = [{ on = "a", young = 210000.0, poisson = 0.3 }]
+tool = [{ name = "floor", plane = { point = [0, 0], normal = [0, 1] } }]
+contact = [{ surface = "a.bottom", against = "floor", friction = 0.2 }]
+[[step]]
+name = "press"
+increments = 1
+fix = [{ on = "a.left", u = ["x"] }]
+load = [{ on = "a.top", pressure = 10 }]
+[[step]]
+name = "pull"
+increments = 1
+fix = [{ on = "a.left", u = ["x"] }]
+load = [{ on = "a.top", pressure = -10 }]
+"#;
+
+/// The same body under a strip load that is cut to its limit, again and again.
+const COLLAPSING: &str = r#"
+units = "mm-N-MPa"
+analysis = "plane-strain"
+mesh.block = [{ name = "a", element = "quad4", x = [0, 20], y = [0, 10], cells = [4, 2] }]
+mesh.group = [{ name = "strip", on = "a.top", x = [0, 5] }]
+material = [{ on = "a", young = 210000.0, poisson = 0.3, yield-stress = 300.0 }]
+tool = [{ name = "floor", plane = { point = [0, 0], normal = [0, 1] } }]
+contact = [{ surface = "a.bottom", against = "floor", friction = 0.2 }]
+[[step]]
+name = "press"
+increments = 2
+fix = [{ on = "a.left", u = ["x"] }]
+load = [{ on = "strip", pressure = 5000 }]
+until = "collapse"
+"#;
+
+/// As where both ways of seeing contacts have failed, and the increment is cut.
+#[test]
+fn increments_that_failed_both_ways_are_cut_as_alone() {
+    if !has_mpi("increments that failed both ways") {
+        return;
+    }
+    for (name, deck, status) in [("lifted", LIFTED, 2), ("collapsing", COLLAPSING, 0)] {
+        let place = Place::new(name, deck);
+        let run = ["run", "deck.toml", "--quiet", "--out"];
+        let alone = place.alone(&[&run[..], &["one"]].concat());
+        assert_eq!(alone.status.code(), Some(status), "{alone:?}");
+        let told = place.on(2, &[&run[..], &["two"]].concat()).output();
+        let told = told.expect("mpirun");
+        assert_eq!(told.status.code(), Some(status), "{told:?}");
+        let [one, two] = [alone, told].map(|t| String::from_utf8_lossy(&t.stderr).into_owned());
+        assert!(two.contains(one.trim()), "{name}: {two} alone: {one}");
+        place.assert_alike("one", "two");
+    }
+}

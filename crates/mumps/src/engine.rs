@@ -40,18 +40,26 @@ pub(crate) fn assist(
             let finite = share.values.iter().all(|v| v.is_finite());
             team.send(0, Parcel::default().count(usize::from(finite)).bytes());
             let goes = Unpacked::new(&team.receive(0)).count();
-            if let (1, Some(part)) = (goes, parts.get_mut(&number)) {
+            if goes != 1 {
+                return;
+            }
+            let is_done = parts.get_mut(&number).is_some_and(|part| {
                 let all: Vec<(u32, u32, f64)> =
                     part.coupling(entries(share), share.values).collect();
                 let places: Vec<u32> = all.iter().flat_map(|&(i, j, _)| [i, j]).collect();
                 let values: Vec<f64> = all.iter().map(|&(_, _, k)| k).collect();
                 team.send(0, Parcel::default().indices(&places).reals(&values).bytes());
-                part.factorise(share.values, None);
+                part.factorise(share.values, None)
+            });
+            if !is_done {
+                // The first is within MUMPS already, and waits there for this one.
+                team.refuse("a factorisation of other entries than those that were analysed");
             }
         }
         SOLVE => {
-            if let Some(instance) = parts.get_mut(&number).and_then(|p| p.instance.as_mut()) {
-                instance.solve(None);
+            match parts.get_mut(&number).and_then(|p| p.instance.as_mut()) {
+                Some(instance) => drop(instance.solve(None)),
+                None => team.refuse("a solution with a factor that is not there"),
             }
         }
         _ => drop(parts.remove(&number)),
@@ -363,7 +371,9 @@ impl Engine for Mumps {
         }
         let first = self.inner();
         self.schur.fill(0.0);
-        self.part.factorise(values, Some(self.schur.as_mut_slice()));
+        if !(self.part).factorise(values, Some(self.schur.as_mut_slice())) {
+            self.team.refuse("a factorisation of other entries");
+        }
         match &self.part.instance {
             // By rows, its lower triangle is the upper one by columns.
             Some(_) => self.schur.fill_lower_triangle_with_upper_triangle(),

@@ -81,20 +81,23 @@ impl Part {
     }
 
     /// Factorises, with more working space as long as there is too little: on all processes alike. S is written where the
-    /// first process has room for it.
-    pub(crate) fn factorise(&mut self, values: &[f64], mut schur: Option<&mut [f64]>) {
+    /// first process has room for it. False where the values are not as many as were analysed: other processes then wait
+    /// for this one.
+    pub(crate) fn factorise(&mut self, values: &[f64], mut schur: Option<&mut [f64]>) -> bool {
         let Some(instance) = &mut self.instance else {
-            return;
+            return true;
         };
         for times in 0..=self.larger {
-            // As many as were analysed: the callers have seen to it.
-            instance.factorise(values, schur.as_deref_mut());
+            if !instance.factorise(values, schur.as_deref_mut()) {
+                return false;
+            }
             if !SPACE.contains(&instance.integer(1)) || times == self.larger {
-                return;
+                return true;
             }
             self.spare = 2 * self.spare.max(20);
             instance.set_integer(14, self.spare);
         }
+        true
     }
 
     /// Entries in the rows of kept unknowns.

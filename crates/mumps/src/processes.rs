@@ -4,6 +4,7 @@ use crate::calls;
 use crate::options::Options;
 use crate::part::Part;
 use std::collections::BTreeMap;
+use std::io::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -41,6 +42,12 @@ impl Processes {
     /// Ends all processes at once.
     pub fn abort(status: u8) {
         calls::abort(status);
+    }
+
+    /// Ends all processes where this one cannot do its part of what they do together: the others would wait for it.
+    pub(crate) fn refuse(&self, what: &str) {
+        let _ = writeln!(std::io::stderr(), "process {}: asked for {what}", self.0.rank);
+        Self::abort(1);
     }
 
     pub(crate) fn number(&self) -> usize {

@@ -4,6 +4,7 @@
 use crate::assembly::scatter::{FIXED, Scatter};
 use crate::linear::coarse::Coarse;
 use crate::linear::others::Others;
+use crate::settings::Seam;
 use crate::timings::Timings;
 use crate::vector::prescribed::Prescribed;
 use crate::vector::subspace::Subspace;
@@ -57,6 +58,8 @@ pub(crate) struct System {
     engine: Box<dyn Engine>,
     /// What other processes hold of K.
     others: Option<Others>,
+    /// Whether these have numbered their entries for another system since.
+    has_lost_others: bool,
     /// Why the engine has no factor, where that is no fault of the matrix.
     gave_up: Option<EngineError>,
     /// Whether the factor held is that of the elastic stiffness.
@@ -140,6 +143,24 @@ impl System {
     /// Largest diagonal of the elastic stiffness \[N/mm\].
     pub(crate) fn stiffest(&self) -> f64 {
         self.stiffest
+    }
+
+    /// How contacts are seen.
+    pub(crate) fn seam(&self) -> Seam {
+        match self.is_tied() {
+            true => Seam::Tied,
+            false => Seam::Condensed,
+        }
+    }
+
+    /// Another system has been made: other processes, which keep one numbering at a time, have the entries of that one.
+    pub(crate) fn lose_others(&mut self) {
+        self.has_lost_others = self.others.is_some();
+    }
+
+    /// Whether nothing can be asked of other processes any more, so that the system is to be made anew.
+    pub(crate) fn has_lost_others(&self) -> bool {
+        self.has_lost_others
     }
 
     /// Whether the factor is one of K itself.

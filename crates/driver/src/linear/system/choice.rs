@@ -365,6 +365,7 @@ impl System {
             prescribed_columns: Vec::new(),
             keeps_elastic: is_definite && others.is_none() && pattern.entries() <= KEPT,
             others,
+            has_lost_others: false,
             gave_up: None,
             matrix: Matrix::new(pattern),
             coarse,
