@@ -155,10 +155,11 @@ impl<const D: usize> Driver<D> {
             may_leap: false,
             spent: Counts::default(),
         };
-        driver.start();
-        driver.check_laws()?;
         driver.pair(&Loading::default())?;
         driver.adjust();
+        // Other processes answer once they have a driver of their own: what can be wrong with the model comes before.
+        driver.start();
+        driver.check_laws()?;
         Ok(driver)
     }
 

@@ -85,6 +85,13 @@ pub struct Given {
     pub team: Option<SharedTeam>,
 }
 
+impl Given {
+    /// Whether this process is another than the first of a team: it does what that one asks.
+    fn serves(&self) -> bool {
+        self.team.as_ref().is_some_and(|team| team.rank() > 0)
+    }
+}
+
 /// JSON schema of decks, for editors: `docs/deck.schema.json`.
 pub const SCHEMA: &str = include_str!("../deck.schema.json");
 
@@ -109,6 +116,10 @@ pub fn open_with(text: &str, folder: &Path, given: &Given) -> (Deck, Option<Prob
     deck.found_checksum = checksum(&deck, &files);
     check_checksum(&deck, &mut findings);
     let mut problem = build::build(&mut deck, &files, given, &mut findings);
+    if given.serves() {
+        // The first tells what else is wrong, and needs this one until then.
+        return (deck, problem, findings);
+    }
     if let Some(problem) = &problem {
         let columns = match problem {
             Problem::Plane(setup) => columns(setup),

@@ -184,6 +184,9 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     let stiffness = |part| parts::stiffness(deck, &groups.mesh, &hypothesis, part);
     let settings = settings(deck, stiffness, findings)?;
     let driver = driver(Driver::new(model, settings), deck, &groups, findings)?;
+    if given.serves() {
+        return Some(served(driver));
+    }
     let stages = conditions::stages(deck, &groups);
     let mut possible = true;
     for (stage, entry) in stages.iter().zip(&deck.steps) {
@@ -221,6 +224,22 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
         gaps,
         warnings: Vec::new(),
     })
+}
+
+/// What another process than the first needs, which asks it for cells before it has found what else may be wrong.
+fn served<const D: usize>(driver: Driver<D>) -> Setup<D> {
+    Setup {
+        driver,
+        stages: Vec::new(),
+        held: Vec::new(),
+        tools: Vec::new(),
+        moments: false,
+        surfaces: Vec::new(),
+        groups: Vec::new(),
+        bodies: Vec::new(),
+        gaps: Vec::new(),
+        warnings: Vec::new(),
+    }
 }
 
 /// The method and its settings.
