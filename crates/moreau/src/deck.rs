@@ -154,6 +154,18 @@ pub fn checksum_of(text: &str, folder: &Path, meshes: &Meshes) -> Option<String>
     checksum(&deck, &at_hand(&deck, folder, meshes))
 }
 
+/// Checksums of what this process reads: the text of a deck with all that it includes, and the files that it names; empty
+/// for those without files, or where one cannot be read.
+#[cfg(feature = "distributed")]
+pub(crate) fn sums(text: &str, folder: &Path, meshes: &Meshes) -> [String; 2] {
+    let (_, included) = include::read(text, folder, &reader::Log::new(folder));
+    let mut crc = Crc::new();
+    crc.update(text.as_bytes());
+    included.iter().for_each(|i| crc.update(i.text.as_bytes()));
+    let files = checksum_of(text, folder, meshes);
+    [format!("{:08x}", crc.sum()), files.unwrap_or_default()]
+}
+
 /// Of each mesh file of a deck its content, if that is not on disk.
 fn at_hand<'a>(deck: &Deck, folder: &Path, meshes: &'a Meshes) -> Vec<Option<&'a [u8]>> {
     let content = |entry: &FileEntry| {

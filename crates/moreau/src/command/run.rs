@@ -25,11 +25,11 @@ pub(super) fn run(
         Ok(started) => started,
         Err(status) => return status,
     };
-    let Some(simulation) = simulation_on(path, given, &started) else {
+    let Some(simulation) = simulation_on(Some(path), given, &started) else {
         return without(&started);
     };
     if !started.is_first() {
-        return serve(simulation, manner);
+        return serve(simulation, (manner, &started));
     }
     let given = simulation.deck().directory.as_ref().map(PathBuf::from);
     let directory = out.or(given).unwrap_or_else(|| default_directory(path, ""));
@@ -49,7 +49,7 @@ pub(super) fn resume(directory: &Path, manner: &Manner) -> u8 {
         return without(&started);
     };
     if !started.is_first() {
-        return serve(simulation, manner);
+        return serve(simulation, (manner, &started));
     }
     let Some(at) = taken(Directory::take(directory)) else {
         return INPUT_ERROR;
@@ -66,9 +66,9 @@ fn without(started: &Started) -> u8 {
 }
 
 /// Does what the first process asks.
-fn serve(simulation: Simulation, manner: &Manner) -> u8 {
+fn serve(simulation: Simulation, (manner, started): (&Manner, &Started)) -> u8 {
     let Some(pool) = pool(manner.threads.unwrap_or(1)) else {
-        return INPUT_ERROR;
+        return started.give_up();
     };
     pool.install(|| simulation.serve());
     0
@@ -99,8 +99,8 @@ pub(super) fn results(directory: &Path) -> Option<Simulation> {
 
 /// The same on several processes.
 fn results_on(directory: &Path, started: &Started) -> Option<Simulation> {
-    let path = resolved(directory, started.is_first())?;
-    simulation_on(&path, Given::default(), started)
+    let path = resolved(directory, started.is_first());
+    simulation_on(path.as_deref(), Given::default(), started)
 }
 
 /// The deck of a directory of results.
@@ -126,12 +126,18 @@ pub(super) fn simulation(path: &Path, given: &Given) -> Option<Simulation> {
     simulation
 }
 
-/// The simulation of a deck on several processes, of which the first prints the findings.
-fn simulation_on(path: &Path, given: Given, started: &Started) -> Option<Simulation> {
-    let text = match started.is_first() {
-        true => read(path)?,
-        false => std::fs::read_to_string(path).ok()?,
-    };
+/// The simulation of a deck, where there is one, on several processes, of which the first prints the findings.
+fn simulation_on(path: Option<&Path>, given: Given, started: &Started) -> Option<Simulation> {
+    let text = path.and_then(|path| match started.is_first() {
+        true => read(path),
+        false => std::fs::read_to_string(path).ok(),
+    });
+    // Also where there is nothing to read: the first hears of all.
+    let found = text.as_deref().zip(path.map(folder));
+    if !started.agree(found, &given.meshes) {
+        return None;
+    }
+    let (path, text) = (path?, text?);
     let given = Given {
         team: started.team(),
         ..given
