@@ -132,6 +132,13 @@ enum Command {
     },
 }
 
+impl Command {
+    /// Whether all processes that `mpirun` has started do it together; the first does everything else.
+    fn is_shared(&self) -> bool {
+        matches!(self, Self::Run { .. } | Self::Resume { .. })
+    }
+}
+
 /// Parameters of a deck.
 #[derive(Debug, clap::Args)]
 struct Parameters {
@@ -207,12 +214,19 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Err(error) => {
             // Help and version are no errors.
             let failed = error.use_stderr();
-            return match error.print() {
+            let told = match processes::is_another() {
+                true => Ok(()),
+                false => error.print(),
+            };
+            return match told {
                 Ok(()) if !failed => 0,
                 _ => INPUT_ERROR,
             };
         }
     };
+    if processes::is_another() && !arguments.command.is_shared() {
+        return 0;
+    }
     match arguments.command {
         Command::Check {
             deck,
