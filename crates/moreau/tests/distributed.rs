@@ -435,3 +435,210 @@ fn increments_that_failed_both_ways_are_cut_as_alone() {
         place.assert_alike("one", "two");
     }
 }
+
+/// A square in the plane, by what is done with it.
+fn square(steps: &str) -> String {
+    format!(
+        r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+mesh.block = [{{ name = "a", element = "quad4", x = [0, 10], y = [0, 10], cells = [2, 2] }}]
+material = [{{ on = "a", young = 210000.0, poisson = 0.3 }}]
+[[step]]
+name = "one"
+increments = 1
+{steps}
+"#
+    )
+}
+
+/// As `mpirun` without what it says itself of a process that ends so.
+fn told_by(command: &mut Command) -> (Option<i32>, String) {
+    let told = command.output().expect("mpirun");
+    let text = String::from_utf8_lossy(&told.stderr).into_owned();
+    assert!(!text.contains("panicked"), "{text}");
+    (told.status.code(), text)
+}
+
+/// What is found only after the first process has asked the others for the stresses at the start.
+#[test]
+fn an_error_that_only_the_driver_finds_is_told_once_as_well() {
+    if !has_mpi("an error that only the driver finds") {
+        return;
+    }
+    let up = "move = [{ on = \"a.top\", u = { y = -0.1 } }]";
+    let wrong = [
+        ("unheld", format!("fix = [{{ on = \"a.bottom\", u = [\"y\"] }}]\n{up}")),
+        (
+            "conflict",
+            "fix = [{ on = \"a.bottom\", u = [\"x\", \"y\"] }]\nmove = [{ on = \"a.bottom\", u = { y = -0.1 } }]"
+                .into(),
+        ),
+        (
+            "no-column",
+            format!(
+                "fix = [{{ on = \"a.bottom\", u = [\"x\", \"y\"] }}]\n{up}\n[[expect]]\ncolumn = \"fonce.a\"\nvalue = 1\ntolerance = 1"
+            ),
+        ),
+    ];
+    for (name, steps) in wrong {
+        let place = Place::new(name, &square(&steps));
+        let alone = place.alone(&["run", "deck.toml"]);
+        assert_eq!(alone.status.code(), Some(1), "{name}: {alone:?}");
+        let alone = String::from_utf8_lossy(&alone.stderr).into_owned();
+        assert!(alone.contains("error"), "{name}: {alone}");
+        for n in [2, 3] {
+            let (status, text) = told_by(&mut place.on(n, &["run", "deck.toml"]));
+            assert_eq!(status, Some(1), "{name}: {text}");
+            assert_eq!(text.matches(alone.trim()).count(), 1, "{name}: {text}");
+            assert!(!text.contains("MPI_ABORT"), "{name}: {text}");
+        }
+    }
+}
+
+/// One process in a folder of its own, with the same names of files in it.
+#[test]
+fn a_process_that_reads_another_file_is_named() {
+    if !has_mpi("a process that reads another file") {
+        return;
+    }
+    let block = |n: usize| {
+        format!(
+            r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+mesh.block = [{{ name = "a", element = "quad4", x = [0, 10], y = [0, 10], cells = [{n}, 2] }}]
+material = [{{ on = "a", young = 210000.0, poisson = 0.3 }}]
+"#
+        )
+    };
+    let held = r#"[[step]]
+name = "one"
+increments = 1
+fix = [{ on = "a.bottom", u = ["x", "y"] }]
+move = [{ on = "a.top", u = { y = -0.1 } }]
+"#;
+    let from_file = "units = \"mm-N-MPa\"\nanalysis = \"plane-strain\"\nmesh.file = \"a.inp\"\n\
+        material = [{ on = \"a\", young = 210000.0, poisson = 0.3 }]\n";
+    let mesh = |y: f64| {
+        format!(
+            "*NODE, NSET=a.bottom\n1, 0.0, 0.0\n2, 10.0, 0.0\n*NODE, NSET=a.top\n3, 10.0, {y:.1}\n4, 0.0, {y:.1}\n\
+             *ELEMENT, TYPE=CPE4, ELSET=a\n1, 1, 2, 3, 4\n"
+        )
+    };
+    let own = |place: &Place, files: &[(&str, String)]| {
+        for (folder, text) in files {
+            let path = place.0.join(folder);
+            fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+            fs::write(path, text).expect("a file");
+        }
+    };
+    let cases = [
+        (
+            "deck",
+            vec![
+                ("0/deck.toml", block(2) + held),
+                ("1/deck.toml", block(3) + held),
+            ],
+            "process 1 reads another deck than the first",
+        ),
+        (
+            "included",
+            vec![
+                (
+                    "0/deck.toml",
+                    format!("include = \"rest.toml\"\n{}", block(2)),
+                ),
+                (
+                    "1/deck.toml",
+                    format!("include = \"rest.toml\"\n{}", block(2)),
+                ),
+                ("0/rest.toml", held.into()),
+                ("1/rest.toml", held.replace("0.1", "0.2")),
+            ],
+            "process 1 reads another deck than the first",
+        ),
+        (
+            "mesh",
+            vec![
+                ("0/deck.toml", from_file.to_owned() + held),
+                ("1/deck.toml", from_file.to_owned() + held),
+                ("0/a.inp", mesh(10.0)),
+                ("1/a.inp", mesh(11.0)),
+            ],
+            "process 1 reads another mesh file",
+        ),
+        (
+            "no-deck",
+            vec![("0/deck.toml", block(2) + held), ("1/other.toml", block(2))],
+            "process 1 does not find the deck of the first",
+        ),
+    ];
+    for (name, files, expected) in cases {
+        let place = Place::new(&format!("differs-{name}"), "");
+        own(&place, &files);
+        let there = "cd $OMPI_COMM_WORLD_RANK && exec \"$0\" run deck.toml --quiet --out ../out";
+        let mut command = Command::new("mpirun");
+        command
+            .args(["--oversubscribe", "-n", "2", "sh", "-c", there, MOREAU])
+            .current_dir(&place.0)
+            .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+            .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+        let (status, text) = told_by(&mut command);
+        assert_eq!(status, Some(1), "{name}: {text}");
+        assert_eq!(text.matches(expected).count(), 1, "{name}: {text}");
+        assert!(!text.contains("MPI_ABORT"), "{name}: {text}");
+        assert!(!place.0.join("out").exists(), "{name}");
+    }
+}
+
+/// How much address space that is depends on the machine: limits are tried until one is met there.
+#[test]
+fn a_process_without_room_for_threads_ends_all() {
+    if !has_mpi("a process without room for threads") {
+        return;
+    }
+    let held = "fix = [{ on = \"a.bottom\", u = [\"x\", \"y\"] }]\nmove = [{ on = \"a.top\", u = { y = -0.1 } }]";
+    let place = Place::new("threads", &square(held));
+    let limited = "test $OMPI_COMM_WORLD_RANK = 0 || ulimit -v $1; exec \"$0\" run deck.toml --quiet --out out";
+    for limit in (6..30).map(|k| 100_000 * k) {
+        let mut command = Command::new("timeout");
+        command
+            .args(["60", "mpirun", "--oversubscribe", "-n", "2", "sh", "-c"])
+            .args([limited, MOREAU, &limit.to_string()])
+            .current_dir(&place.0)
+            .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+            .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+        let told = command.output().expect("mpirun");
+        let text = String::from_utf8_lossy(&told.stderr);
+        assert_ne!(told.status.code(), Some(124), "{limit}: {text}");
+        if text.contains("cannot start threads") {
+            assert_eq!(told.status.code(), Some(1), "{text}");
+            return;
+        }
+        if told.status.success() {
+            break;
+        }
+    }
+    let _ = writeln!(
+        std::io::stderr(),
+        "skipped, as no limit leaves room for all but threads"
+    );
+}
+
+#[test]
+fn what_is_no_run_is_done_by_the_first_process_alone() {
+    if !has_mpi("what is no run") {
+        return;
+    }
+    let held = "fix = [{ on = \"a.bottom\", u = [\"x\", \"y\"] }]\nmove = [{ on = \"a.top\", u = { y = -0.1 } }]";
+    let place = Place::new("no-run", &square(held));
+    let alone = place.alone(&["check", "deck.toml"]);
+    let told = place.on(3, &["check", "deck.toml"]).output();
+    let told = told.expect("mpirun");
+    assert!(told.status.success(), "{told:?}");
+    assert_eq!(told.stdout, alone.stdout);
+    let (status, text) = told_by(&mut place.on(3, &["check", "dock.toml"]));
+    assert_eq!(status, Some(1), "{text}");
+    assert_eq!(text.matches("cannot read the deck").count(), 1, "{text}");
+    let (_, text) = told_by(&mut place.on(3, &["rum", "deck.toml"]));
+    assert_eq!(text.matches("unrecognized subcommand").count(), 1, "{text}");
+}

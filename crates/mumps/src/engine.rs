@@ -56,12 +56,10 @@ pub(crate) fn assist(
                 team.refuse("a factorisation of other entries than those that were analysed");
             }
         }
-        SOLVE => {
-            match parts.get_mut(&number).and_then(|p| p.instance.as_mut()) {
-                Some(instance) => drop(instance.solve(None)),
-                None => team.refuse("a solution with a factor that is not there"),
-            }
-        }
+        SOLVE => match parts.get_mut(&number).and_then(|p| p.instance.as_mut()) {
+            Some(instance) => drop(instance.solve(None)),
+            None => team.refuse("a solution with a factor that is not there"),
+        },
         _ => drop(parts.remove(&number)),
     }
 }

@@ -46,7 +46,11 @@ impl Processes {
 
     /// Ends all processes where this one cannot do its part of what they do together: the others would wait for it.
     pub(crate) fn refuse(&self, what: &str) {
-        let _ = writeln!(std::io::stderr(), "process {}: asked for {what}", self.0.rank);
+        let _ = writeln!(
+            std::io::stderr(),
+            "process {}: asked for {what}",
+            self.0.rank
+        );
         Self::abort(1);
     }
 
