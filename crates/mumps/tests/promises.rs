@@ -6,7 +6,7 @@ mod common;
 
 use common::promises::*;
 use common::{Sample, definite, indefinite, laplacian, saddle};
-use moreau_algebra::{Engine, EngineError, Inertia, Team};
+use moreau_algebra::{Engine, EngineError, Inertia, Share, Team};
 use moreau_mumps::{Definite, Indefinite, Options, Processes, serve};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
@@ -16,10 +16,15 @@ use std::process::{Command, ExitCode};
 
 /// That this is one of several already.
 const STARTED: &str = "MOREAU_TEST_PROCESSES";
+/// That the second of them loses its entries before they are factorised.
+const LOSES: &str = "MOREAU_TEST_LOSES";
 
 fn main() -> ExitCode {
     let several = std::env::var_os(STARTED).is_some();
     let team = Processes::begin(Options::default()).expect("MPI");
+    if std::env::var_os(LOSES).is_some() {
+        return lose_entries(&team);
+    }
     if team.rank() > 0 {
         serve(&team);
         team.end();
@@ -32,22 +37,65 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     for processes in ["2", "3"] {
-        let outcome = Command::new("mpirun")
-            .args(["--oversubscribe", "-n", processes])
-            .arg(std::env::current_exe().expect("this program"))
-            .env(STARTED, processes)
-            .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
-            .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
-            // Those of the process that starts it are not its own.
-            .env_clear_of_mpi()
-            .status();
-        match outcome {
+        match on("mpirun", processes).env(STARTED, processes).status() {
             Ok(status) if status.success() => {}
             Ok(status) => panic!("{processes} processes: {status}"),
             Err(error) => tell(&format!(
                 "skipped on {processes} processes: mpirun: {error}"
             )),
         }
+    }
+    ends_all_where_entries_are_lost();
+    ExitCode::SUCCESS
+}
+
+/// This program on several processes.
+fn on(launcher: &str, processes: &str) -> Command {
+    let mut command = Command::new(launcher);
+    if launcher == "timeout" {
+        command.args(["60", "mpirun"]);
+    }
+    command
+        .args(["--oversubscribe", "-n", processes])
+        .arg(std::env::current_exe().expect("this program"))
+        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1")
+        // Those of the process that starts it are not its own.
+        .env_clear_of_mpi();
+    command
+}
+
+/// The first process is within MUMPS by then, and would wait there.
+fn ends_all_where_entries_are_lost() {
+    let Ok(told) = on("timeout", "2").env(LOSES, "1").output() else {
+        return;
+    };
+    let text = String::from_utf8_lossy(&told.stderr);
+    if told.status.code() == Some(127) {
+        return tell("skipped: entries that are lost, as there is no mpirun");
+    }
+    assert_eq!(told.status.code(), Some(1), "{text}");
+    assert!(
+        text.contains("process 1: asked for a factorisation"),
+        "{text}"
+    );
+}
+
+fn lose_entries(team: &Processes) -> ExitCode {
+    let (pattern, values) = laplacian(3, 1.0);
+    if team.rank() > 0 {
+        let rows: Vec<u32> = (0..pattern.size() as u32).collect();
+        let share = Share {
+            pattern: Some(&pattern),
+            values: &values,
+            rows: &rows,
+        };
+        team.assist(&team.receive(0), share);
+        team.assist(&team.receive(0), Share::NONE);
+        serve(team);
+    } else {
+        let mut engine = Indefinite::analyse(&pattern, None).expect("small");
+        let _ = engine.factorise(&values);
     }
     ExitCode::SUCCESS
 }
