@@ -84,6 +84,9 @@ pub struct FlowPower {
     /// all of it where a law is elastic, counts in `total` with the present stress; this is the
     /// absolute value of what it counts.
     pub elastic: f64,
+    /// By how much D rises while the strain grows at this rate for a unit of time, because the yield surface grows or
+    /// moves along: none of perfect plasticity.
+    pub hardening: f64,
 }
 
 impl FlowPower {
@@ -93,6 +96,7 @@ impl FlowPower {
         Self {
             total: self.total + volume * part.total,
             elastic: self.elastic + volume * part.elastic,
+            hardening: self.hardening + volume * part.hardening,
         }
     }
 }

@@ -138,7 +138,11 @@ impl BulkLaw for Elastic {
     fn flow_power(&self, state: &Sym2, rate: &Sym2) -> Option<FlowPower> {
         let total = self.stress(state).dot(rate);
         let elastic = total.abs();
-        Some(FlowPower { total, elastic })
+        Some(FlowPower {
+            total,
+            elastic,
+            hardening: 0.0,
+        })
     }
 
     /// ΔV = ½ Δε·S·Δε, \[58\].

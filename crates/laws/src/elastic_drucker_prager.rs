@@ -283,6 +283,7 @@ impl BulkLaw for ElasticDruckerPrager {
         Some(FlowPower {
             total: self.plastic.apex() * dilation + lacking,
             elastic: lacking.abs(),
+            hardening: 0.0,
         })
     }
 }

@@ -130,7 +130,11 @@ impl BulkLaw for Orthotropic {
     fn flow_power(&self, state: &Sym2, rate: &Sym2) -> Option<FlowPower> {
         let total = self.stress(state).dot(rate);
         let elastic = total.abs();
-        Some(FlowPower { total, elastic })
+        Some(FlowPower {
+            total,
+            elastic,
+            hardening: 0.0,
+        })
     }
 
     /// ½ Δε·C·Δε.

@@ -458,10 +458,15 @@ impl<const TERMS: usize> BulkLaw for VonMises<TERMS> {
         let yield_stress = self.yield_stress + self.isotropic.stress(state.p);
         let flow = yield_stress * equivalent_strain(&e) + self.back_stress(state).dot(&e);
         let volume = trace(&self.stress(state)) * trace(rate) / 3.0;
-        let elastic = volume.abs();
+        let d_p = equivalent_strain(&e);
+        let mut back_rate = self.kinematic * e;
+        for ((modulus, recall), back) in self.recalled().iter().zip(&state.back_strain) {
+            back_rate += *modulus * (e - *recall * d_p * back);
+        }
         Some(FlowPower {
             total: flow + volume,
-            elastic,
+            elastic: volume.abs(),
+            hardening: self.isotropic.modulus(state.p) * d_p * d_p + 2.0 / 3.0 * back_rate.dot(&e),
         })
     }
 

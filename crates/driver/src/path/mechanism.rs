@@ -3,7 +3,7 @@
 
 use crate::driver::Driver;
 use crate::report::ContactRecord;
-use crate::report::collapse::UpperBound;
+use crate::report::collapse::{Collapse, UpperBound};
 use crate::vector::SparseVector;
 use moreau_laws::{FlowPower, Status};
 
@@ -27,6 +27,7 @@ impl<const D: usize> Driver<D> {
             load_factor: (flow.total + friction - dead) / proportional,
             elastic_share: flow.elastic / proportional,
             coulomb,
+            hardens: flow.hardening.abs() > Collapse::FLAT * flow.total,
         })
     }
 }

@@ -465,22 +465,21 @@ impl<const D: usize> Driver<D> {
     ) -> Result<IncrementReport, IncrementError> {
         let load = self.load(ramp);
         let grows = ramp.end.increment_from(&ramp.start);
-        if path.ended && path.growth > Collapse::SLOW {
-            return Err(IncrementError::RunsAway {
-                step: ramp.step.clone(),
-                factor: ramp.done,
-                growth: path.growth,
-            });
-        }
         if path.ended {
-            return Err(IncrementError::Collapse {
-                step: ramp.step.clone(),
-                collapse: Collapse {
-                    load_factor: path.peak,
-                    added: ramp.begins_under_forces(),
+            let step = ramp.step.clone();
+            let collapse = Collapse {
+                load_factor: path.peak,
+                added: ramp.begins_under_forces(),
+                growth: path.growth,
+                upper_bound: self.upper_bound(&load, ramp.done),
+            };
+            return Err(match collapse.runs_away() {
+                true => IncrementError::RunsAway {
+                    step,
+                    factor: ramp.done,
                     growth: path.growth,
-                    upper_bound: self.upper_bound(&load, ramp.done),
                 },
+                false => IncrementError::Collapse { step, collapse },
             });
         }
         let mut halved = 0;
@@ -531,7 +530,7 @@ impl<const D: usize> Driver<D> {
                     // Where strains are large, loads may fall and rise again.
                     let flat = path.growth <= Collapse::FLAT && !self.has_large_strains();
                     let is_far = path.moved > size || self.tools_motion() > size;
-                    let rises = self.has_large_strains() && path.growth > Collapse::SLOW;
+                    let rises = self.has_large_strains() && path.growth > Collapse::SLOW[0];
                     path.ended = flat || is_far && !rises;
                     let easy = report.newton_iterations <= 2 * Increments::EASY && halved == 0;
                     if easy && !(self.has_large_strains() && self.last_motion() > SEEN * size) {

@@ -11,7 +11,7 @@ pub struct Collapse {
     /// then no part of the loads.
     pub added: bool,
     /// Growth of λ, over λ, while the work of the loads doubled: what is left to be gained; at most
-    /// [`Collapse::FLAT`], or [`Collapse::SLOW`] where the displacements had grown to the size of the mesh, and negative
+    /// [`Collapse::FLAT`], or one of [`Collapse::SLOW`] where the displacements had grown to the size of the mesh, and negative
     /// past a maximum.
     pub growth: f64,
     /// Kinematic bound from the mechanism; `None` where a law has no dissipation of strain rates
@@ -39,21 +39,30 @@ pub struct UpperBound {
     /// Whether friction depends on normal forces somewhere in the mechanism. Coulomb's is not
     /// associated: λ⁺ then holds for the normal forces at collapse, and is no bound otherwise.
     pub coulomb: bool,
+    /// Whether the yield surface grows, or shrinks, in the mechanism by more than [`Collapse::FLAT`] of its power: λ⁺ then bounds
+    /// nothing but the present λ.
+    pub hardens: bool,
 }
 
 impl Collapse {
     /// Growth of λ at which it counts as constant.
     pub const FLAT: f64 = 1e-6;
 
-    /// Growth of λ at which it counts as constant once the structure has moved by its own size. What grows faster
-    /// still hardens, and has no limit load there.
-    pub const SLOW: f64 = 1e-3;
+    /// Growth of λ up to which there is a limit load near once the structure has moved by its own size, if it hardens and if
+    /// it does not: on coarse meshes a plateau may rise for long.
+    pub const SLOW: [f64; 2] = [1e-3, 2e-2];
 
-    /// Whether the kinematic bound is one: λ no longer changes, and no friction in the mechanism depends on normal forces;
-    /// `None` without a bound.
+    /// Whether λ grows too fast for a limit load near, once the structure has moved by its own size.
+    pub fn runs_away(&self) -> bool {
+        let hardens = self.upper_bound.is_some_and(|bound| bound.hardens);
+        self.growth > Self::SLOW[usize::from(!hardens)]
+    }
+
+    /// Whether the kinematic bound is one: nothing in the mechanism hardens, and no friction depends on normal forces; `None`
+    /// without a bound.
     pub fn is_strict(&self) -> Option<bool> {
-        let flat = self.growth.abs() <= Self::FLAT;
-        self.upper_bound.map(|bound| flat && !bound.coulomb)
+        self.upper_bound
+            .map(|bound| !bound.hardens && !bound.coulomb)
     }
 }
 
@@ -69,7 +78,7 @@ impl std::fmt::Display for Collapse {
         let what = match (self.is_strict(), bound.coulomb) {
             (Some(true), _) => "upper bound",
             (_, true) => "kinematic estimate (Coulomb friction: no bound)",
-            _ => "kinematic estimate (not constant yet: no bound)",
+            _ => "kinematic estimate (it still hardens: no bound)",
         };
         write!(f, ", {what} {:.6}", bound.load_factor)
     }

@@ -335,11 +335,12 @@ impl BulkLaw for Hill {
     fn flow_power(&self, state: &HillState, rate: &Sym2) -> Option<FlowPower> {
         let e = deviator(rate);
         let strength = self.yield_stress + self.isotropic.stress(state.hardening_strain);
-        let flow = strength * e.dot(&(self.inverse * e)).max(0.0).sqrt();
+        let d_alpha = e.dot(&(self.inverse * e)).max(0.0).sqrt();
         let volume = trace(&self.stress(state)) * trace(rate) / 3.0;
         Some(FlowPower {
-            total: flow + volume,
+            total: strength * d_alpha + volume,
             elastic: volume.abs(),
+            hardening: self.isotropic.modulus(state.hardening_strain) * d_alpha * d_alpha,
         })
     }
 

@@ -4,7 +4,8 @@
 use crate::contract::for_all;
 use crate::samples::{unit_deviator, vector};
 use moreau_laws::{
-    BulkLaw, DruckerPrager, Elastic, ElasticDruckerPrager, FlowPower, Isotropic, LawError, VonMises,
+    BulkLaw, DruckerPrager, Elastic, ElasticDruckerPrager, FlowPower, Hill, HillCoefficients,
+    Isotropic, LawError, VonMises,
 };
 use moreau_mandel::{Sym2, deviator, identity, trace};
 use proptest::prelude::*;
@@ -168,5 +169,33 @@ fn drucker_prager_power_is_the_largest_of_the_cone() -> Result<(), LawError> {
     );
     let loose = soil(K, 0.1)?;
     assert_eq!(loose.flow_power(&Default::default(), &identity()), None);
+    Ok(())
+}
+
+/// Along plastic flow D rises by its hardening: of Δεᵖ alone, the rest of the strain leaves the surface where it is.
+fn rises<L: BulkLaw>(law: &L) {
+    for_all(&(unit_deviator(), 2.0..6.0), |(n, far): (Sym2, f64)| {
+        let before = after(law, &[n * (far * STRAIN)]);
+        let step = n * (1e-4 * STRAIN);
+        let now = law.respond(&before, &step).state;
+        let shear = YOUNG / (2.0 * (1.0 + POISSON));
+        let flown = step - (law.stress(&now) - law.stress(&before)) / (2.0 * shear);
+        let power = |s| law.flow_power(s, &flown).expect("associated");
+        let [start, end] = [&before, &now].map(power);
+        let (rise, told) = (end.total - start.total, start.hardening);
+        let same = (rise - told).abs() <= 1e-3 * told + 1e-14 * start.total;
+        prop_assert!(same, "{rise:e} {told:e}");
+        Ok(())
+    });
+}
+
+#[test]
+fn hardening_is_the_rise_of_power_along_flow() -> Result<(), LawError> {
+    for law in von_mises_laws()? {
+        rises(&law);
+    }
+    let sheet = HillCoefficients::lankford(1.8, 1.3, 2.2)?;
+    let hill = Hill::new(Elastic::new(YOUNG, POISSON)?, sheet, YIELD)?;
+    rises(&hill.with_hardening(Isotropic::voce(150.0, 200.0)?));
     Ok(())
 }

@@ -265,7 +265,7 @@ const COLLAPSE: &[Key<(String, Collapse)>] = &[
     key(
         "strict",
         Unit::None,
-        "Whether the bound is one: the load factor no longer grows, and no friction in the mechanism depends on normal forces; with Coulomb's the bound holds for those at collapse.",
+        "Whether the bound is one: nothing in the mechanism hardens, and no friction in it depends on normal forces; with Coulomb's the bound holds for those at collapse.",
         |(_, c)| json!(c.is_strict()),
     ),
 ];

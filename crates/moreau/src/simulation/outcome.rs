@@ -184,7 +184,8 @@ impl Saved for Tally {
             numbers.option(bound, UpperBound::default, |bound, numbers| {
                 numbers.value(&mut bound.load_factor)?;
                 numbers.value(&mut bound.elastic_share)?;
-                numbers.flag(&mut bound.coulomb)
+                numbers.flag(&mut bound.coulomb)?;
+                numbers.flag(&mut bound.hardens)
             })
         })
     }

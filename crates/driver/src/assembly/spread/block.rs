@@ -240,7 +240,11 @@ impl<const D: usize> Block<D> for SpreadBlock<D> {
         let mut sum = self.own.flow_power(v);
         for numbers in self.answers() {
             let part = match *numbers {
-                [total, elastic] => Some(FlowPower { total, elastic }),
+                [total, elastic, hardening] => Some(FlowPower {
+                    total,
+                    elastic,
+                    hardening,
+                }),
                 _ => None,
             };
             sum = sum.zip(part).map(|(sum, part)| sum.with(1.0, part));

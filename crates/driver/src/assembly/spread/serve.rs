@@ -225,7 +225,7 @@ impl<const D: usize> Served<'_, D> {
         match kind {
             ask::FLOW_POWER => {
                 let power = block.flow_power(u);
-                let numbers = |p: FlowPower| vec![p.total, p.elastic];
+                let numbers = |p: FlowPower| vec![p.total, p.elastic, p.hardening];
                 self.answer_reals(&power.map_or(Vec::new(), numbers));
             }
             ask::GRADIENTS => self.answer_reals(&points(block, u)),
