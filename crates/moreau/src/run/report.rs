@@ -80,13 +80,18 @@ type Rows = Vec<[String; 2]>;
 fn results(run: &serde_json::Value, deck: &Deck) -> Rows {
     let units = deck.units;
     let collapse = &run["collapse"];
-    let mut rows: Rows = [
-        ("load factor at collapse", "load_factor"),
-        ("its kinematic bound", "upper_bound"),
-    ]
-    .into_iter()
-    .filter_map(|(name, key)| Some([name.to_owned(), shown(collapse[key].as_f64()?, 6)]))
-    .collect();
+    let factor = match collapse["added"].as_bool() {
+        Some(true) => "load factor at collapse, from the forces at the start on",
+        _ => "load factor at collapse",
+    };
+    let bound = match collapse["strict"].as_bool() {
+        Some(true) => "its upper bound",
+        _ => "its kinematic estimate",
+    };
+    let mut rows: Rows = [(factor, "load_factor"), (bound, "upper_bound")]
+        .into_iter()
+        .filter_map(|(name, key)| Some([name.to_owned(), shown(collapse[key].as_f64()?, 6)]))
+        .collect();
     for (name, value) in run["values"].as_object().into_iter().flatten() {
         let unit = units.of_value(name);
         let value = value.as_f64().unwrap_or(f64::NAN);
