@@ -456,6 +456,25 @@ impl<const D: usize> Driver<D> {
         })
     }
 
+    /// What a path that has ended is: collapse, or one that still rises.
+    fn ended(&self, ramp: &Ramp<D>, path: &Path, load: &SparseVector) -> IncrementError {
+        let step = ramp.step.clone();
+        let collapse = Collapse {
+            load_factor: path.peak,
+            added: ramp.begins_under_forces(),
+            growth: path.growth,
+            upper_bound: self.upper_bound(load, ramp.done),
+        };
+        match collapse.runs_away() {
+            true => IncrementError::RunsAway {
+                step,
+                factor: ramp.done,
+                growth: path.growth,
+            },
+            false => IncrementError::Collapse { step, collapse },
+        }
+    }
+
     /// Applies the next increment along a path, halved as often as it takes.
     fn follow(
         &mut self,
@@ -466,21 +485,7 @@ impl<const D: usize> Driver<D> {
         let load = self.load(ramp);
         let grows = ramp.end.increment_from(&ramp.start);
         if path.ended {
-            let step = ramp.step.clone();
-            let collapse = Collapse {
-                load_factor: path.peak,
-                added: ramp.begins_under_forces(),
-                growth: path.growth,
-                upper_bound: self.upper_bound(&load, ramp.done),
-            };
-            return Err(match collapse.runs_away() {
-                true => IncrementError::RunsAway {
-                    step,
-                    factor: ramp.done,
-                    growth: path.growth,
-                },
-                false => IncrementError::Collapse { step, collapse },
-            });
+            return Err(self.ended(ramp, &path, &load));
         }
         let mut halved = 0;
         loop {
