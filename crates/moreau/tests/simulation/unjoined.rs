@@ -52,6 +52,46 @@ move = [{{ on = "l.left", u = {{ x = {by:?}, y = 0 }} }}]
     }
 }
 
+/// A bar pulled to collapse goes through another body: displacements of a mechanism have no size. A step that ends before,
+/// though it goes as far, is told.
+#[test]
+fn a_mechanism_passes_through_nothing() {
+    let pulled = |ends: &str, load: &str| {
+        let pulled = finish(simulation(&format!(
+            r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+[[mesh.block]]
+name = "l"
+element = "quad8"
+x = [0, 20]
+y = [0, 10]
+cells = [4, 2]
+[[mesh.block]]
+name = "r"
+element = "quad4"
+x = [20.1, 40.1]
+y = [0, 10]
+cells = [3, 3]
+[[material]]
+on = ["l", "r"]
+young = 1000
+poisson = 0.3
+yield-stress = 10
+[[step]]
+name = "p"
+increments = 5
+{ends}
+fix = [{{ on = "r.right", u = ["x", "y"] }}, {{ on = "l.left", u = ["x"] }}, {{ on = "l.bottom", u = ["y"] }}]
+{load}
+"#
+        )));
+        warned(&pulled, "nodes have moved into another body")
+    };
+    let load = "load = [{ on = \"l.right\", pressure = -20 }]";
+    assert!(!pulled("until = \"collapse\"", load));
+    assert!(pulled("", "move = [{ on = \"l.right\", u = { x = 3 } }]"));
+}
+
 /// A die on a block that lies on nothing, and on one that a floor or a condition holds.
 #[test]
 fn a_body_that_is_pushed_and_not_held_is_told() {
