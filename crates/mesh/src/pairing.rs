@@ -21,6 +21,7 @@ use crate::mesh::{Change, Facet, Mesh, NodeKind};
 use crate::sample::facet_samples;
 use face::{Face, Values, unit};
 pub use fold::Fold;
+pub use mortar::MultiplierNodes;
 pub use overlap::Intrusion;
 use std::collections::BTreeMap;
 use tree::Tree;
@@ -75,6 +76,26 @@ impl<const D: usize> Mesh<D> {
         pairing: Pairing,
         hypothesis: &H,
     ) -> Vec<MortarRow<D>> {
+        let mut none = MultiplierNodes::default();
+        self.mortar_rows_keeping(
+            positions,
+            (surface, opposite),
+            pairing,
+            hypothesis,
+            &mut none,
+        )
+    }
+
+    /// The same while the surfaces slide: nodes that have a multiplier keep it as long as they are anywhere near what is
+    /// opposite. Takes note of those that have one now.
+    pub fn mortar_rows_keeping<H: Hypothesis<D>>(
+        &self,
+        positions: &[[f64; D]],
+        (surface, opposite): (&[Facet], &[Facet]),
+        pairing: Pairing,
+        hypothesis: &H,
+        kept: &mut MultiplierNodes,
+    ) -> Vec<MortarRow<D>> {
         let faces = |facets: &[Facet]| -> Vec<Face<D>> {
             let face = |&f: &Facet| {
                 let change = self.change(f, hypothesis);
@@ -93,7 +114,7 @@ impl<const D: usize> Mesh<D> {
         };
         let measure = |x: &[f64; D]| hypothesis.measure(x);
         match pairing {
-            Pairing::Mortar => sides.mortar(&measure),
+            Pairing::Mortar => sides.mortar(surface, &measure, kept),
             Pairing::NodeToSurface => sides.node_to_surface(&measure),
         }
     }

@@ -21,6 +21,7 @@ impl<const D: usize> Driver<D> {
     pub(crate) fn pair(&mut self, loading: &Loading<D>) -> Result<(), ModelError> {
         let rest = vec![0.0; self.state.displacement.len()];
         self.footing.first.clear();
+        self.footing.multipliers.clear();
         self.footing.folds = self.folds()?;
         self.turn_ties()?;
         self.pair_at(loading, &rest)?;
@@ -91,8 +92,11 @@ impl<const D: usize> Driver<D> {
                 let Some(pairing) = contact.pairing else {
                     continue;
                 };
+                let mut kept = self.footing.multipliers.remove(&k).unwrap_or_default();
+                let (mesh, sides) = (&self.mesh, self.sides(k)?);
                 let mortar_rows =
-                    (self.measure).mortar_rows(&self.mesh, &positions, self.sides(k)?, pairing);
+                    (self.measure).mortar_rows(mesh, &positions, sides, pairing, &mut kept);
+                self.footing.multipliers.insert(k, kept);
                 let index = |p: &ContactPoint<D>| p.contact == k;
                 let own = (0..self.points.len()).filter(|&i| index(&self.points[i]));
                 let at: BTreeMap<usize, usize> = own.map(|i| (self.points[i].node, i)).collect();

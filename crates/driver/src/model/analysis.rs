@@ -7,8 +7,8 @@ use crate::vector::SparseVector;
 use moreau_laws::{BulkLaw, InPlaneStress};
 use moreau_mesh::{
     Axisymmetric, CellKind, Element, Facet, Hex8, Hex20, Hex27, Hypothesis, Integration, Mesh,
-    MortarRow, Pairing, PlaneStrain, PlaneStress, PositiveShare, Pressed, Quad4, Quad8, Quad9,
-    Share, Solid, Tet4, Tet10, Tri3, Tri6,
+    MortarRow, MultiplierNodes, Pairing, PlaneStrain, PlaneStress, PositiveShare, Pressed, Quad4,
+    Quad8, Quad9, Share, Solid, Tet4, Tet10, Tri3, Tri6,
 };
 
 /// A hypothesis together with the elements that it can be used with.
@@ -154,6 +154,7 @@ pub(crate) trait Measure<const D: usize>: Send + Sync {
         positions: &[[f64; D]],
         surfaces: (&[Facet], &[Facet]),
         pairing: Pairing,
+        kept: &mut MultiplierNodes,
     ) -> Vec<MortarRow<D>>;
 }
 
@@ -202,7 +203,8 @@ impl<const D: usize, H: Hypothesis<D>> Measure<D> for H {
         positions: &[[f64; D]],
         surfaces: (&[Facet], &[Facet]),
         pairing: Pairing,
+        kept: &mut MultiplierNodes,
     ) -> Vec<MortarRow<D>> {
-        mesh.mortar_rows(positions, surfaces, pairing, self)
+        mesh.mortar_rows_keeping(positions, surfaces, pairing, self, kept)
     }
 }

@@ -2,7 +2,7 @@
 //! paired; not how.
 
 use crate::model::motion_row::RelativeMotionRow;
-use moreau_mesh::Fold;
+use moreau_mesh::{Fold, MultiplierNodes};
 use nalgebra::SVector;
 use std::collections::BTreeMap;
 
@@ -21,6 +21,8 @@ pub(crate) struct Footing<const D: usize> {
     pub(crate) opposite: Vec<f64>,
     /// The two sides at the start of the increment of each contact of a surface with itself.
     pub(crate) folds: BTreeMap<usize, Fold>,
+    /// The nodes of each contact that had a multiplier when its surfaces were last paired in this increment.
+    pub(crate) multipliers: BTreeMap<usize, MultiplierNodes>,
 }
 
 impl<const D: usize> Footing<D> {

@@ -4,7 +4,7 @@
 use super::face::{Face, Values, along, unit};
 use super::{MortarRow, Sides};
 use crate::geometry::{dot, interpolate};
-use crate::mesh::NodeKind;
+use crate::mesh::{Facet, NodeKind};
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 
@@ -15,17 +15,32 @@ pub(super) const SLIVER: f64 = 1e-9;
 const ROUNDING: f64 = 1e-13;
 
 /// How far from the overlap a node may be, over half a side of the reference facet, to have a
-/// multiplier.
-pub(super) const NEAR: f64 = 0.25;
+/// multiplier; and to keep the one that it has.
+const NEAR: [f64; 2] = [0.25, 0.5];
 
-/// Least share of a multiplier in the overlap of a facet.
-const LEAST: f64 = 1e-3;
+/// Least share of a multiplier in the overlap of a facet; and of one that is kept.
+const LEAST: [f64; 2] = [1e-3, 1e-4];
 
 /// How much less straight than another a part of a surface may look at what is opposite, in cosines.
 const ASKEW: f64 = 0.1;
 
 /// How much farther than another it may be from that, over the size of a facet.
 const BEYOND: f64 = 0.1;
+
+/// The nodes of a surface that have a multiplier, by facet.
+///
+/// Where a surface ends opposite to a facet, that is decided by how far its nodes are from there. While surfaces slide
+/// within an increment, a node has to go farther to lose its multiplier than to gain it: or equilibrium would be sought
+/// between two sets of multipliers, of which each iterate has the other.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct MultiplierNodes(BTreeMap<Facet, Vec<usize>>);
+
+impl MultiplierNodes {
+    /// Local indices of the nodes of a facet.
+    fn of(&self, facet: &Facet) -> &[usize] {
+        self.0.get(facet).map_or(&[], Vec::as_slice)
+    }
+}
 
 /// What the other surface covers of a facet.
 #[derive(Default)]
@@ -72,15 +87,26 @@ struct Multipliers {
 }
 
 impl<const D: usize> Sides<'_, D> {
-    pub(super) fn mortar(&self, measure: &dyn Fn(&[f64; D]) -> f64) -> Vec<MortarRow<D>> {
+    pub(super) fn mortar(
+        &self,
+        facets: &[Facet],
+        measure: &dyn Fn(&[f64; D]) -> f64,
+        kept: &mut MultiplierNodes,
+    ) -> Vec<MortarRow<D>> {
         let mut sums: BTreeMap<(usize, usize), Sums> = BTreeMap::new();
-        for face in self.own {
+        let mut nodes = BTreeMap::new();
+        for (facet, face) in facets.iter().zip(self.own) {
+            let kept = kept.of(facet);
             let overlap = match D {
-                2 => self.overlap_in_plane(face, measure),
-                _ => self.overlap_in_space(face, measure),
+                2 => self.overlap_in_plane(face, measure, &near(kept)),
+                _ => self.overlap_in_space(face, measure, &near(kept)),
             };
-            self.integrate(face, &overlap, &mut sums);
+            if let Some(multipliers) = Multipliers::new(&overlap, face.nodes.len(), kept) {
+                self.integrate(face, (&overlap, &multipliers), &mut sums);
+                nodes.insert(*facet, multipliers.nodes);
+            }
         }
+        *kept = MultiplierNodes(nodes);
         // What lies on the axis of symmetry is no surface.
         let largest = sums.values().map(|s| s.area).fold(0.0, f64::max);
         sums.retain(|_, s| s.area > SLIVER * largest);
@@ -139,13 +165,10 @@ impl<const D: usize> Sides<'_, D> {
     fn integrate(
         &self,
         face: &Face<D>,
-        overlap: &Overlap,
+        (overlap, multipliers): (&Overlap, &Multipliers),
         sums: &mut BTreeMap<(usize, usize), Sums>,
     ) {
         let count = face.nodes.len();
-        let Some(multipliers) = Multipliers::new(overlap, count) else {
-            return;
-        };
         for (&a, phi) in multipliers.nodes.iter().zip(&multipliers.values) {
             let sums = sums
                 .entry((face.part, face.nodes[a]))
@@ -184,18 +207,25 @@ impl<const D: usize> Sides<'_, D> {
     }
 }
 
+/// How far from the overlap each node of a facet may be, of which some have a multiplier.
+fn near(kept: &[usize]) -> impl Fn(usize) -> f64 {
+    |a| NEAR[usize::from(kept.contains(&a))]
+}
+
 impl Multipliers {
     /// The Φ_a with Σ Φ_a = 1 and ∫ Φ_a Ñ_c = 0 for the other nodes c that have one: all nodes of a
     /// facet that is covered, else those within the overlap or near. `None` without an overlap.
     ///
     /// A multiplier that hardly has a share of the overlap or a negative one, as that of a node of
     /// which the overlap is far, is left to the others: a force would push nowhere, or pull.
-    fn new(overlap: &Overlap, count: usize) -> Option<Self> {
+    fn new(overlap: &Overlap, count: usize, kept: &[usize]) -> Option<Self> {
         let samples = &overlap.samples;
         let share = |c: usize| samples.iter().map(|s| s.d_s * s.changed[c]).sum::<f64>();
         let by_share = |a: &usize, b: &usize| share(*a).total_cmp(&share(*b));
         let whole: f64 = samples.iter().map(|s| s.d_s).sum();
-        let pushes = |phi: &Vec<f64>| phi.iter().sum::<f64>() > LEAST * whole;
+        let pushes = |(a, phi): (&usize, &Vec<f64>)| {
+            phi.iter().sum::<f64>() > LEAST[usize::from(kept.contains(a))] * whole
+        };
         let mut nodes = overlap.near.clone();
         if nodes.is_empty() {
             // The other surface is narrower than this facet.
@@ -203,7 +233,7 @@ impl Multipliers {
         }
         while !nodes.is_empty() {
             if let Some(values) = dual(samples, &nodes)
-                && values.iter().all(pushes)
+                && nodes.iter().zip(&values).all(pushes)
             {
                 return Some(Self { nodes, values });
             }

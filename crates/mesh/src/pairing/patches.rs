@@ -5,7 +5,7 @@
 
 use super::Sides;
 use super::face::{Face, View, difference};
-use super::mortar::{NEAR, Overlap, SLIVER, Sample};
+use super::mortar::{Overlap, SLIVER, Sample};
 use super::polygon::{self, Polygon};
 use crate::Rule;
 use crate::geometry::{dot, interpolate};
@@ -32,6 +32,7 @@ impl<const D: usize> Sides<'_, D> {
         &self,
         face: &Face<D>,
         measure: &dyn Fn(&[f64; D]) -> f64,
+        limit: &dyn Fn(usize) -> f64,
     ) -> Overlap {
         let middle = face.middle();
         let view = View::new(face.at(middle), &face.outward(middle));
@@ -41,7 +42,7 @@ impl<const D: usize> Sides<'_, D> {
             .flat_map(|patch| self.patch_samples(face, &view, patch, measure));
         Overlap {
             samples: samples.collect(),
-            near: near(face, &view, &patches),
+            near: near(face, &view, &patches, limit),
         }
     }
 
@@ -159,9 +160,14 @@ fn seen<const D: usize>(face: &Face<D>, view: &View<D>, behind: bool) -> Vec<Pol
     Polygon::parts(&corners)
 }
 
-/// The nodes of a face that are within an overlap or near, measured in the reference face.
-fn near<const D: usize>(face: &Face<D>, view: &View<D>, patches: &[Patch]) -> Vec<usize> {
-    let limit = 0.5 * NEAR * face.unit();
+/// The nodes of a face that are within an overlap or near, by a limit for each, over half a side, measured in the reference face.
+fn near<const D: usize>(
+    face: &Face<D>,
+    view: &View<D>,
+    patches: &[Patch],
+    limit: &dyn Fn(usize) -> f64,
+) -> Vec<usize> {
+    let half = 0.5 * face.unit();
     let place = |patch: &Patch| {
         let corners = patch.polygon.corners().iter();
         let places: Option<Vec<_>> = corners.map(|&c| face.below(view, c)).collect();
@@ -169,6 +175,10 @@ fn near<const D: usize>(face: &Face<D>, view: &View<D>, patches: &[Patch]) -> Ve
     };
     let places: Vec<Polygon> = patches.iter().filter_map(place).collect();
     let nodes = face.places();
-    let is_near = |a: &usize| places.iter().any(|p| p.distance(nodes[*a]) <= limit);
+    let is_near = |a: &usize| {
+        places
+            .iter()
+            .any(|p| p.distance(nodes[*a]) <= half * limit(*a))
+    };
     (0..nodes.len()).filter(is_near).collect()
 }

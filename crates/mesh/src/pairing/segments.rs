@@ -3,7 +3,7 @@
 
 use super::Sides;
 use super::face::{self, Face, cross, difference, root};
-use super::mortar::{NEAR, Overlap, SLIVER, Sample};
+use super::mortar::{Overlap, SLIVER, Sample};
 use crate::gauss;
 use crate::geometry::interpolate;
 use std::collections::BTreeSet;
@@ -20,16 +20,18 @@ impl<const D: usize> Sides<'_, D> {
         &self,
         edge: &Face<D>,
         measure: &dyn Fn(&[f64; D]) -> f64,
+        limit: &dyn Fn(usize) -> f64,
     ) -> Overlap {
         let normals = self.normals_of(edge);
         let segments = self.segments(edge, &normals);
-        let near = |xi: &[f64; 2]| {
-            let mut parts = segments.iter();
-            parts.any(|s| xi[0] >= s.from - NEAR && xi[0] <= s.to + NEAR)
-        };
         let places = edge.places();
+        let is_near = |&a: &usize| {
+            let (xi, limit) = (places[a][0], limit(a));
+            let mut parts = segments.iter();
+            parts.any(|s| xi >= s.from - limit && xi <= s.to + limit)
+        };
         Overlap {
-            near: (0..places.len()).filter(|&a| near(&places[a])).collect(),
+            near: (0..places.len()).filter(is_near).collect(),
             samples: self.samples(edge, &normals, &segments, measure),
         }
     }

@@ -2,7 +2,8 @@
 
 use super::{facets, sum};
 use moreau_mesh::{
-    Axisymmetric, CellKind, Hypothesis, Mesh, MortarRow, Pairing, PlaneStrain, block2, uniform,
+    Axisymmetric, CellKind, Hypothesis, Mesh, MortarRow, MultiplierNodes, Pairing, PlaneStrain,
+    block2, uniform,
 };
 use std::collections::BTreeMap;
 
@@ -257,6 +258,57 @@ fn of_two_layers_the_nearer_is_met() {
                 (share - expected).abs() < 1e-12,
                 "{far} behind {near} at {x}: {share}"
             );
+        }
+    }
+}
+
+/// A surface that slides past the end of the other: a node that is beyond it by up to an eighth of a facet has a
+/// multiplier, and keeps the one that it has up to a quarter; all pass linear fields.
+#[test]
+fn a_node_goes_farther_to_lose_its_multiplier_than_to_gain_it() {
+    let block = |name, from: f64, y: [f64; 2]| {
+        let (x, y) = (uniform(from, from + 6.0, 6), uniform(y[0], y[1], 1));
+        block2(name, CellKind::Quad4, &x, &y).expect("valid")
+    };
+    let upper = block("upper", 0.0, [0.0, 1.0]);
+    let mesh = upper.joined(block("lower", -3.0, [-1.0, 0.0]));
+    let mesh = mesh.expect("valid");
+    let [own, other] =
+        ["upper.bottom", "lower.top"].map(|name| mesh.facet_group(name).expect("named"));
+    // The node that is beyond the lower body where that has moved to the left.
+    let (beyond, hypothesis) = ([3.0, 0.0], PlaneStrain::default());
+    let mut kept = MultiplierNodes::default();
+    for (moved, fresh, sliding) in [
+        (0.20, false, false),
+        (0.12, true, true),
+        (0.20, false, true),
+        (0.26, false, false),
+        (0.20, false, false),
+        (0.12, true, true),
+    ] {
+        let of_lower = mesh.node_group("lower").expect("named");
+        let positions: Vec<[f64; 2]> = (mesh.nodes().iter().enumerate())
+            .map(|(a, x)| match of_lower.binary_search(&a) {
+                Ok(_) => [x[0] - moved, x[1]],
+                Err(_) => *x,
+            })
+            .collect();
+        let rows_of = |kept: &mut MultiplierNodes| {
+            mesh.mortar_rows_keeping(&positions, (own, other), Pairing::Mortar, &hypothesis, kept)
+        };
+        let has = |rows: &[MortarRow<2>]| rows.iter().any(|c| mesh.nodes()[c.node] == beyond);
+        assert_eq!(
+            has(&rows_of(&mut MultiplierNodes::default())),
+            fresh,
+            "{moved}"
+        );
+        let rows = rows_of(&mut kept);
+        assert_eq!(has(&rows), sliding, "{moved}, sliding");
+        let area: f64 = rows.iter().map(|c| c.area).sum();
+        assert!((area - (3.0 - moved)).abs() < 1e-12, "{area}");
+        for c in rows {
+            let [mine, met] = [&c.own, &c.opposite].map(|w| sum(w, |a| positions[a][0]));
+            assert!((mine - met).abs() < 1e-12, "{mine} {met}");
         }
     }
 }

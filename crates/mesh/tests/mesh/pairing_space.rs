@@ -1,7 +1,7 @@
 //! Pairing of surfaces in space that do not match, wholly and partly covered, flat and curved.
 
 use super::{facets, sum};
-use moreau_mesh::{CellKind, Mesh, MortarRow, Pairing, Solid, block3, uniform};
+use moreau_mesh::{CellKind, Mesh, MortarRow, MultiplierNodes, Pairing, Solid, block3, uniform};
 use std::collections::BTreeMap;
 
 /// Sides of the footprint along x and z.
@@ -307,6 +307,53 @@ fn of_two_layers_the_nearer_is_met() {
         for c in mortar_rows {
             let only = c.opposite.iter().all(|(b, _)| met.binary_search(b).is_ok());
             assert!(only, "{far} is met behind {near}");
+        }
+    }
+}
+
+/// The end of a surface that moves to and fro past the nodes of another: what has a multiplier keeps it as long as it is
+/// near, whatever the cells; what it leaves is as if it had never been there.
+#[test]
+fn nodes_keep_their_multipliers_while_the_end_of_a_surface_passes() {
+    for kind in [
+        CellKind::Hex8,
+        CellKind::Hex20,
+        CellKind::Tet4,
+        CellKind::Tet10,
+    ] {
+        let mesh = body("upper", kind, [3, 2], |x| x)
+            .joined(body("lower", CellKind::Hex8, [4, 3], |x| x))
+            .expect("valid");
+        let [own, other] =
+            ["upper.bottom", "lower.top"].map(|name| mesh.facet_group(name).expect("named"));
+        let of_lower = mesh.node_group("lower").expect("named");
+        // How far the end at x = 6 is before the nodes at x = 4, over the side of a facet, 2.
+        let rows = |before: f64, kept: &mut MultiplierNodes| {
+            let moved = 2.0 + 2.0 * before;
+            let place = |(a, x): (usize, &[f64; 3])| match of_lower.binary_search(&a) {
+                Ok(_) => [x[0] - moved, x[1], x[2]],
+                Err(_) => *x,
+            };
+            let positions: Vec<[f64; 3]> = mesh.nodes().iter().enumerate().map(place).collect();
+            mesh.mortar_rows_keeping(&positions, (own, other), Pairing::Mortar, &Solid, kept)
+        };
+        let beyond = |rows: &[MortarRow<3>]| {
+            rows.iter()
+                .filter(|c| (mesh.nodes()[c.node][0] - 4.0).abs() < 1e-9)
+                .count()
+        };
+        let none = MultiplierNodes::default;
+        let (near, far) = (rows(0.06, &mut none()), rows(0.2, &mut none()));
+        assert!(beyond(&near) > 0, "{kind}");
+        assert_eq!(beyond(&far), 0, "{kind}");
+        let mut kept = none();
+        assert_eq!(rows(0.06, &mut kept), near, "{kind}");
+        assert_eq!(beyond(&rows(0.2, &mut kept)), beyond(&near), "{kind}");
+        // Beyond what keeps one, and beyond the whole facet.
+        for gone in [0.4, 1.1] {
+            rows(0.06, &mut kept);
+            assert_eq!(beyond(&rows(gone, &mut kept)), 0, "{kind}");
+            assert_eq!(rows(0.2, &mut kept), far, "{kind}");
         }
     }
 }
