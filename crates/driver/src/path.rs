@@ -10,3 +10,4 @@ pub(crate) mod loading;
 pub(crate) mod mechanism;
 mod predictor;
 pub(crate) mod ramp;
+mod rest;

@@ -3,7 +3,7 @@
 use crate::driver::Driver;
 use crate::model::load::{Loading, axis_letter};
 use crate::model::points::in_space;
-use nalgebra::{DMatrix, DVector, SVector};
+use nalgebra::{DMatrix, DVector, DVectorView, SVector};
 use std::collections::BTreeMap;
 
 /// What stops a rigid motion of a body, in the order in which they are counted on: each together
@@ -27,6 +27,9 @@ pub(crate) type Source = (Stopper, usize, usize);
 const SINGULAR: f64 = 1e-10;
 /// Components of unit vectors below this are rounding.
 pub(crate) const NOTHING: f64 = 1e-6;
+
+/// Terms of the series of a rotation, which leave rounding of one by a quarter turn.
+const TERMS: usize = 20;
 
 /// Rigid modes of all bodies and what resists them.
 pub(crate) struct Rows {
@@ -94,7 +97,7 @@ impl Rows {
     /// Independent free motions, each with the body that moves most.
     pub(crate) fn free(&self) -> Vec<(usize, String)> {
         let basis = reduced(null_space(&self.up_to(Stopper::Friction)));
-        let motion = |mode: nalgebra::DVectorView<'_, f64>| {
+        let motion = |mode: DVectorView<'_, f64>| {
             let part = |b: usize| mode.rows(self.modes * b, self.modes);
             let most = |a: &usize, b: &usize| part(*a).norm().total_cmp(&part(*b).norm());
             let body = (0..self.cells.len() + self.tools.len())
@@ -184,6 +187,53 @@ impl<'a, const D: usize> RigidModes<'a, D> {
         let relative = std::array::from_fn(|i| (x[i] - middle[i]) / mesh.size());
         let modes = self.driver.measure.rigid_modes(&relative);
         modes.into_iter().map(SVector::from).collect()
+    }
+
+    /// Motions of a node of the mesh in combinations of the modes of all bodies, in columns.
+    pub(crate) fn of_node(&self, node: usize, combinations: &DMatrix<f64>) -> Vec<SVector<f64, D>> {
+        let modes = self.at(node);
+        let first = self.count * self.body_of[node];
+        let motion = |column: DVectorView<'_, f64>| {
+            let all = modes.iter().enumerate();
+            all.map(|(k, mode)| mode * column[first + k]).sum()
+        };
+        combinations.column_iter().map(motion).collect()
+    }
+
+    /// The way of a node of the mesh that is at a place now \[mm\], where a motion in the modes of all bodies turns them as
+    /// far as it says: about the axis of its rotations, and not along its tangent.
+    pub(crate) fn way(
+        &self,
+        node: usize,
+        place: &SVector<f64, D>,
+        motion: &DVector<f64>,
+    ) -> SVector<f64, D> {
+        let (size, body) = (self.driver.mesh.size(), self.body_of[node]);
+        let own = motion.rows(self.count * body, self.count);
+        let modes =
+            |relative: &SVector<f64, D>| self.driver.measure.rigid_modes(&(*relative).into());
+        let translation = |modes: &[[f64; D]]| {
+            let pairs = modes.iter().zip(own.iter()).take(self.count.min(D));
+            pairs
+                .map(|(mode, q)| SVector::from(*mode) * *q)
+                .sum::<SVector<f64, D>>()
+        };
+        let rotation = |relative: &SVector<f64, D>| {
+            let modes = modes(relative);
+            let pairs = modes.iter().zip(own.iter()).skip(D);
+            pairs
+                .map(|(mode, q)| SVector::from(*mode) * *q)
+                .sum::<SVector<f64, D>>()
+        };
+        let mut arm = (place - SVector::from(self.middle[body])) / size;
+        let mut way = translation(&modes(&arm));
+        // exp(S) r = r + S r + S² r/2 + …, S r the rotation over the size.
+        for order in 1..=TERMS {
+            let turned = rotation(&arm) / order as f64;
+            way += turned;
+            arm = turned / size;
+        }
+        way
     }
 
     /// The number of the mode in which a moment turns a tool, in place of the rotation about the nearest of the axes.

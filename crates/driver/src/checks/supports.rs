@@ -42,7 +42,7 @@ pub struct Support {
 }
 
 /// Components of a contact point that resist a motion.
-fn resists<const D: usize>(status: Status) -> usize {
+pub(crate) fn resists<const D: usize>(status: Status) -> usize {
     match status {
         Status::Open => 0,
         Status::Slip => 1,
@@ -224,7 +224,11 @@ impl<const D: usize> Driver<D> {
         Some((rows.cells[body], motion))
     }
 
-    fn resisted(&self, loading: &Loading<D>, components: impl Fn(&Self, usize) -> usize) -> Rows {
+    pub(crate) fn resisted(
+        &self,
+        loading: &Loading<D>,
+        components: impl Fn(&Self, usize) -> usize,
+    ) -> Rows {
         let held = loading.displacement.range(..self.mesh_dofs());
         let held = held.map(|(&dof, _)| (dof / D, loading.directions.along(dof), (0, 0)));
         self.rows(held, loading, components)

@@ -48,6 +48,8 @@ pub(crate) struct Increment<'a, 'c, const D: usize> {
     held: Held<D>,
     /// Iterations in which the residual has to be halved, where there are other ways to try.
     pub(crate) patience: Option<usize>,
+    /// Whether nothing holds a body at the equilibrium that is looked for, which is then the nearest.
+    pub(crate) loose: bool,
     pub(crate) counts: Counts,
 }
 
@@ -126,6 +128,7 @@ impl<const D: usize> Driver<D> {
             chord: Chord::default(),
             held: Held::default(),
             patience: None,
+            loose: false,
             counts: Counts {
                 solves: 1,
                 before: (system.factorisations, system.conjugate),
@@ -465,6 +468,7 @@ impl<const D: usize> Driver<D> {
                 enough,
                 rounding,
                 proximal,
+                loose: increment.loose,
                 held: &mut increment.held,
             };
             let load = match &unsymmetric {

@@ -30,6 +30,10 @@ const PUSHED: f64 = 0.5;
 /// Part that a contact solution may keep of what increments are excused for as rounding, which is ample.
 const ROUNDED: f64 = 0.01;
 
+/// Contact forces over the stiffness of the interface times the motion that finds them, below which they are rounding
+/// where no load drives the bodies: what nothing holds is found anywhere, as far as the surfaces around it.
+const FAINT: f64 = 1e-9;
+
 /// An increment linearised at an iterate.
 pub(crate) struct Linearised<'a, const D: usize> {
     pub(crate) kinematics: &'a [Kinematics<D>],
@@ -43,6 +47,8 @@ pub(crate) struct Linearised<'a, const D: usize> {
     /// A proximal term c/2 |x|² of the motions x of the contacts \[N/mm\], where they are condensed; zero where nothing asks
     /// for one.
     pub(crate) proximal: f64,
+    /// Whether nothing holds a body: its solution is the nearest.
+    pub(crate) loose: bool,
     /// Residual that the contact solution may keep \[N\].
     pub(crate) enough: f64,
     /// Rounding of the forces that it is to balance \[N\].
@@ -135,16 +141,23 @@ impl<const D: usize> Driver<D> {
             };
             solve_tied(&mut problem, guess, (tolerance, enough), factor)
         };
-        let determined = |(s, z): (ContactSolution<D>, DVector<f64>)| match floats
-            && !self.is_held_by(loading, &s, (linearised.rounding, false))
-        {
-            true => Err(ContactError::Singular),
-            false => Ok((s, z)),
+        let size = (largest_load, linearised.rounding, stiffest);
+        let is_decided = |s: &ContactSolution<D>| {
+            !floats || self.is_held_by(loading, s, (faint(s, size), false))
+        };
+        let determined = |(s, z): (ContactSolution<D>, DVector<f64>)| match is_decided(&s) {
+            true => Ok((s, z)),
+            false => Err(ContactError::Singular),
         };
         let guess = linearised.guess;
         let from = |guessed: bool| solve(guess.filter(|_| guessed), 0.0, linearised.enough);
-        let (mut solution, z) = nearer(self.reach(kinematics), |(s, _)| farthest(s), from)
-            .and_then(determined)
+        let found = match linearised.loose {
+            true => Err(ContactError::Singular),
+            false => {
+                nearer(self.reach(kinematics), |(s, _)| farthest(s), from).and_then(determined)
+            }
+        };
+        let (mut solution, z) = found
             .or_else(|error| {
                 counts.undetermined |= error == ContactError::Singular;
                 nearest(error, (stiffest, linearised.rounding), |c| {
@@ -189,6 +202,17 @@ fn nearer<T>(
     match solve(false) {
         Ok(here) if motion(&here) < far => Ok(here),
         _ => solve(true),
+    }
+}
+
+/// Contact forces up to this, in a solution under a load, hold no body \[N\].
+fn faint<const D: usize>(
+    solution: &ContactSolution<D>,
+    (load, rounding, stiffest): (f64, f64, f64),
+) -> f64 {
+    match load <= rounding {
+        true => rounding.max(FAINT * stiffest * farthest(solution)),
+        false => rounding,
     }
 }
 

@@ -1,7 +1,6 @@
 //! The equilibrium at the end of an increment, found at once or in parts along its loading, and committed; not the
 //! iteration that finds it.
 
-use crate::assembly::cell_law::Stiffness;
 use crate::driver::Driver;
 use crate::error::IncrementError;
 use crate::linear::system::System;
@@ -9,7 +8,7 @@ use crate::model::load::Loading;
 use crate::newton::iterate::Candidate;
 use crate::report::counts::Counts;
 use crate::report::{IncrementReport, Iteration};
-use crate::vector::{SparseVector, largest};
+use crate::vector::largest;
 use std::ops::ControlFlow;
 
 /// Iterations in which a way to balance halves its residual: of 788 ways in the example decks that led there one took
@@ -40,6 +39,9 @@ impl<const D: usize> Driver<D> {
         watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<IncrementReport, IncrementError> {
         let mut candidate = self.equilibrium(system, (start, end), watch)?;
+        if candidate.counts.undetermined {
+            candidate = self.nearest(system, (start, end), candidate, watch)?;
+        }
         self.check_passage(&candidate.d_u, end)?;
         self.check_bodies(&candidate.d_u)?;
         let leap = self.check_snap(system, (start, end), &candidate, watch)?;
@@ -144,10 +146,7 @@ impl<const D: usize> Driver<D> {
         if snaps && is_known && !(self.may_leap && driven > 0.0) {
             return Err(IncrementError::Snap { moved });
         }
-        // What is committed is the last that was evaluated.
-        let none = SparseVector::default();
-        self.assemble(system, end, (&candidate.d_u, &none), Stiffness::None);
-        self.follow_surfaces(end, &candidate.d_u)?;
+        self.evaluate(system, end, &candidate.d_u)?;
         let leaps = |dof: &usize| candidate.d_u[*dof].abs() == moved;
         let node = (0..dofs).find(leaps).map_or(0, |dof| dof / D);
         Ok(snaps.then_some((node, moved)))

@@ -1,9 +1,9 @@
 //! Bodies within each other: nodes of one surface inside of the body behind another, and cells that share volume; not the
 //! gap between surfaces that face each other.
 
-use super::face::{self, Face};
+use super::face::{self, Face, difference};
 use super::tree::Tree;
-use crate::geometry::diagonal;
+use crate::geometry::{diagonal, dot};
 
 use crate::mesh::{Change, Facet, Mesh};
 use std::collections::{BTreeMap, BTreeSet, HashSet};
@@ -192,13 +192,39 @@ fn below<const D: usize>(x: &[f64; D], face: &Face<D>) -> f64 {
     face::along(x, &face.at(middle), &face.outward(middle))
 }
 
-/// Distance of a point to a face, along its normal, or to its nearest node where that passes by \[mm\].
+/// Distance of a point to a face, along its normal, or to its boundary where that passes by \[mm\].
 pub(super) fn distance<const D: usize>(x: &[f64; D], face: &Face<D>) -> f64 {
     // Lines that meet a face come from the side that it looks to.
     let n = face.outward(face.middle()).map(|v| -v);
     if let Some(eta) = face.hit(x, &n) {
         return face::along(x, &face.at(eta), &n).abs();
     }
-    let to = |y: &[f64; D]| diagonal(&[*x, *y]);
-    face.x.iter().map(to).fold(f64::INFINITY, f64::min)
+    let sides = boundary(face).into_iter();
+    let distances = sides.map(|side| to_side(x, side.map(|a| &face.x[a])));
+    distances.fold(f64::INFINITY, f64::min)
+}
+
+/// The ends of an edge in the plane, the sides of a face in space, through their middles: local indices of nodes.
+fn boundary<const D: usize>(face: &Face<D>) -> Vec<[usize; 2]> {
+    let corners = face.kind.corner_count();
+    if D == 2 {
+        return (0..corners).map(|a| [a, a]).collect();
+    }
+    let halves = |k: usize| {
+        let (from, to) = (k, (k + 1) % corners);
+        match face.x.len() > corners {
+            true => vec![[from, corners + k], [corners + k, to]],
+            false => vec![[from, to]],
+        }
+    };
+    (0..corners).flat_map(halves).collect()
+}
+
+/// Distance of a point to what is straight between two others \[mm\].
+fn to_side<const D: usize>(x: &[f64; D], [a, b]: [&[f64; D]; 2]) -> f64 {
+    let (along, from) = (difference(b, a), difference(x, a));
+    let length = dot(&along, &along).max(f64::MIN_POSITIVE);
+    let part = (dot(&along, &from) / length).clamp(0.0, 1.0);
+    let nearest = std::array::from_fn(|i| a[i] + part * along[i]);
+    diagonal(&[*x, nearest])
 }

@@ -357,3 +357,32 @@ fn nodes_keep_their_multipliers_while_the_end_of_a_surface_passes() {
         }
     }
 }
+
+/// A node below the middle of a crease, which lines across neither of the facets beside it meet: as deep as it is below the
+/// crease, and not as far as the nearest corner is.
+#[test]
+fn a_node_below_a_crease_is_as_deep_as_it_is_below_that() {
+    let kind = CellKind::Hex8;
+    for quadratic in [false, true] {
+        let kind = if quadratic { CellKind::Hex20 } else { kind };
+        let valley = |[x, y, z]: [f64; 3]| [x, y + 0.1 * (x - 3.0).abs(), z];
+        let mesh = body("upper", CellKind::Hex8, [2, 4], |x| x)
+            .joined(body("lower", kind, [2, 1], |x| x))
+            .and_then(|m| m.map(valley))
+            .expect("valid");
+        let of_upper = mesh.node_group("upper").expect("named");
+        let sunk = |(a, x): (usize, &[f64; 3])| match of_upper.binary_search(&a) {
+            Ok(_) => [x[0], x[1] - 0.002, x[2]],
+            Err(_) => *x,
+        };
+        let positions: Vec<[f64; 3]> = mesh.nodes().iter().enumerate().map(sunk).collect();
+        let [own, other] =
+            ["upper.bottom", "lower.top"].map(|name| mesh.facet_group(name).expect("named"));
+        let (node, depth, _) = mesh.overlap(&positions, (own, other)).expect("sunk");
+        assert!(
+            (depth - 0.002).abs() < 1e-9,
+            "{depth} at {:?}",
+            mesh.nodes()[node]
+        );
+    }
+}

@@ -61,3 +61,147 @@ tools = [{ name = "d", move = [0.05, 0.05] }]
         "{warnings:?}"
     );
 }
+
+/// The last value of a column.
+fn ended(of: &Simulation, column: &str) -> f64 {
+    *of.history().numbers(column).last().expect("an increment")
+}
+
+/// Two elastic strips bent on a roll by a punch that is withdrawn: they spring back to where they were, whatever the punch
+/// and the increments before let expect.
+#[test]
+fn elastic_strips_that_come_loose_lie_where_they_were() {
+    for strain in ["small", "finite"] {
+        let freed = finish(simulation(&format!(
+            r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+strain = "{strain}"
+[[mesh.block]]
+name = "lo"
+element = "quad8"
+x = [0, 30]
+y = [0, 1]
+cells = [15, 1]
+[[mesh.block]]
+name = "hi"
+element = "quad8"
+x = [0, 30]
+y = [1, 2]
+cells = [18, 1]
+[[mesh.group]]
+name = "lm"
+on = "lo.left"
+nearest = [0, 0]
+[[mesh.group]]
+name = "hm"
+on = "hi.left"
+nearest = [0, 2]
+[[material]]
+on = "lo"
+young = 200e3
+poisson = 0.3
+[[material]]
+on = "hi"
+young = 200e3
+poisson = 0.3
+[[tool]]
+name = "punch"
+cylinder = {{ center = [0, 8], radius = 6 }}
+[[tool]]
+name = "die"
+cylinder = {{ center = [25, -4], radius = 4 }}
+[[contact]]
+surface = "hi.top"
+against = "punch"
+friction = 0.1
+[[contact]]
+surface = "lo.bottom"
+against = "die"
+friction = 0.1
+[[contact]]
+surface = "hi.bottom"
+against = "lo.top"
+friction = 0.1
+[output]
+probes = ["lm", "hm"]
+[[step]]
+name = "bend"
+increments = 3
+fix = [{{ on = "lo.left", u = ["x"] }}, {{ on = "hi.left", u = ["x"] }}]
+tools = [{{ name = "punch", move = [0, -1] }}]
+[[step]]
+name = "release"
+increments = 5
+fix = [{{ on = "lo.left", u = ["x"] }}, {{ on = "hi.left", u = ["x"] }}]
+tools = [{{ name = "punch", move = [0, 2] }}]
+"#
+        )));
+        for column in ["u.lm.y", "u.hm.y"] {
+            let left = ended(&freed, column);
+            assert!(left.abs() < 2e-3, "{strain}, {column}: {left}");
+        }
+    }
+}
+
+/// A strip bent beyond its yield stress lies where it came loose, in whatever increments the punch is withdrawn.
+#[test]
+fn a_strip_comes_loose_in_the_same_place_in_any_increments() {
+    let places = [2, 16].map(|releases| {
+        let freed = finish(simulation(&format!(
+            r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+strain = "finite"
+[[mesh.block]]
+name = "s"
+element = "quad8"
+x = [0, 30]
+y = [0, 2]
+cells = [20, 2]
+[[mesh.group]]
+name = "mid"
+on = "s.left"
+nearest = [0, 0]
+[[mesh.group]]
+name = "tip"
+on = "s.right"
+nearest = [30, 0]
+[[material]]
+on = "s"
+young = 200e3
+poisson = 0.3
+yield-stress = 300.0
+hardening = {{ linear = 1000 }}
+[[tool]]
+name = "punch"
+cylinder = {{ center = [0, 8], radius = 6 }}
+[[tool]]
+name = "die"
+cylinder = {{ center = [25, -4], radius = 4 }}
+[[contact]]
+surface = "s.top"
+against = "punch"
+friction = 0.1
+[[contact]]
+surface = "s.bottom"
+against = "die"
+friction = 0.1
+[output]
+probes = ["mid", "tip"]
+[[step]]
+name = "bend"
+increments = 5
+fix = [{{ on = "s.left", u = ["x"] }}]
+tools = [{{ name = "punch", move = [0, -3] }}]
+[[step]]
+name = "release"
+increments = {releases}
+fix = [{{ on = "s.left", u = ["x"] }}]
+tools = [{{ name = "punch", move = [0, 2] }}]
+"#
+        )));
+        ["u.mid.y", "u.tip.y"].map(|column| ended(&freed, column))
+    });
+    for (few, many) in places[0].iter().zip(places[1]) {
+        assert!((few - many).abs() < 1e-3, "{places:?}");
+    }
+}

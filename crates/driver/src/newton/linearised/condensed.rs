@@ -5,7 +5,7 @@ use crate::error::IncrementError;
 use crate::interface::condensation::Condensation;
 use crate::interface::nearby::{are_few, closing, nearby, part, whole};
 use crate::linear::system::System;
-use crate::newton::linearised::{Answer, Linearised, ROUNDED, farthest, nearer, nearest};
+use crate::newton::linearised::{Answer, Linearised, ROUNDED, faint, farthest, nearer, nearest};
 use crate::report::counts::Counts;
 use crate::timings::Clock;
 use moreau_algebra::Interface;
@@ -123,11 +123,13 @@ impl<const D: usize> Driver<D> {
     /// Whether the contacts of a solution decide where the bodies are, if those are free without.
     fn decides(
         &self,
-        system: &System,
+        (system, load): (&System, &DVector<f64>),
         linearised: &Linearised<'_, D>,
         solution: &ContactSolution<D>,
     ) -> bool {
-        !system.floats || self.is_held_by(linearised.loading, solution, (linearised.rounding, true))
+        let size = (load.amax(), linearised.rounding, system.shift());
+        let least = faint(solution, size);
+        !system.floats || self.is_held_by(linearised.loading, solution, (least, true))
     }
 
     /// The solution of a problem, or with a proximal term where stresses make the structure unstable: there may be none
@@ -150,7 +152,7 @@ impl<const D: usize> Driver<D> {
     /// these are most, or where they have no solution that is one of all.
     fn among_nearby(&self, seam: &Seam<'_, D>, linearised: &Linearised<'_, D>) -> Option<Found<D>> {
         let kinematics = linearised.kinematics;
-        if linearised.proximal > 0.0 {
+        if linearised.proximal > 0.0 || linearised.loose {
             return None;
         }
         let reach = self.reach(kinematics);
@@ -179,7 +181,7 @@ impl<const D: usize> Driver<D> {
             if closing.is_empty() {
                 let all = whole(kinematics, (&among, &own), &left_out);
                 let is_near = farthest(&all) <= reach;
-                let is_found = is_near && self.decides(seam.system, linearised, &all);
+                let is_found = is_near && self.decides((seam.system, seam.load), linearised, &all);
                 return is_found.then_some(Found {
                     condensation,
                     own,
@@ -210,15 +212,17 @@ impl<const D: usize> Driver<D> {
             let from = |guessed: bool| method.approach(p, guess.filter(|_| guessed), enough);
             nearer(reach, farthest, from)
         };
-        let found = self.stable(problem, linearised, approach);
-        let found = found.or_else(|error| {
-            let step = self
-                .has_large_strains()
-                .then(|| method.step(problem, seam.forces.1));
-            step.flatten().ok_or(error)
-        });
+        let found = match linearised.loose {
+            true => Err(ContactError::Singular),
+            false => self.stable(problem, linearised, approach).or_else(|error| {
+                let step = self
+                    .has_large_strains()
+                    .then(|| method.step(problem, seam.forces.1));
+                step.flatten().ok_or(error)
+            }),
+        };
         let error = match &found {
-            Ok(found) if !self.decides(seam.system, linearised, found) => {
+            Ok(found) if !self.decides((seam.system, seam.load), linearised, found) => {
                 Some(ContactError::Singular)
             }
             Ok(_) => None,
