@@ -1,8 +1,7 @@
 //! Where a body lies that nothing holds: as near as it can be to where it was; not whether anything holds it.
 
 use crate::assembly::cell_law::Stiffness;
-use crate::checks::rigid::Stopper;
-use crate::checks::rigid::{RigidModes, null_space};
+use crate::checks::rigid::{RigidModes, Stopper, null_space};
 use crate::checks::supports::resists;
 use crate::driver::Driver;
 use crate::error::{IncrementError, ModelError};

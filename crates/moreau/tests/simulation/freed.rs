@@ -205,3 +205,72 @@ tools = [{{ name = "punch", move = [0, 2] }}]
         assert!((few - many).abs() < 1e-3, "{places:?}");
     }
 }
+
+/// A strip on two rolls, bent beside its middle by a punch, that nothing holds along its length: it stays where it was, and
+/// turns as little as it can.
+#[test]
+fn a_strip_on_rolls_stays_between_them_when_it_comes_loose() {
+    let places = [2, 10].map(|releases| {
+        let freed = finish(simulation(&format!(
+            r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+strain = "finite"
+[[mesh.block]]
+name = "s"
+element = "quad8"
+x = [-30, 30]
+y = [0, 2]
+cells = [30, 2]
+[[mesh.group]]
+name = "mid"
+on = "s.bottom"
+nearest = [0, 0]
+[[mesh.group]]
+name = "tip"
+on = "s.right"
+nearest = [30, 0]
+[[material]]
+on = "s"
+young = 200e3
+poisson = 0.3
+yield-stress = 300.0
+hardening = {{ linear = 1000 }}
+[[tool]]
+name = "punch"
+cylinder = {{ center = [2, 8], radius = 6 }}
+[[tool]]
+name = "die"
+cylinder = {{ center = [25, -4], radius = 4 }}
+[[tool]]
+name = "other"
+cylinder = {{ center = [-25, -4], radius = 4 }}
+[[contact]]
+surface = "s.top"
+against = "punch"
+friction = 0.1
+[[contact]]
+surface = "s.bottom"
+against = "die"
+friction = 0.1
+[[contact]]
+surface = "s.bottom"
+against = "other"
+friction = 0.1
+[output]
+probes = ["mid", "tip"]
+[[step]]
+name = "bend"
+increments = 8
+tools = [{{ name = "punch", move = [0, -3] }}]
+[[step]]
+name = "release"
+increments = {releases}
+tools = [{{ name = "punch", move = [0, 2] }}]
+"#
+        )));
+        ["u.mid.x", "u.mid.y", "u.tip.x", "u.tip.y"].map(|column| ended(&freed, column))
+    });
+    for (few, many) in places[0].iter().zip(places[1]) {
+        assert!((few - many).abs() < 0.05, "{places:?}");
+    }
+}
