@@ -4,7 +4,7 @@ mod parts;
 mod patch;
 
 use crate::{ContactError, Corner, Obstacle};
-use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
+use nalgebra::{DMatrix, DVector, Dyn, Matrix3, SVD, Vector2, Vector3};
 use patch::{Jet, Patch, handles};
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, PointDistance, RTree};
@@ -220,6 +220,35 @@ struct Face {
     normal: Point,
     /// From there into the face.
     inwards: Point,
+}
+
+/// The tangent planes of faces.
+struct Planes<'a> {
+    faces: &'a [Face],
+    normals: SVD<f64, Dyn, Dyn>,
+}
+
+impl<'a> Planes<'a> {
+    fn of(faces: &'a [Face]) -> Self {
+        let normals = DMatrix::from_fn(faces.len(), 3, |i, j| faces[i].normal[j]);
+        Self {
+            faces,
+            normals: normals.svd(true, true),
+        }
+    }
+
+    /// The shortest vector with these components along the normals.
+    fn solve(&self, components: &DVector<f64>) -> Option<Point> {
+        let met = self.normals.solve(components, 1e-6).ok()?;
+        Some(Point::new(met[0], met[1], met[2]))
+    }
+
+    /// From x to where they meet: a line, or a point.
+    fn meet(&self, x: &Point) -> Option<Point> {
+        let off = |face: &Face| (face.foot - x).dot(&face.normal);
+        let off = self.faces.iter().map(off);
+        self.solve(&DVector::from_iterator(self.faces.len(), off))
+    }
 }
 
 impl Triangulated {
@@ -604,19 +633,19 @@ impl Obstacle<3> for Triangulated {
         parts::of(self)
     }
     fn corner(&self, x: &Point, tolerance: f64) -> Option<Corner<3>> {
-        let faces = self.faces_at(&self.foot(x).jet.x, 2.0 * tolerance)?;
-        // To where their planes meet: a line, or a point.
-        let normals = DMatrix::from_fn(faces.len(), 3, |i, j| faces[i].normal[j]);
-        let off = |face: &Face| (face.foot - x).dot(&face.normal);
-        let off = DVector::from_iterator(faces.len(), faces.iter().map(off));
-        let planes = normals.svd(true, true);
-        let met = |values: &DVector<f64>| {
-            let met = planes.solve(values, 1e-6).ok()?;
-            Some(Point::new(met[0], met[1], met[2]))
+        let foot = self.foot(x);
+        let depth = -self.side * foot.distance(self.size);
+        // Behind a corner its faces are all as far away, and their planes meet there.
+        let near = match depth > tolerance {
+            true => x + Planes::of(&self.faces_at(x, depth + 2.0 * tolerance)?).meet(x)?,
+            false => foot.jet.x,
         };
-        let way = met(&off)?;
+        let faces = self.faces_at(&near, 2.0 * tolerance)?;
+        let planes = Planes::of(&faces);
+        let way = planes.meet(x)?;
         // As far from all normals.
-        let axis = met(&DVector::repeat(faces.len(), self.side))?.try_normalize(1e-6)?;
+        let equal = DVector::repeat(faces.len(), self.side);
+        let axis = planes.solve(&equal)?.try_normalize(1e-6)?;
         let aside = (way - axis * axis.dot(&way)).norm();
         let angle = |face: &Face| axis.angle(&(face.normal * self.side));
         let half_angle = faces.iter().map(angle).fold(0.0, f64::max);

@@ -20,7 +20,7 @@ use crate::settings::{Nesting, Seam, Settings};
 use crate::timings::Timings;
 use crate::vector::SparseVector;
 use moreau_algebra::SharedTeam;
-use moreau_contact::ContactSolution;
+use moreau_contact::{ContactSolution, Corner};
 use moreau_laws::{Local, Status};
 use moreau_mesh::Mesh;
 use nalgebra::{SVector, Vector3};
@@ -68,6 +68,8 @@ pub struct Driver<const D: usize> {
     pub(crate) footing: Footing<D>,
     /// Where shears of given limits act in the increment at hand.
     pub(crate) grips: Vec<Grip>,
+    /// The sharp corners of tools that contact points touched at the start of the increment at hand, and have not left.
+    pub(crate) corners: Vec<Option<Corner<D>>>,
     pub(crate) settings: Settings<D>,
     pub(crate) state: State<D>,
     pub(crate) system: Option<System>,
@@ -146,6 +148,7 @@ impl<const D: usize> Driver<D> {
             tools: model.tools,
             contacts: model.contacts,
             grips: vec![Grip::default(); model.points.len()],
+            corners: vec![None; model.points.len()],
             points: model.points,
             footing: Footing::default(),
             settings,

@@ -2,6 +2,7 @@
 //! them; not its solution.
 
 pub(crate) mod condensation;
+pub(crate) mod corners;
 pub(crate) mod elimination;
 pub(crate) mod free;
 pub(crate) mod grips;

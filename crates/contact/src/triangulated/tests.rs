@@ -545,11 +545,12 @@ fn a_cone_ends_in_its_tip() {
     }
 }
 
-/// Straight ahead of an edge or a corner of a cube, at it, and beside it; from within there are none.
+/// Straight ahead of an edge or a corner of a cube, at it, behind it, and beside it; in the middle there are none, and of a
+/// hollow none at all.
 #[test]
 fn edges_and_corners_of_a_cube_have_their_cones() {
     let cube = surface(&cube());
-    for out in [0.0, 0.2] {
+    for out in [0.0, 0.2, -0.2, -1e-5] {
         let edge = cube.corner(&Point::new(1.0 + out, 0.3, 1.0 + out), 1e-6);
         let edge = edge.expect("an edge");
         assert!((edge.axis - Point::new(1.0, 0.0, 1.0).normalize()).norm() < 1e-12);
@@ -563,12 +564,16 @@ fn edges_and_corners_of_a_cube_have_their_cones() {
         assert!((corner.half_angle.cos() - 3f64.sqrt().recip()).abs() < 1e-12);
         assert!(corner.edge.is_none());
     }
-    for beside in [[1.0, 0.3, 1.0 - 1e-5], [1.0, 0.3, 1.2], [0.4, 0.4, 1.0]] {
+    let beside = [[1.0, 0.3, 1.0 - 1e-5], [1.0, 0.3, 1.2], [0.4, 0.4, 1.0]];
+    let within = [[0.8, 0.3, 0.8 - 1e-5], [0.5, 0.3, 0.5], [0.5; 3]];
+    for beside in [beside, within].concat() {
         assert_eq!(cube.corner(&beside.into(), 1e-6), None);
     }
-    let rounded = Point::new(1.0 + 3e-7, 0.3, 1.0 - 2e-7);
-    let at = cube.corner(&rounded, 1e-6).expect("an edge");
-    assert!((at.position - Point::new(1.0, 0.3, 1.0)).norm() < 1e-12);
+    for out in [0.0, -0.2] {
+        let rounded = Point::new(1.0 + out + 3e-7, 0.3, 1.0 + out - 2e-7);
+        let at = cube.corner(&rounded, 1e-6).expect("an edge");
+        assert!((at.position - Point::new(1.0, 0.3, 1.0)).norm() < 1e-12);
+    }
     let hollow = cube.hollow();
     assert_eq!(hollow.corner(&Point::new(1.0, 0.3, 1.0), 1e-6), None);
 }

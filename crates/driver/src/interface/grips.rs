@@ -12,6 +12,7 @@ const CLOSED: f64 = 1e-6;
 impl<const D: usize> Driver<D> {
     /// At the start of an increment: of the first where the undeformed bodies touch.
     pub(crate) fn begin_grips(&mut self, system: &System, start: &Loading<D>) {
+        self.begin_corners();
         let none = CLOSED * self.mesh.size();
         let before = self.state.contacts.iter();
         self.grips = match self.state.increment {
@@ -28,13 +29,14 @@ impl<const D: usize> Driver<D> {
         };
     }
 
-    /// Shears of given limits act where bodies have come to press.
+    /// Shears of given limits act where bodies have come to press, and what slides leaves its corner.
     pub(crate) fn grip(&mut self, force: &[Local<D>]) {
         for (grip, t) in self.grips.iter_mut().zip(force) {
             if t[0] > 0.0 {
                 *grip = grip.pressed();
             }
         }
+        self.leave_corners(force);
     }
 
     /// They act everywhere: what opens is found later. Whether that changes anything.

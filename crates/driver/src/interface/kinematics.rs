@@ -1,53 +1,21 @@
 //! Frames, gaps, slips and forces of the contact points at an iterate; not how it is found.
 
 use crate::driver::Driver;
+use crate::interface::corners::at_corner;
 use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Kinematics, Turn, in_space, turned};
 use crate::vector::SparseVector;
 use crate::vector::subspace::Subspace;
-use moreau_contact::Corner;
 use moreau_laws::{Friction, Local};
 use nalgebra::{SMatrix, SVector};
-
-/// How far sideways of a sharp corner a point may be to be at it, over the size of the mesh: what
-/// decides between its two faces is then rounding, and not the model.
-const AHEAD: f64 = 1e-6;
-
-/// Cosine of the angle to the normal of a surface within which a motion presses on it.
-const PRESSING: f64 = 0.5;
 
 /// Slip that is rounding, over the size of the mesh.
 pub(crate) const NO_SLIP: f64 = 1e-11;
 
 /// Part of a force that is rounding.
 const NO_FORCE: f64 = 1e-9;
-
-/// Of a point at a sharp corner of its tool, which sees it at x and has turned: any normal of the cone, as friction about its
-/// axis that holds as far as the cone reaches.
-fn at_corner<const D: usize>(
-    p: &ContactPoint<D>,
-    corner: &Corner<D>,
-    (x, turn): (&SVector<f64, D>, &Turn),
-    slip: &SVector<f64, D>,
-    free: &Subspace<D>,
-) -> Kinematics<D> {
-    let gap = corner.axis.dot(&(x - corner.position)) - p.offset;
-    let law = p.law.at_corner(corner.half_angle);
-    let blunt = ContactPoint { law, ..p.clone() };
-    // Slip along an edge would carry the point across it, where friction against both were one.
-    let across = corner.edge.map(|edge| {
-        let edge = Subspace::spanned(&[turned(edge, turn)]);
-        free.common(&edge.complement())
-    });
-    let axis = turned(corner.axis, turn);
-    let free = across.as_ref().unwrap_or(free);
-    Kinematics {
-        at_corner: true,
-        ..Kinematics::new(&blunt, &axis, gap, slip, free)
-    }
-}
 
 impl<const D: usize> Driver<D> {
     /// Where a tool is at the end of an increment: as it is told, or moved by what it was driven to.
@@ -118,7 +86,6 @@ impl<const D: usize> Driver<D> {
         d_u: &[f64],
     ) -> Vec<Kinematics<D>> {
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
-        let size = self.mesh.size();
         let at = |(i, (p, motion_row)): (usize, (&ContactPoint<D>, &RelativeMotionRow<D>))| {
             let free = &motion_row.free(p.node, |a| system.free_at(a));
             if p.law.is_tie() {
@@ -147,21 +114,12 @@ impl<const D: usize> Driver<D> {
             let place = motion_row.relative(now);
             let lever = self.lever(number, end, &place);
             let x = tool.seen(place, &turn);
+            let from = self.seen(p, motion_row);
             let slip = match follows {
-                true => turned(obstacle.way(&self.seen(p, motion_row), &x), &turn),
+                true => turned(obstacle.way(&from, &x), &turn),
                 false => slip,
             };
-            // A tool that presses its corner on a node has it, wherever the node will be: it has not moved yet.
-            let comes_on = || {
-                let from = self.seen(p, motion_row);
-                let (way, facing) = (x - from, turned(p.facing, &-turn));
-                let still = p.own.iter().all(|&(a, _)| moved(a).norm() == 0.0);
-                let presses = still && way.dot(&facing) > PRESSING * way.norm();
-                presses
-                    .then(|| obstacle.corner(&from, AHEAD * size))
-                    .flatten()
-            };
-            let Some(corner) = obstacle.corner(&x, AHEAD * size).or_else(comes_on) else {
+            let Some(corner) = self.corner(i, obstacle, (&from, &x)) else {
                 let gap = p.gap(obstacle, |a| tool.seen(now(a) - at, &turn));
                 let n = turned(obstacle.normal(&x), &turn);
                 let mut kinematics = Kinematics::new(p, &n, gap, &slip, free);
@@ -178,7 +136,7 @@ impl<const D: usize> Driver<D> {
                 }
                 return kinematics.between_forces(self.grips[i].area(&p.law, motion_row.area));
             };
-            let mut kinematics = at_corner(p, &corner, (&x, &turn), &slip, free);
+            let mut kinematics = at_corner(p, &corner, (&x, &turn), free);
             kinematics.lever = lever;
             kinematics
         };

@@ -167,7 +167,6 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 opposite: opposite.into(),
             });
         }
-        let normals = self.mesh.node_normals(self.mesh.nodes(), facets);
         let parts = tool.map_or(0, |tool| self.tools[tool].parts.len()).max(1);
         let points = (0..parts).flat_map(|part| shares.iter().map(move |s| (part, s.clone())));
         for (part, PositiveShare { share, own }) in points {
@@ -177,7 +176,6 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 part,
                 contact: self.contacts.len(),
                 law,
-                facing: normals[&share.node].into(),
                 axis: None,
                 offset: 0.0,
                 // A node on the axis bears nothing, to rounding of either sign.

@@ -98,8 +98,6 @@ pub(crate) struct ContactPoint<const D: usize> {
     pub(crate) contact: usize,
     /// Between tractions.
     pub(crate) law: Friction,
-    /// Outward unit normal of its surface, undeformed.
-    pub(crate) facing: SVector<f64, D>,
     /// The first tangent is along its projection on the surface, if it is given.
     pub(crate) axis: Option<SVector<f64, D>>,
     /// Distance to what is opposite at which it touches \[mm\]: the gap is the distance less this.
@@ -436,7 +434,6 @@ mod tests {
             part: 0,
             contact: 0,
             law: Coulomb::new(0.1).expect("a coefficient").into(),
-            facing: SVector::zeros(),
             axis: None,
             offset: 0.0,
             area: 1.0,

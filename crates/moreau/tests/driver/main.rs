@@ -33,5 +33,6 @@ mod surfaces;
 mod team;
 mod thermal;
 mod ties;
+mod tips;
 mod tools;
 mod triangles;
