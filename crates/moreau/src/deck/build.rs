@@ -206,7 +206,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     let supports = supports(&driver, (deck, &gaps), &stages, &groups, findings);
     conditions::doubts(deck, &gaps, findings);
     conditions::heat(deck, &groups, findings);
-    amplitudes::check(deck, findings);
+    amplitudes::check(deck, &groups, findings);
     conditions::inner_surfaces(deck, &groups, findings);
     slips::warn(deck, &groups, surface, findings);
     flat::warn(deck, &groups, findings);

@@ -441,6 +441,14 @@ pub struct ConditionEntry {
     pub span: Range<usize>,
 }
 
+impl ConditionEntry {
+    /// Share of the value that acts at the end of the step.
+    pub(crate) fn last_share(&self) -> f64 {
+        let last = self.table.as_ref().and_then(|t| t.value.last());
+        last.map_or(1.0, |row| row[1])
+    }
+}
+
 /// A turn of a tool.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TurnEntry {

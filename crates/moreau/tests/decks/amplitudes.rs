@@ -154,3 +154,119 @@ fn a_motion_with_a_table_is_written_out_whole() {
     );
     assert_eq!(again.resolved(), once);
 }
+
+/// Two steps on a block under a tool: what is said of them.
+fn steps(first: &str, second: &str) -> String {
+    let sides = "fix = [{ on = \"b.bottom\", u = [\"y\"] }, { on = \"b.left\", u = [\"x\"] }]";
+    let deck = format!(
+        r#"
+units = "mm-N-MPa"
+analysis = "plane-strain"
+mesh.block = [{{ name = "b", element = "quad8", x = [0, 10], y = [0, 10], cells = [2, 2] }}]
+mesh.group = [{{ name = "part", on = "b.right", y = [5, 10] }}]
+material = [{{ on = "b", young = 2e5, poisson = 0.3 }}]
+tool = [{{ name = "t", plane = {{ point = [0, 10], normal = [0, -1] }} }}]
+contact = [{{ surface = "b.top", against = "t", friction = 0.1 }}]
+[[step]]
+name = "a"
+increments = 1
+{sides}
+{first}
+[[step]]
+name = "b"
+increments = 4
+{sides}
+{second}
+"#
+    );
+    let (_, problem, findings) = open(&deck);
+    assert_eq!(problem.is_none(), findings.errors() > 0);
+    super::flat(&findings.render("deck.toml", &deck, false))
+}
+
+/// What a support or a motion takes is known in the run only: beneath a table it would go off in proportion.
+#[test]
+fn a_table_on_what_the_step_before_held_or_left_free_is_refused() {
+    let there = "table = [[0, 0], [0.5, 1], [1, 0]]";
+    let tool = |what: &str| format!("tools = [{{ name = \"t\", {what} }}]");
+    let load = |what: &str| format!("load = [{{ on = \"b.right\", {what} }}]");
+    let pull = "move = [{ on = \"b.right\", u = { x = 0.01 } }]";
+    let moved = tool("move = [0, -0.005]");
+    let pushed = tool("force = [0, -100]");
+    let turned = tool("turn = 0.1");
+    let varied = |what: &str| format!("{what}, {there}");
+    let held = "the step before holds or moves it along";
+    let free = "the step before leaves it free";
+    for (first, second, words) in [
+        (&moved, tool(&varied("force = [0, -20]")), held),
+        // Not named, it stays where it is.
+        (&"".to_owned(), tool(&varied("force = [0, -20]")), "along y"),
+        (&turned, tool(&varied("moment = 5")), "holds or turns it"),
+        (&pull.to_owned(), load(&varied("force = [-20, 0]")), held),
+        (
+            &pull.to_owned(),
+            load(&varied("traction = [-2, 0]")),
+            "along x",
+        ),
+        (&pull.to_owned(), load(&varied("pressure = 2")), held),
+        (&pushed, tool(&varied("move = [0, -0.1]")), free),
+        (
+            &"".to_owned(),
+            format!("move = [{{ on = \"b.right\", u = {{ x = 0.01 }}, {there} }}]"),
+            free,
+        ),
+    ] {
+        let said = steps(first, &second);
+        let remedy = "in a step without a table before this one";
+        for word in [words, remedy, "known in the run only", "deck.toml:18"] {
+            assert!(
+                said.contains(word),
+                "{word:?} of {first} {second} in {said}"
+            );
+        }
+    }
+    // With a wrong beginning it is not told that it jumps from nothing.
+    let wrong = steps(
+        &moved,
+        &tool("force = [0, -2000], table = [[0, 0.5], [1, 1]]"),
+    );
+    assert!(wrong.contains(held) && !wrong.contains("jump"), "{wrong}");
+}
+
+/// What acts at the end of the step before is known: a force, a place, or nothing.
+#[test]
+fn a_table_on_what_the_step_before_told_begins_with_that() {
+    let varied = "table = [[0, 0.5], [0.5, 1], [1, 0]]";
+    let tool = |what: &str| format!("tools = [{{ name = \"t\", {what} }}]");
+    let pull = "move = [{ on = \"b.right\", u = { x = 0.01 } }]";
+    let load = "load = [{ on = \"b.right\", force = [0, 20], table = [[0, 0], [1, 1]] }]";
+    for (first, second) in [
+        (
+            tool("force = [0, -100]"),
+            tool(&format!("force = [0, -200], {varied}")),
+        ),
+        (
+            tool("force = [0, -100], move = [0.1, 0]"),
+            tool(&format!("force = [0, -200], move = [0.2, 0], {varied}")),
+        ),
+        (
+            tool("move = [0, -0.1]"),
+            tool(&format!("move = [0, -0.2], {varied}")),
+        ),
+        (tool("moment = 5"), tool(&format!("moment = 10, {varied}"))),
+        // Held or moved along another direction, and still held along this one.
+        (pull.to_owned(), load.to_owned()),
+        (
+            pull.to_owned(),
+            format!("{pull}\n{}", load.replace("0, 20]", "20, 20]")),
+        ),
+        // A part of what was moved, with a name of its own.
+        (
+            pull.to_owned(),
+            "move = [{ on = \"part\", u = { x = 0.02 }, table = [[0, 0.5], [1, 1]] }]".to_owned(),
+        ),
+    ] {
+        let said = steps(&first, &second);
+        assert!(!said.contains("error: "), "{first} {second}: {said}");
+    }
+}

@@ -73,7 +73,7 @@ pub(super) fn stages<const D: usize>(deck: &Deck, groups: &Groups<D>) -> Vec<Sta
 }
 
 /// Whether any step drives a tool along an axis by a force: it then does where that force is zero too.
-fn drives(deck: &Deck, tool: &str, axis: usize) -> bool {
+pub(super) fn drives(deck: &Deck, tool: &str, axis: usize) -> bool {
     let all = deck.steps.iter().flat_map(|s| &s.conditions);
     let mut own = all.filter(|c| c.on.value == tool);
     own.any(|c| matches!(&c.action, Action::Push(force, _) if force.get(axis).is_some_and(|f| *f != 0.0)))
