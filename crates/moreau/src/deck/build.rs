@@ -205,6 +205,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     ties::warn(deck, &driver, findings);
     let supports = supports(&driver, (deck, &gaps), &stages, &groups, findings);
     conditions::doubts(deck, &gaps, findings);
+    conditions::driven::<D>(deck, findings);
     conditions::heat(deck, &groups, findings);
     amplitudes::check(deck, &groups, findings);
     conditions::inner_surfaces(deck, &groups, findings);

@@ -3,6 +3,7 @@
 mod along;
 mod amplitudes;
 mod axes;
+mod driven;
 mod flat;
 mod heat;
 mod includes;

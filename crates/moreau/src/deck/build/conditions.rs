@@ -3,10 +3,11 @@
 use super::Stage;
 use super::groups::Groups;
 use crate::deck::At;
-use crate::deck::entries::{Action, Deck, FieldEntry, TurnEntry};
-use crate::deck::finding::Findings;
+use crate::deck::entries::{Action, ConditionEntry, Deck, FieldEntry, StepEntry, TurnEntry};
+use crate::deck::finding::{Class, Findings};
 use crate::driver::{Axis, LeastGap, Step};
 use crate::mesh::Facet;
+use crate::numbers::place;
 use std::collections::HashSet;
 
 const AXES: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
@@ -158,6 +159,61 @@ pub(super) fn doubts<const D: usize>(deck: &Deck, gaps: &[LeastGap<D>], findings
             "no load",
         );
     }
+}
+
+/// Motions of tools along axes in which a force drives them, and those that take back what a force drove without saying
+/// that the force goes.
+pub(super) fn driven<const D: usize>(deck: &Deck, findings: &mut Findings) {
+    const AXES: [&str; 3] = ["x", "y", "z"];
+    for (number, step) in deck.steps.iter().enumerate() {
+        for condition in &step.conditions {
+            let on = &condition.on.value;
+            match &condition.action {
+                Action::Push(_, Some(u)) => {
+                    let Some(axis) = (0..D).find(|&i| u[i] != 0.0 && drives(deck, on, i)) else {
+                        continue;
+                    };
+                    let message = format!(
+                        "a motion of \"{on}\" along {0}, beside a force, though another step gives it a force along {0}",
+                        AXES[axis]
+                    );
+                    let label = "the force would decide how far it goes, being zero";
+                    let help = "put 0 there, or move it in a step without a force";
+                    let error = findings.error_with(&condition.span, message, label, help);
+                    error.about(Class::Steps);
+                }
+                Action::Tool(Some(u), _) if u.iter().any(|u| *u != 0.0) => {
+                    let before = deck.steps[..number].iter().rev();
+                    let Some((force, name)) = before.flat_map(|s| driven_in(s, on)).next() else {
+                        continue;
+                    };
+                    let Some(axis) = (0..D).find(|&i| force[i] != 0.0 && u[i] == 0.0) else {
+                        continue;
+                    };
+                    let message = format!(
+                        "step \"{}\" takes \"{on}\" back to 0 along {}, where a force drove it in step \"{name}\": what it \
+                         bears there goes with that",
+                        step.name.value, AXES[axis]
+                    );
+                    let label =
+                        format!("force = {} keeps it, zeros let go of it", place(&force, 6));
+                    findings.warning(&condition.span, message, label);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+/// The force at the end of a step that moves or drives a tool, and the name of the step: zeros where it moves it.
+fn driven_in<'a>(step: &'a StepEntry, on: &str) -> Option<(Vec<f64>, &'a str)> {
+    let of = |c: &ConditionEntry| match &c.action {
+        Action::Push(force, _) => Some(force.iter().map(|f| f * c.last_share()).collect()),
+        Action::Tool(Some(u), _) => Some(vec![0.0; u.len()]),
+        _ => None,
+    };
+    let mut own = step.conditions.iter().filter(|c| c.on.value == on);
+    Some((own.find_map(of)?, &step.name.value))
 }
 
 /// Temperatures that expand nothing, and expansions that no temperature reaches.
