@@ -393,6 +393,16 @@ impl<const D: usize> Driver<D> {
         loading.held_at(node).part(&left)
     }
 
+    /// Sum of the reactions of a group that the supports of a loading let go \[N\]: forces that a step to it takes off in
+    /// proportion.
+    ///
+    /// # Errors
+    /// An unknown group.
+    pub fn released(&self, group: &str, end: &Loading<D>) -> Result<SVector<f64, D>, ModelError> {
+        let of = |node| end.free_at(node).part(&self.nodal_reaction(node));
+        Ok(self.mesh.node_group(group)?.into_iter().map(of).sum())
+    }
+
     /// Sum of the forces that a tool exerts on the body \[N\].
     ///
     /// # Errors

@@ -16,7 +16,7 @@ const FIXED: [Described; 20] = [
     Described::new(
         "time",
         Unit::None,
-        "Steps done, with the part of the one under way: 1.5 is halfway through the second.",
+        "Steps done, with the part of the one under way: 1.5 is halfway through the second. It falls where the load of a step does.",
     ),
     Described::new(
         "newton_iterations",
@@ -105,8 +105,9 @@ const NAMED: &str = "NAME is a group that a step fixes or moves, a tool, a surfa
 const FORCE: Described = Described::new(
     "force.NAME.AXIS",
     Unit::Force,
-    "Force on the body: of a group along the directions in which the step holds or moves it, of a tool, of a surface by \
-     its own contacts and ties, and of a probe by all contacts and what holds it. Loads are no part of it. Groups that share \
+    "Force on the body: of a group along the directions in which the step holds or moves it, and what is left of the \
+     reactions that a step lets go; of a tool, of a surface by its own contacts and ties, and of a probe by all contacts \
+     and what holds it or is left of that. Loads are no part of it. Groups that share \
      nodes with one that is held share its reactions. Under axial symmetry x is the sum of radial forces, all around.",
 )
 .when(NAMED);

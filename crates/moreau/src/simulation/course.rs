@@ -106,15 +106,16 @@ impl<const D: usize> Course<D> {
         if let Some((error, _)) = &self.failed {
             return Err(error.clone());
         }
-        while let Some(stage) = self.setup.stages.get(self.stage) {
-            let (driver, trace) = (&mut self.setup.driver, &mut self.trace);
+        while !self.is_done() {
             let mut ramp = match self.ramp.take() {
                 Some(ramp) => ramp,
-                None => match driver.begin(&stage.step, stage.increments) {
+                None => match self.begin() {
                     Ok(ramp) => ramp,
                     Err(error) => return Err(self.fail(deck, IncrementError::from(error))),
                 },
             };
+            let stage = &self.setup.stages[self.stage];
+            let (driver, trace) = (&mut self.setup.driver, &mut self.trace);
             if ramp.is_done() {
                 // Its loads were to grow until nothing carries them.
                 let step = stage.step.name().to_owned();
@@ -143,6 +144,19 @@ impl<const D: usize> Course<D> {
             }
         }
         Ok(None)
+    }
+
+    /// The step at hand before its first increment.
+    fn begin(&mut self) -> Result<Ramp<D>, ModelError> {
+        let (driver, stages) = (&self.setup.driver, &self.setup.stages);
+        let Stage {
+            step, increments, ..
+        } = &stages[self.stage];
+        let before = self.stage.checked_sub(1).map(|k| &stages[k].directions[..]);
+        let ramp = driver.begin(step, *increments)?;
+        let end = driver.loading(step)?;
+        self.history.begin(driver, &end, before.unwrap_or_default());
+        Ok(ramp)
     }
 
     /// Takes note of a converged increment, and of the end of its step if that is it.

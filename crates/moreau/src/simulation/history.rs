@@ -1,9 +1,10 @@
 //! The history: a row for each converged increment; contact points have a table of their own.
 
 use crate::deck::{Setup, Unit, Units, columns};
-use crate::driver::{Driver, IncrementReport, ModelError, Numbers, PointField, Saved};
+use crate::driver::{Driver, IncrementReport, Loading, ModelError, Numbers, PointField, Saved};
 use crate::mandel::{Sym2, von_mises};
 use crate::table::{Column, Table, Values};
+use nalgebra::SVector;
 
 /// Where an increment is.
 pub(super) struct Place<'a> {
@@ -11,6 +12,19 @@ pub(super) struct Place<'a> {
     pub(super) stage: usize,
     /// Directions in which the step holds or moves each group.
     pub(super) directions: &'a [Vec<usize>],
+}
+
+/// Index of the column `time`.
+const TIME: usize = 2;
+
+/// What a load factor rounds, as a part of its step, where the structure carries no more.
+const ROUNDING: f64 = 1e-9;
+
+/// Reaction of a group whose supports were let go, by component: a force that goes in proportion to the step.
+#[derive(Debug, Clone, Default, PartialEq)]
+struct LetGo {
+    at_start: Vec<f64>,
+    now: Vec<f64>,
 }
 
 /// How a row is made, and those that were.
@@ -21,6 +35,8 @@ pub(super) struct History {
     surfaces: Vec<String>,
     /// Whether there are moments of tools.
     moments: bool,
+    /// Of every held group, and then of every surface.
+    let_go: Vec<LetGo>,
     table: Table,
 }
 
@@ -36,6 +52,13 @@ impl History {
         };
         Self {
             table: Table::new(columns(setup).into_iter().map(column).collect()),
+            let_go: vec![
+                LetGo {
+                    at_start: vec![0.0; D],
+                    now: vec![0.0; D],
+                };
+                setup.held.len() + setup.surfaces.len()
+            ],
             held: setup.held.clone(),
             tools: setup.tools.clone(),
             surfaces: setup.surfaces.clone(),
@@ -47,8 +70,40 @@ impl History {
         &self.table
     }
 
+    /// Takes note of the supports that a step to a loading lets go, beside what is left of those before. The directions
+    /// are those in which the step before held each group, all where there is none.
+    pub(super) fn begin<const D: usize>(
+        &mut self,
+        driver: &Driver<D>,
+        end: &Loading<D>,
+        directions: &[Vec<usize>],
+    ) {
+        let groups = self.held.iter().map(|[_, nodes]| nodes);
+        let groups = groups.chain(&self.surfaces);
+        for (k, (group, own)) in groups.zip(&mut self.let_go).enumerate() {
+            let force = driver
+                .released(group, end)
+                .unwrap_or_else(|_| SVector::zeros());
+            let held = |i: usize| directions.get(k).is_none_or(|d| d.contains(&i));
+            own.at_start.clone_from(&own.now);
+            (0..D)
+                .filter(|&i| held(i))
+                .for_each(|i| own.at_start[i] += force[i]);
+        }
+    }
+
+    /// Names of the held groups, and then of the surfaces.
+    fn groups(&self) -> impl Iterator<Item = &String> {
+        self.held.iter().map(|[name, _]| name).chain(&self.surfaces)
+    }
+
     /// Takes over the rows of another, by the names of the columns; what it did not tell is not a number.
     pub(super) fn take_over(&mut self, other: &Self) {
+        let theirs = |name: &String| other.groups().position(|n| n == name);
+        let theirs: Vec<_> = self.groups().map(theirs).collect();
+        for (own, k) in self.let_go.iter_mut().zip(theirs) {
+            k.iter().for_each(|&k| own.clone_from(&other.let_go[k]));
+        }
         let rows = other.table.rows();
         let theirs = |column: &Column| match other.table.column(&column.name) {
             Some(theirs) => theirs.values.clone(),
@@ -76,10 +131,19 @@ impl History {
         place: &Place<'_>,
     ) {
         let energies = &report.energies;
+        let time = (place.stage - 1) as f64 + report.fraction;
+        let before = self.table.last().map_or(0.0, |row| row[TIME]);
+        for group in &mut self.let_go {
+            let left = group.at_start.iter().map(|f| f * (1.0 - report.fraction));
+            group.now = left.collect();
+        }
         let mut row = vec![
             place.stage as f64,
             report.increment as f64,
-            (place.stage - 1) as f64 + report.fraction,
+            match (0.0..ROUNDING).contains(&(before - time)) {
+                true => before,
+                false => time,
+            },
             report.newton_iterations as f64,
             report.contact_iterations as f64,
             report.cuts as f64,
@@ -98,13 +162,16 @@ impl History {
             report.out_of_balance,
             report.factorisations as f64,
         ];
+        let mut let_go = self.let_go.iter().map(|group| &group.now);
         for ([_, nodes], directions) in self.held.iter().zip(place.directions) {
             // A node on two groups is held by each along its own directions.
             let force = driver.reaction(nodes).ok();
-            row.extend((0..D).map(|i| match directions.contains(&i) {
+            let held = |i: usize| match directions.contains(&i) {
                 true => force.map_or(f64::NAN, |f| f[i]),
                 false => 0.0,
-            }));
+            };
+            let left = let_go.next().into_iter().flatten().enumerate();
+            row.extend(left.map(|(i, left)| held(i) + left));
             row.extend(mean_displacement(driver, nodes));
         }
         for tool in &self.tools {
@@ -122,12 +189,14 @@ impl History {
         }
         for surface in &self.surfaces {
             let contact = driver.contact_force(surface).ok();
+            let left = let_go.next().map(|f| SVector::from_column_slice(f));
             // What a probe is held by beside contact.
             let force = match driver.is_contact_surface(surface) {
                 true => contact,
                 false => contact
                     .zip(driver.reaction(surface).ok())
-                    .map(|(f, held)| f + held),
+                    .zip(left)
+                    .map(|((f, held), left)| f + held + left),
             };
             row.extend((0..D).map(|i| force.map_or(f64::NAN, |f| f[i])));
             row.extend(mean_displacement(driver, surface));
@@ -148,6 +217,10 @@ impl History {
 
 impl Saved for History {
     fn visit(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
+        for group in &mut self.let_go {
+            numbers.list(&mut group.at_start)?;
+            numbers.list(&mut group.now)?;
+        }
         let mut rows = self.table.rows();
         numbers.count(&mut rows)?;
         let mut columns = self.table.columns().to_vec();

@@ -1,12 +1,12 @@
 //! A list of numbers as bytes that are whole or known not to be; not what the numbers mean, nor where the bytes
 //! are kept.
 //!
-//! They are the line `moreau checkpoint 8`, the CRC-32 of the resolved deck, that of the numbers and their count,
+//! They are the line `moreau checkpoint 9`, the CRC-32 of the resolved deck, that of the numbers and their count,
 //! each as 8 bytes, and the numbers as IEEE doubles; all little endian.
 
 use flate2::Crc;
 
-const MAGIC: &[u8] = b"moreau checkpoint 8\n";
+const MAGIC: &[u8] = b"moreau checkpoint 9\n";
 
 /// A state that a simulation cannot take over.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -105,7 +105,7 @@ fn a_resumed_run_is_the_uninterrupted_one() {
     // None whole, or of another deck: told.
     for name in &kept {
         let path = crashed.join("checkpoint").join(name);
-        fs::write(path, b"moreau checkpoint 8\n").expect("written");
+        fs::write(path, b"moreau checkpoint 9\n").expect("written");
     }
     let (status, err) = resume(&crashed, &[]);
     assert!(status == 1 && err.contains("torn"), "{status} {err}");

@@ -11,6 +11,7 @@ mod interrupted;
 mod keys;
 mod laws;
 mod leaps;
+mod let_go;
 mod limits;
 mod narrow;
 mod nearby;
