@@ -72,11 +72,21 @@ pub(super) fn pictures_of(
     let files = vtu::bodies(directory);
     let arrays = match files.iter().find(|f| f.0 == number) {
         Some((_, _, path)) => Some(vtu::read_point_data(path)?),
-        None if drawing.increment.is_some() => {
+        None if drawing.increment.is_some() || drawing.field.is_some() && last.is_none() => {
             let all: Vec<String> = files.iter().map(|f| f.0.to_string()).collect();
+            let field = drawing
+                .field
+                .iter()
+                .map(|f| format!(", for the field \"{f}\""));
             return Err(RunError::Unknown {
-                what: format!("the body of increment {number}"),
-                expected: all.join(", "),
+                what: format!(
+                    "the body of increment {number}{}",
+                    field.collect::<String>()
+                ),
+                expected: match all.is_empty() {
+                    true => "none, as vtu = \"none\" writes none".to_owned(),
+                    false => all.join(", "),
+                },
             });
         }
         None => last.map(<[_]>::to_vec),

@@ -46,6 +46,18 @@ fn a_run_is_drawn_again_from_its_files() {
         assert!(told.contains(value) && told.contains(named), "{told}");
     }
 
+    // Nothing to take a field from.
+    let bare = punched().replace("[[step]]", "[output]\nvtu = \"none\"\n[[step]]");
+    let (status, _, err, results) = run("draw-bare", &bare, &["--quiet"]);
+    assert_eq!(status, 0, "{err}");
+    let output = moreau(&["plot", results.to_str().expect("a path"), "--field", "nope"]);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(
+        told.contains("nope") && told.contains("vtu = \"none\""),
+        "{told}"
+    );
+
     let page = text(&before[3]);
     let outside = page.replace("http://www.w3.org/2000/svg", "");
     assert!(!outside.contains("http") && !outside.contains("src="));
