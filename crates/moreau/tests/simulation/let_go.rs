@@ -52,7 +52,9 @@ fn a_support_that_is_let_go_balances_the_others_until_the_end_of_the_step() {
 /// A node that a group of its own goes on holding is not let go, and what goes across the step is not listed.
 #[test]
 fn what_another_group_holds_is_its_own() {
-    let held = format!("{BAR}move = [{{ on = \"corner\", u = {{ x = 0.01 }} }}]\n");
+    let across = "{ on = \"o\", u = [\"y\"] }, { on = \"corner\", u = [\"y\"] }";
+    let bar = BAR.replacen("{ on = \"o\", u = [\"y\"] }", across, 1);
+    let held = format!("{bar}move = [{{ on = \"corner\", u = {{ x = 0.01 }} }}]\n");
     let held = finish(simulation(&held));
     let found = forces(&held, ["b.left", "b.right", "corner"]);
     for [left, right, corner] in &found[1..] {
@@ -61,8 +63,9 @@ fn what_another_group_holds_is_its_own() {
             "{found:?}"
         );
     }
-    let along_y = held.history().numbers("force.b.right.y");
-    assert!(along_y.iter().all(|f| *f == 0.0), "{along_y:?}");
+    let along_y = |group| held.history().numbers(&format!("force.{group}.y"));
+    assert!(along_y("corner")[1].abs() > 0.1);
+    assert!(along_y("b.right").iter().all(|f| *f == 0.0));
 }
 
 /// What is left of it when a step is given up goes with the next, also from a state that was saved.
