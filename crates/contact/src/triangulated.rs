@@ -18,8 +18,12 @@ type Point = Vector3<f64>;
 /// Across an edge where two triangles meet at an angle below a limit the surface is smooth: its corners keep their
 /// places, normals there are means over the triangles around, and curved patches in place of the triangles join with
 /// one normal along every such edge, so that the normal is everywhere the gradient of the distance. Other edges are
-/// sharp, and so is a point, as the tip of a cone, around which faces lean farther than any two of them meet at. Points of a sphere or of a cylinder give their normals exactly, and the surface is off by a small multiple of
-/// the fourth power of the length of an edge over the radius, and by that of a flat side where a plane cuts a round one off.
+/// sharp, and so is a point, as the tip of a cone, around which faces lean farther than any two of them meet at: there each
+/// smooth edge has the normal of the round cone that its two faces are in.
+///
+/// Points of a sphere, of a cylinder or of a cone in as few triangles as sides give their normals exactly. The surface is off
+/// by a small multiple of the fourth power of the length of an edge over the radius, between the sides of a cone by less than
+/// a tenth of what plane ones are, and by that of a flat side where a plane cuts a round one off.
 /// Plane parts stay plane, and beside a fillet the normals are those of what it rounds off: a plane at least four times as
 /// broad as the steps of the fillet, or a wall of long triangles.
 ///
@@ -116,7 +120,7 @@ impl Triangulated {
         if volume < 0.0 {
             faces.iter_mut().for_each(|face| face.swap(1, 2));
         }
-        let opposite = across(&at, &faces)?;
+        let opposite = joins(&at, &faces)?;
         let patches = smooth(&at, &faces, &opposite, sharp)?;
         Ok(Self {
             boxes: boxes(&patches, |_| true),
@@ -376,11 +380,14 @@ const HALF: f64 = 2.6;
 /// across its first ring.
 const POINTED: f64 = 1.5;
 
+/// Angle to its chord from which on the direction of a crease, along both of its faces, is none of its edge \[rad\].
+const ASTRAY: f64 = 0.6;
+
 /// How much longer than others the triangles of a wall are, and how much broader a plane.
 const LARGE: f64 = 4.0;
 
 /// The triangles around a corner that are in one plane.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Plane {
     /// Sum of a × b/(|a|² |b|²) over them, with their edges a and b from the corner.
     normal: Point,
@@ -397,6 +404,16 @@ impl Plane {
         self.angle += a.angle(&b);
         self.longest = self.longest.max(a.norm()).max(b.norm());
         self.breadth = breadth;
+    }
+
+    /// Beside an edge that ends in a point: as long as the cotangent of half the angle, for the mean of two to be the normal
+    /// of the round cone that both are in.
+    fn at_point(&self) -> Self {
+        let cotangent = (0.5 * self.angle).tan().recip();
+        Self {
+            normal: self.normal.normalize() * cotangent.max(f64::EPSILON),
+            ..self.clone()
+        }
     }
 }
 
@@ -432,19 +449,7 @@ fn smooth(
     opposite: &[usize],
     sharp: f64,
 ) -> Result<Vec<Patch>, ContactError> {
-    let mut normals = Vec::with_capacity(faces.len());
-    for face in faces {
-        let [a, b, c] = face.map(|k| at[k]);
-        let area = (b - a).cross(&(c - a));
-        let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
-        if area.norm() <= 1e-10 * longest * longest || !area.norm().is_finite() {
-            return Err(ContactError::Surface {
-                what: "a triangle has no area",
-                at: [a.into(), b.into()],
-            });
-        }
-        normals.push(area.normalize());
-    }
+    let normals = normals(at, faces)?;
     // Corner k of face f is 3 f + k; those that a smooth edge joins have one normal.
     let mut joined: Vec<usize> = (0..3 * faces.len()).collect();
     let is_smooth = |f: usize, g: usize| normals[f].angle(&normals[g]) <= sharp + ROUNDED;
@@ -467,17 +472,19 @@ fn smooth(
         }
     }
     let breadths = breadths(at, faces, opposite, &plane);
+    let mut planes: BTreeMap<usize, Plane> = BTreeMap::new();
+    for k in 0..joined.len() {
+        let [x, y, z] = [0, 1, 2].map(|i| at[faces[k / 3][(k + i) % 3]]);
+        let plane = planes.entry(root(&flat, k)).or_default();
+        plane.add(y - x, z - x, breadths[k / 3]);
+    }
     let sums = |roots: &[usize]| -> HashMap<usize, Point> {
-        let mut around: BTreeMap<usize, BTreeMap<usize, Plane>> = BTreeMap::new();
-        for (k, &own) in roots.iter().enumerate() {
-            let face = &faces[k / 3];
-            let [x, y, z] = [0, 1, 2].map(|i| at[face[(k + i) % 3]]);
-            let planes = around.entry(own).or_default();
-            let plane = planes.entry(root(&flat, k)).or_default();
-            plane.add(y - x, z - x, breadths[k / 3]);
+        let mut around: BTreeMap<usize, Vec<Plane>> = BTreeMap::new();
+        for (&k, plane) in &planes {
+            around.entry(roots[k]).or_default().push(plane.clone());
         }
         (around.into_iter())
-            .map(|(root, planes)| (root, mean_normal(planes.into_values().collect())))
+            .map(|(root, planes)| (root, mean_normal(planes)))
             .collect()
     };
     let mut roots: Vec<usize> = (0..joined.len()).map(|k| root(&joined, k)).collect();
@@ -496,36 +503,103 @@ fn smooth(
         *own = root(&flat, k);
     }
     let sums = sums(&roots);
-    let normal = |k: usize| sums[&roots[k]].try_normalize(0.0);
-    let normal = |k: usize| normal(k).unwrap_or(normals[k / 3]);
-    let edge = |edge: usize| {
-        let (f, g) = (edge / 3, opposite[edge] / 3);
-        let next = 3 * f + (edge + 1) % 3;
-        let ends = [edge, next].map(|k| at[faces[f][k % 3]]);
-        let chord = ends[1] - ends[0];
-        let beside = [3 * g + (opposite[edge] + 1) % 3, opposite[edge]];
-        let along = |k: usize, other: usize| {
-            let n = normal(k);
-            // A smooth edge goes on in its own plane, a sharp one along both of its faces.
-            let crease = n.cross(&normal(other));
-            let along = match is_smooth(f, g) || crease.norm() < 1e-6 {
-                true => chord - n * n.dot(&chord),
-                false => crease * crease.dot(&chord).signum(),
-            };
-            along.try_normalize(0.0).unwrap_or(chord.normalize())
-        };
-        handles(ends, [along(edge, beside[0]), along(next, beside[1])])
+    let corners = Corners {
+        flat: (0..flat.len()).map(|k| root(&flat, k)).collect(),
+        normals: &normals,
+        roots,
+        planes,
+        sums,
     };
-    Ok((0..faces.len())
-        .map(|f| {
-            let corners = [0, 1, 2].map(|k| 3 * f + k);
-            Patch::new(
-                corners.map(|k| at[faces[f][k % 3]]),
-                corners.map(normal),
-                corners.map(edge),
-            )
-        })
-        .collect())
+    let place = |k: usize| at[faces[k / 3][k % 3]];
+    let next = |edge: usize| edge - edge % 3 + (edge + 1) % 3;
+    // The normal and the direction of an edge at its ends.
+    let edge = |edge: usize| {
+        let other = opposite[edge];
+        let (chord, is_smooth) = (
+            place(next(edge)) - place(edge),
+            is_smooth(edge / 3, other / 3),
+        );
+        [[edge, next(other)], [next(edge), other]].map(|end| corners.end(end, chord, is_smooth))
+    };
+    let patch = |f: usize| {
+        let own = [0, 1, 2].map(|k| 3 * f + k);
+        let edges = own.map(edge);
+        let handles = |k: usize| {
+            let ends = [own[k], next(own[k])].map(place);
+            handles(ends, edges[k].map(|[_, along]| along))
+        };
+        let normals = edges.map(|ends| ends.map(|[normal, _]| normal));
+        Patch::new(own.map(place), normals, [0, 1, 2].map(handles))
+    };
+    Ok((0..faces.len()).map(patch).collect())
+}
+
+/// The normals of triangles.
+fn normals(at: &[Point], faces: &[[usize; 3]]) -> Result<Vec<Point>, ContactError> {
+    let normal = |face: &[usize; 3]| {
+        let [a, b, c] = face.map(|k| at[k]);
+        let area = (b - a).cross(&(c - a));
+        let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
+        match area.norm() > 1e-10 * longest * longest && area.norm().is_finite() {
+            true => Ok(area.normalize()),
+            false => Err(ContactError::Surface {
+                what: "a triangle has no area",
+                at: [a.into(), b.into()],
+            }),
+        }
+    };
+    faces.iter().map(normal).collect()
+}
+
+/// The corners of triangles, of which corner k of face f is 3 f + k.
+struct Corners<'a> {
+    /// Of the faces.
+    normals: &'a [Point],
+    /// Those that have one normal have one number, as those in one plane have.
+    roots: Vec<usize>,
+    flat: Vec<usize>,
+    planes: BTreeMap<usize, Plane>,
+    /// Mean normals, not of unit length, by those numbers.
+    sums: HashMap<usize, Point>,
+}
+
+impl Corners<'_> {
+    fn normal(&self, k: usize) -> Point {
+        let normal = self.sums[&self.roots[k]].try_normalize(0.0);
+        normal.unwrap_or(self.normals[k / 3])
+    }
+
+    /// The normal that the two corners at an end of a smooth edge share, also in a point.
+    fn shared(&self, [k, other]: [usize; 2]) -> Point {
+        if self.roots[k] == self.roots[other] {
+            return self.normal(k);
+        }
+        let sides = [k, other].map(|k| self.planes[&self.flat[k]].at_point());
+        let mean = mean_normal(sides.to_vec()).try_normalize(0.0);
+        mean.unwrap_or_else(|| self.normal(k.min(other)))
+    }
+
+    /// The normal of the first of two corners at an end of an edge, and the direction of the edge there.
+    fn end(&self, [k, other]: [usize; 2], chord: Point, is_smooth: bool) -> [Point; 2] {
+        if is_smooth || self.roots[k] == self.roots[other] {
+            let n = self.shared([k, other]);
+            return [n, across(chord, n)];
+        }
+        // A sharp one goes along both of its faces, as far as these leave it where it is.
+        let n = self.normal(k);
+        let crease = n.cross(&self.normal(other));
+        let along = (crease * crease.dot(&chord).signum()).try_normalize(1e-6);
+        match along.filter(|along| along.angle(&chord) < ASTRAY) {
+            Some(along) => [n, along],
+            None => [across(n, chord.normalize()), chord.normalize()],
+        }
+    }
+}
+
+/// A vector without what of it is along another of unit length, and of unit length itself; its direction where nothing is left.
+fn across(of: Point, other: Point) -> Point {
+    let rest = of - other * other.dot(&of);
+    rest.try_normalize(0.0).unwrap_or_else(|| of.normalize())
 }
 
 /// Which of the corners that smooth edges join, each known by the least of them, are points, as the tip of a cone: see
@@ -566,7 +640,7 @@ fn breadths(at: &[Point], faces: &[[usize; 3]], opposite: &[usize], plane: &[usi
 }
 
 /// For edge k of face f, which goes from corner k to the next and is 3 f + k, the same edge of the other face.
-fn across(at: &[Point], faces: &[[usize; 3]]) -> Result<Vec<usize>, ContactError> {
+fn joins(at: &[Point], faces: &[[usize; 3]]) -> Result<Vec<usize>, ContactError> {
     let ends = |edge: usize| [faces[edge / 3][edge % 3], faces[edge / 3][(edge + 1) % 3]];
     let mut edges: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
     for edge in 0..3 * faces.len() {

@@ -6,8 +6,9 @@ type Point = Vector3<f64>;
 
 /// A triangular Gregory patch of degree four: it passes through three corners with given normals, and joins the
 /// patch across an edge with the same tangent planes where both are given the same curve and normals at its ends.
+/// Where the two edges of a corner have different normals there, it is a cone with its tip in that corner.
 ///
-/// Source: D. J. Walton and D. S. Meek, *Computer-Aided Design* 28 (1996) 113-119.
+/// Source but for the tips: D. J. Walton and D. S. Meek, *Computer-Aided Design* 28 (1996) 113-119.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Patch {
     corners: [Point; 3],
@@ -15,6 +16,9 @@ pub(super) struct Patch {
     powers: [Point; 15],
     /// Half of what the two inner coefficients near a corner differ by.
     twists: [Point; 3],
+    /// Of a corner with two normals, what is added to the derivative across its edges there, of the edge that starts in it
+    /// and of that which ends in it.
+    tips: [[Point; 2]; 3],
     /// Whether it is its plane triangle.
     pub(super) is_plane: bool,
     /// Least and greatest coordinates of a box around it.
@@ -63,9 +67,13 @@ pub(super) fn handles(ends: [Point; 2], directions: [Point; 2]) -> [Point; 2] {
 }
 
 impl Patch {
-    /// The patch through corners with normals at them, along edges whose cubic curves have these handles; edge k goes
-    /// from corner k to the next.
-    pub(super) fn new(corners: [Point; 3], normals: [Point; 3], handles: [[Point; 2]; 3]) -> Self {
+    /// The patch through corners, along edges whose cubic curves have these handles, with normals at the ends of each;
+    /// edge k goes from corner k to the next.
+    pub(super) fn new(
+        corners: [Point; 3],
+        normals: [[Point; 2]; 3],
+        handles: [[Point; 2]; 3],
+    ) -> Self {
         // The edges raised to degree four.
         let edges: [[Point; 5]; 3] = std::array::from_fn(|k| {
             let (from, [a, b], to) = (corners[k], handles[k], corners[(k + 1) % 3]);
@@ -78,7 +86,7 @@ impl Patch {
             ]
         });
         let boundary: [Point; 12] = std::array::from_fn(|k| edges[k / 4][k % 4]);
-        let mut inner = [[Point::zeros(); 2]; 3];
+        let (mut inner, mut tips) = ([[Point::zeros(); 2]; 3], [[Point::zeros(); 2]; 3]);
         for k in 0..3 {
             let (next, last) = ((k + 1) % 3, (k + 2) % 3);
             let p = &edges[k];
@@ -86,7 +94,8 @@ impl Patch {
             let [a, b] = handles[k];
             let w = [a - corners[k], b - a, corners[next] - b];
             let across = |n: &Point, w: &Point| n.cross(w).normalize();
-            let (first, second) = (across(&normals[k], &w[0]), across(&normals[next], &w[2]));
+            let [n, m] = normals[k];
+            let (first, second) = (across(&n, &w[0]), across(&m, &w[2]));
             let v = [first, (first + second).normalize(), second];
             // What the other edges leave of the derivative across this one at its ends.
             let start = edges[last][3] - 0.5 * (p[0] + p[1]);
@@ -105,6 +114,13 @@ impl Patch {
             let (s, t) = (blend(along, &w), blend(aside, &v));
             inner[k][0] = 0.5 * (p[1] + p[2]) + s[0] + t[0];
             inner[next][1] = 0.5 * (p[2] + p[3]) + s[1] + t[1];
+            // The other edge leaves the tangent plane of this one where its own is another.
+            if n != normals[last][1] {
+                tips[k][0] = n * (-4.0 * n.dot(&start));
+            }
+            if m != normals[next][0] {
+                tips[next][1] = m * (-4.0 * m.dot(&end));
+            }
         }
         let mut powers = [Point::zeros(); 15];
         let mut add = |point: &Point, factor: f64, of: [usize; 3]| {
@@ -119,29 +135,39 @@ impl Patch {
         }
         powers[0] += corners[0];
         let twists = inner.map(|[p, q]| 0.5 * (p - q));
-        // It lies within its coefficients, and the distance to a triangle is convex.
+        // It lies within its coefficients, tips added, and the distance to a triangle is convex.
         let points = || boundary.iter().chain(inner.iter().flatten());
         let most = |i: usize, side: fn(f64, f64) -> f64| {
             let of = points().map(|p| p[i]);
             of.reduce(side).unwrap_or_default()
         };
-        let around = [f64::min, f64::max].map(|side| std::array::from_fn(|i| most(i, side)));
+        let tip: f64 = (tips.iter())
+            .map(|tip| TIP * tip[0].norm().max(tip[1].norm()))
+            .sum();
+        let mut around = [f64::min, f64::max].map(|side| std::array::from_fn(|i| most(i, side)));
+        around[0].iter_mut().for_each(|low| *low -= tip);
+        around[1].iter_mut().for_each(|high| *high += tip);
         let flat = Self {
             corners,
             powers,
             twists,
+            tips,
             is_plane: false,
             around,
             bulge: 0.0,
         };
-        let bulge = points().fold(0.0, |most, p| f64::max(most, flat.away(p)));
+        let bulge = tip + points().fold(0.0, |most, p| f64::max(most, flat.away(p)));
         let size = [0, 1, 2].map(|k| (corners[k] - corners[(k + 1) % 3]).norm());
         let bent = powers
             .iter()
             .enumerate()
             .filter(|(k, _)| ![0, place(0, 1), place(1, 0)].contains(k));
-        let bent = bent.map(|(_, p)| p).chain(&twists).map(Point::norm);
-        let is_plane = bent.fold(0.0, f64::max) <= STRAIGHT * size.into_iter().fold(0.0, f64::max);
+        let bent = bent
+            .map(|(_, p)| p)
+            .chain(&twists)
+            .chain(tips.iter().flatten());
+        let bent = bent.map(Point::norm).fold(0.0, f64::max);
+        let is_plane = bent <= STRAIGHT * size.into_iter().fold(0.0, f64::max);
         Self {
             is_plane,
             bulge: if is_plane { 0.0 } else { bulge },
@@ -198,6 +224,13 @@ impl Patch {
             let c = [1.0 - at.x - at.y, at.x, at.y];
             for (k, twist) in self.twists.iter().enumerate() {
                 add(twist, twisted(c, k));
+            }
+            for (k, [first, second]) in self.tips.iter().enumerate() {
+                if *first != Point::zeros() || *second != Point::zeros() {
+                    let (p, q) = ((k + 1) % 3, (k + 2) % 3);
+                    add(first, tipped(c, [k, p, q]));
+                    add(second, tipped(c, [k, q, p]));
+                }
             }
         }
         let [x, d1, d2, d11, d12, d22] = jet;
@@ -307,6 +340,9 @@ impl Patch {
 /// Coefficients that a plane patch has not, in parts of its longest edge.
 const STRAIGHT: f64 = 1e-12;
 
+/// The most that a tip adds to a point, in parts of what it adds to a derivative: c³ (1 - c) / 4.
+const TIP: f64 = 27.0 / 1024.0;
+
 /// Steps of a search for the nearest point.
 const STEPS: usize = 30;
 
@@ -373,16 +409,36 @@ fn powers(x: f64) -> [[f64; 5]; 3] {
 fn twisted(c: [f64; 3], k: usize) -> [f64; 6] {
     let (p, q) = ((k + 1) % 3, (k + 2) % 3);
     let ([f, f_p, f_q, f_pp, f_pq, f_qq], other) = (share(c[p], c[q]), share(c[q], c[p]));
-    let f = f - other[0];
-    let (f_p, f_q) = (f_p - other[2], f_q - other[1]);
-    let (f_pp, f_pq, f_qq) = (f_pp - other[5], f_pq - other[4], f_qq - other[3]);
-    let s = 12.0 * c[k] * c[k];
+    let f = [
+        f - other[0],
+        f_p - other[2],
+        f_q - other[1],
+        f_pp - other[5],
+        f_pq - other[4],
+        f_qq - other[3],
+    ];
+    let s = 12.0 * c[k];
+    product([s * c[k], 2.0 * s, 24.0], f, [k, p, q])
+}
+
+/// What the tip of corner k is multiplied by, c_k³ p² q / (p + q)², and its derivatives by the coordinates of corners 1
+/// and 2: of those across the edges of the patch only that of edge kp is not zero, and c_k³.
+fn tipped(c: [f64; 3], [k, p, q]: [usize; 3]) -> [f64; 6] {
+    let s = c[k];
+    let outer = [s * s * s, 3.0 * s * s, 6.0 * s];
+    product(outer, cone(c[p], c[q]), [k, p, q])
+}
+
+/// A function of c_k, with two derivatives, times one of the other coordinates p and q, with its derivatives by p and q; their
+/// product with its derivatives by the coordinates of corners 1 and 2.
+fn product([s, ds, dds]: [f64; 3], f: [f64; 6], [k, p, q]: [usize; 3]) -> [f64; 6] {
+    let [f, f_p, f_q, f_pp, f_pq, f_qq] = f;
     // By the barycentric coordinates; second derivatives ₀₀, ₁₁, ₂₂, ₀₁, ₁₂, ₂₀.
     let (mut d, mut dd) = ([0.0; 3], [0.0; 6]);
-    (d[k], d[p], d[q]) = (24.0 * c[k] * f, s * f_p, s * f_q);
-    (dd[k], dd[p], dd[q]) = (24.0 * f, s * f_pp, s * f_qq);
-    dd[between(k, p)] = 24.0 * c[k] * f_p;
-    dd[between(k, q)] = 24.0 * c[k] * f_q;
+    (d[k], d[p], d[q]) = (ds * f, s * f_p, s * f_q);
+    (dd[k], dd[p], dd[q]) = (dds * f, s * f_pp, s * f_qq);
+    dd[between(k, p)] = ds * f_p;
+    dd[between(k, q)] = ds * f_q;
     dd[between(p, q)] = s * f_pq;
     [
         s * f,
@@ -417,6 +473,23 @@ fn share(p: f64, q: f64) -> [f64; 6] {
         2.0 * q * q * q / s3,
         p * p * (p + 3.0 * q) / s3,
         -2.0 * p * p * p / s3,
+    ]
+}
+
+/// f = p² q / (p + q)², f_p, f_q, f_pp, f_pq and f_qq; where both are zero, nothing.
+fn cone(p: f64, q: f64) -> [f64; 6] {
+    let s = p + q;
+    if s <= 0.0 {
+        return [0.0; 6];
+    }
+    let (s2, s3, s4) = (s * s, s * s * s, s * s * s * s);
+    [
+        p * p * q / s2,
+        2.0 * p * q * q / s3,
+        p * p * (p - q) / s3,
+        2.0 * q * q * (q - 2.0 * p) / s4,
+        2.0 * p * q * (2.0 * p - q) / s4,
+        2.0 * p * p * (q - 2.0 * p) / s4,
     ]
 }
 

@@ -251,6 +251,125 @@ fn normals_are_continuous_across_smooth_edges() {
     }
 }
 
+/// The largest distance of the two points that patches have of an edge, and the largest difference of their normals where it
+/// is smooth, all along.
+fn jumps(surface: &Triangulated) -> [f64; 2] {
+    let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(Vector2::from);
+    let at = |edge: usize, s: f64| {
+        let [a, b] = [edge % 3, (edge + 1) % 3].map(|k| corners[k]);
+        surface.patches[edge / 3].at(&(a * (1.0 - s) + b * s))
+    };
+    let plane = |edge: usize| {
+        let [a, b, c] = surface.patches[edge / 3].corners();
+        (b - a).cross(&(c - a))
+    };
+    let mut most = [0.0f64; 2];
+    for (edge, &other) in surface.opposite.iter().enumerate() {
+        for s in [1e-6, 1e-3, 0.1, 0.3, 0.5, 0.8, 0.999, 1.0 - 1e-6] {
+            let (own, beside) = (at(edge, s), at(other, 1.0 - s));
+            most[0] = most[0].max((own.x - beside.x).norm());
+            if plane(edge).angle(&plane(other)) <= surface.sharp {
+                let [n, m] = [own, beside].map(|jet| jet.normal().expect("a normal"));
+                most[1] = most[1].max((n - m).norm());
+            }
+        }
+    }
+    most
+}
+
+/// Of a cone of circular section, whose sides are of these parts of a turn, one after the other.
+fn uneven(parts: &[f64], radius: f64) -> Skin {
+    let (n, whole) = (parts.len(), parts.iter().sum::<f64>());
+    let (mut points, mut faces) = cone(n, radius, 1);
+    let mut turned = 0.0;
+    for (point, part) in points.iter_mut().zip(parts) {
+        let (s, c) = (TAU * turned / whole).sin_cos();
+        *point = [radius * c, radius * s, 2.0];
+        turned += part;
+    }
+    faces.rotate_left(1);
+    (points, faces)
+}
+
+/// A pyramid on its tip whose edges are rounded, four steps each.
+fn pyramid() -> Skin {
+    let (mut points, faces) = cone(20, 3.0, 1);
+    for (k, point) in points[..20].iter_mut().enumerate() {
+        let corner = PI * (0.25 + 0.5 * (k / 5) as f64);
+        let (s, c) = (corner - 0.25 * PI + 0.125 * PI * (k % 5) as f64).sin_cos();
+        let middle = [corner.cos(), corner.sin()].map(|x| 2.0 * 2f64.sqrt() * x);
+        *point = [middle[0] + c, middle[1] + s, 2.0];
+    }
+    (points, faces)
+}
+
+/// Also where they end in a tip: of cones however cut, of a pyramid between its sides and the roundings of its edges, of a
+/// quarter of a cone whose other sides are plane.
+#[test]
+fn edges_to_a_tip_have_one_normal_all_along() {
+    let quarter = uneven(&[1.0, 1.0, 1.0, 1.0, 12.0 - 1e-9], 4.0);
+    for skin in [
+        cone(96, 5.6, 1),
+        cone(24, 2.0, 3),
+        cone(12, 5.6, 1),
+        uneven(
+            &[1.0, 2.0, 1.5, 3.0, 1.0, 1.2, 0.7, 2.0, 1.0, 1.0].repeat(2),
+            6.0,
+        ),
+        pyramid(),
+        quarter,
+    ] {
+        let [place, normal] = jumps(&surface(&skin));
+        assert!(place < 1e-13 && normal < 1e-9, "{place} {normal}");
+    }
+}
+
+/// Normals of a cone of sides are as symmetrical as its outline, from the tip to the rim, and along edges those of the round cone
+/// through them, whatever their steps.
+#[test]
+fn normals_of_a_cone_are_those_of_its_outline() {
+    let azimuth = |n: Point| n.y.atan2(n.x);
+    for n in [12, 64] {
+        let cone = surface(&cone(n, 5.6, 1));
+        for k in 0..2 * n {
+            let turned = PI * k as f64 / n as f64;
+            let out = [1.0, (PI / n as f64).cos()][k % 2];
+            for (height, lift) in [(1e-3, 1e-5), (0.1, 1e-4), (1.0, -1e-4), (1.9, 1e-3)] {
+                let r = 2.8 * height * out;
+                let x = Point::new(r * turned.cos(), r * turned.sin(), height + lift);
+                let off = (azimuth(cone.normal(&x)) - turned) / TAU;
+                assert!((off - off.round()).abs() < 1e-9, "{n} {k} {height}: {off}");
+            }
+        }
+    }
+    let parts = [1.0, 2.0, 1.5, 3.0, 1.0, 1.2, 1.0, 2.0, 1.0, 1.0].repeat(2);
+    let cone = surface(&uneven(&parts, 6.0));
+    let mut turned = 0.0;
+    for part in &parts {
+        let (s, c) = (TAU * turned / parts.iter().sum::<f64>()).sin_cos();
+        for height in [0.01, 1.0, 1.9] {
+            let exact = Point::new(2.0 * c, 2.0 * s, -6.0).normalize();
+            let x = Point::new(3.0 * height * c, 3.0 * height * s, height) + exact * 1e-3;
+            assert!((cone.normal(&x) - exact).norm() < 1e-9, "{turned} {height}");
+        }
+        turned += part;
+    }
+}
+
+proptest! {
+    /// A ball with dents has creases that end anywhere.
+    #[test]
+    fn surfaces_with_creases_are_continuous(dents in prop::collection::vec(0.8..1.0f64, 66), sharp in 0.3..0.9f64) {
+        let (mut points, faces) = ball(2);
+        for (x, dent) in points.iter_mut().zip(dents) {
+            *x = [1.0 + dent * (x[0] - 1.0), dent * x[1], dent * x[2]];
+        }
+        let surface = Triangulated::new(&points, &faces, sharp).expect("closed");
+        let [place, normal] = jumps(&surface);
+        prop_assert!(place < 1e-13 && normal < 1e-9, "{place} {normal}");
+    }
+}
+
 /// Opposite an edge, where the search for a perpendicular leaves both triangles beside it through another one.
 #[test]
 fn the_nearest_edge_is_met_wherever_the_search_ends() {
@@ -430,24 +549,25 @@ proptest! {
 
     /// No point of a curved surface is nearer than that which is found, from inside and from outside.
     #[test]
-    fn of_all_points_the_nearest_is_met(x in prop::array::uniform3(-4.5..4.5f64), which in 0..4usize) {
-        let skin = vec![ball(0), ball(1), can(8), torus(8)].swap_remove(which);
+    fn of_all_points_the_nearest_is_met(x in prop::array::uniform3(-4.5..4.5f64), which in 0..6usize) {
+        let skin = vec![ball(0), ball(1), can(8), torus(8), cone(12, 4.0, 1), pyramid()].swap_remove(which);
         let (surface, x) = (surface(&skin), Point::from(x));
         prop_assert!(surface.distance(&x).abs() <= sampled(&surface, &x, 8) + 1e-12);
     }
 
     /// Normals are gradients of the distance, and curvatures those of normals: off edges to the order of the step.
     #[test]
-    fn derivatives_are_those_of_differences(x in prop::array::uniform3(-1.0..1.0f64), which in 0..2usize) {
+    fn derivatives_are_those_of_differences(x in prop::array::uniform3(-1.0..1.0f64), which in 0..3usize) {
         let (surface, center) = match which {
             0 => (surface(&ball(1)), Point::new(1.0, 0.0, 0.0)),
-            _ => (surface(&can(16)), Point::new(0.0, 0.0, 3.0)),
+            1 => (surface(&can(16)), Point::new(0.0, 0.0, 3.0)),
+            _ => (surface(&cone(16, 3.0, 1)), Point::new(0.0, 0.0, 1.0)),
         };
         let Some(d) = Point::from(x).try_normalize(0.1) else { return Ok(()) };
         let x = center + d * 4.0;
         // Opposite a corner of the rim the curvature is that of a point.
         let turn = x.y.atan2(x.x) / TAU * 16.0;
-        if which == 1 && (turn - turn.round()).abs() < 1e-3 {
+        if which > 0 && (turn - turn.round()).abs() < 1e-3 {
             return Ok(());
         }
         let (n, h) = (surface.normal(&x), 1e-5);
@@ -503,6 +623,28 @@ fn what_is_no_closed_surface_is_refused() {
     let inwards: Vec<[usize; 3]> = faces.iter().map(|&[a, b, c]| [b, a, c]).collect();
     let cube = surface(&(points, inwards));
     assert!((cube.distance(&Point::new(0.5, 0.5, 2.0)) - 1.0).abs() < 1e-14);
+}
+
+/// Also between the edges of its sides: a tenth of what plane sides would be off, from the tip to the rim.
+#[test]
+fn a_cone_of_sides_is_round() {
+    for n in [12, 24, 48] {
+        let cone = surface(&cone(n, 5.6, 1));
+        let slope = Point::new(2.0, 0.0, -5.6).normalize();
+        let half = PI / f64::from(n as u32);
+        let (flat, tilt) = (5.6 * (1.0 - half.cos()) * slope.x, half * slope.x);
+        for k in 0..400 {
+            let turn = Rotation3::from_axis_angle(&Point::z_axis(), 0.618 * f64::from(k));
+            let part = 0.02 + 0.96 * f64::from(k) / 400.0;
+            let x = turn * (Point::new(5.6, 0.0, 2.0) * part + slope * 0.1);
+            let off = (cone.distance(&x) - 0.1).abs();
+            let turned = (cone.normal(&x) - turn * slope).norm();
+            assert!(
+                off < 0.1 * flat * part && turned < 0.11 * tilt,
+                "{n} {part} {off} {turned}"
+            );
+        }
+    }
 }
 
 /// However steep it is and whatever it is cut into: its sides are straight up to the tip, which has the cone of all normals
