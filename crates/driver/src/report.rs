@@ -135,6 +135,9 @@ pub struct IncrementReport {
     /// [`Driver::contacts`](crate::Driver::contacts): their normal is any of a cone, see
     /// [`Obstacle::corner`](moreau_contact::Obstacle::corner).
     pub corners: Vec<usize>,
+    /// Contact points that press without the shear that their law gives where nothing presses, as Tresca's, as indices of
+    /// [`Driver::contacts`](crate::Driver::contacts): under it they open, and neither is in balance.
+    pub shearless: Vec<usize>,
     /// Largest nodal force that nothing balances \[N\].
     pub out_of_balance: f64,
     /// Out-of-balance force of every Newton iteration \[N\].

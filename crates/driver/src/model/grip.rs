@@ -44,9 +44,14 @@ impl Grip {
         }
     }
 
+    /// Whether the law bounds the shear by more than nothing where there is no pressure, and that does not act.
+    pub(crate) fn is_without(self, law: &Friction) -> bool {
+        !self.acts && !law.is_tie() && law.bound(0.0) > 0.0
+    }
+
     /// The area on which a limit of the shear acts, of that of the point.
     pub(crate) fn area(self, law: &Friction, area: f64) -> f64 {
-        match !self.acts && !law.is_tie() && law.bound(0.0) > 0.0 {
+        match self.is_without(law) {
             true => 0.0,
             false => area,
         }

@@ -227,6 +227,9 @@ impl<const D: usize> Driver<D> {
         counts: Counts,
     ) -> IncrementReport {
         let contacts = &self.state.contacts;
+        let rounding = self.rounding_of_forces();
+        let is_without = |&k: &usize| self.grips[k].is_without(&self.points[k].law);
+        let presses = |k: &usize| contacts[*k].t[0] > rounding && is_without(k);
         let of = |status: Status| {
             let counted =
                 |c: &&ContactRecord<D>| c.status == status && (!c.held || status == Status::Open);
@@ -259,6 +262,7 @@ impl<const D: usize> Driver<D> {
                 false => Vec::new(),
             },
             corners,
+            shearless: (0..contacts.len()).filter(presses).collect(),
             out_of_balance,
             residuals: counts.residuals,
         }

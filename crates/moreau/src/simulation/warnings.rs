@@ -41,9 +41,11 @@ enum Kind {
     Through,
     /// A round tool that bears on one node, being narrower than a facet.
     Narrow,
+    /// Contact points that press without the shear that acts where bodies press.
+    Shearless,
 }
 
-const KINDS: [Kind; 16] = [
+const KINDS: [Kind; 17] = [
     Kind::Strain,
     Kind::Rotation,
     Kind::Inverted,
@@ -60,6 +62,7 @@ const KINDS: [Kind; 16] = [
     Kind::Ahead,
     Kind::Through,
     Kind::Narrow,
+    Kind::Shearless,
 ];
 
 /// Quality below which a cell is distorted: that of a rectangle 1 : 20, or of a square sheared by 4.2.
@@ -224,6 +227,16 @@ impl Warnings {
             let numbers = vec![report.corners.len() as f64, point.contact as f64];
             let at = (point.node, point.position.to_vec());
             self.note(Kind::Corner, numbers, at, when);
+        }
+        let pressing = report.shearless.iter().map(|&k| &driver.contacts()[k]);
+        if let Some(most) = pressing.max_by(|a, b| a.t[0].total_cmp(&b.t[0])) {
+            let numbers = vec![
+                most.t[0],
+                report.shearless.len() as f64,
+                most.contact as f64,
+            ];
+            let at = (most.node, most.position.to_vec());
+            self.note(Kind::Shearless, numbers, at, when);
         }
         if report.negative_eigenvalues > 0 && self.worst[Kind::Unstable as usize].is_none() {
             let (at, direction) = most_moved(driver, report.mode.as_deref());
@@ -406,6 +419,7 @@ impl Worst {
             Kind::Beside => self.beside(driver, deck),
             Kind::Held => self.held(driver, deck),
             Kind::Corner => self.corner(driver),
+            Kind::Shearless => self.shearless(driver, deck),
             Kind::Free => self.free(driver),
             Kind::Unstable => format!(
                 "the equilibrium is unstable from increment {when} on: with what may touch held, its tangent has {} \
@@ -540,6 +554,19 @@ impl Worst {
             "node {index} of \"{surface}\" at {at} is at a sharp corner of \"{tool}\" in increment {when}: \
              the normal there is any between those of both faces, and a finer mesh gives another stress; \
              give the corner a radius of a few facets"
+        )
+    }
+
+    fn shearless<const D: usize>(&self, driver: &Driver<D>, deck: &Deck) -> String {
+        let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
+        let (surface, tool) = driver.contact_name(self.number(2) as usize);
+        format!(
+            "node {index} of \"{surface}\" at {at} presses \"{tool}\" by {} {} in increment {when} without the shear that \
+             its friction gives at any pressure, {} nodes at most: under that shear it opens, without it it presses, and \
+             neither is in balance; the force along the surface lacks what these nodes give it, less with finer cells",
+            shown(self.number(0), 3),
+            deck.units.force(),
+            shown(self.number(1), 9)
         )
     }
 

@@ -105,3 +105,55 @@ tools = [{ name = "t0", force = [0, -200] }]
     }
     assert!((block.history().numbers("force.t0.y")[0] + 200.0).abs() < 1e-6);
 }
+
+/// A block dragged over a tool with a limit of its shear at any pressure: a corner that opens under the shear and presses
+/// without it has none, which is told; of a shear that falls with the pressure nothing is.
+#[test]
+fn a_corner_that_presses_without_its_shear_is_told() {
+    let told = |friction: &str| {
+        let dragged = finish(simulation(&format!(
+            r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+strain = "small"
+[[mesh.block]]
+name = "b"
+element = "quad4"
+x=[0,10]
+y=[0,4]
+cells=[10,3]
+[[material]]
+on = "b"
+young=7000.0
+poisson=0.3
+[[tool]]
+name = "t"
+plane={{point=[0,0],normal=[0,1]}}
+[[contact]]
+surface = "b.bottom"
+against = "t"
+friction = {friction}
+[[step]]
+name = "a"
+increments=4
+fix=[{{on = "b.top",u=["x"]}}]
+move=[{{on = "b.top",u={{y=-0.01}}}}]
+[[step]]
+name = "c"
+increments=6
+fix=[{{on = "b.top",u=["x"]}}]
+move=[{{on = "b.top",u={{y=-0.01}}}}]
+tools=[{{name = "t",move=[0.04,0]}}]
+"#
+        )));
+        let warnings = dragged.outcome().warnings;
+        let force = *dragged.history().numbers("force.t.x").last().expect("one");
+        (
+            warnings.iter().any(|w| w.contains("without the shear")),
+            force.abs(),
+        )
+    };
+    let (is_told, force) = told("{ tresca = 8 }");
+    assert!(is_told && force < 79.9, "{force}");
+    let (is_told, _) = told("{ coulomb = 0.5, tau-max = 8 }");
+    assert!(!is_told);
+}
