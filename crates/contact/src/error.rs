@@ -33,12 +33,14 @@ pub enum ContactError {
         expected: &'static str,
     },
     /// Triangles that bound nothing.
-    #[error("{what}, from {:?} to {:?}: expected a closed surface", at[0], at[1])]
+    #[error("{what}, from {:?} to {:?}{}: expected a closed surface", at[0], at[1], gap(*apart))]
     Surface {
         /// What is wrong with it.
         what: &'static str,
         /// The ends of the edge \[mm\].
         at: [[f64; 3]; 2],
+        /// From an end of an open edge to the nearest corner of another one, if it is near \[mm\].
+        apart: Option<f64>,
     },
     /// The interface stiffness is singular where the method needs its inverse: a body is held
     /// by contact alone.
@@ -160,4 +162,10 @@ pub(crate) fn expect_finite<'a>(
         true => Ok(()),
         false => Err(ContactError::NotFinite { what }),
     }
+}
+
+fn gap(apart: Option<f64>) -> String {
+    apart.map_or_else(String::new, |apart| {
+        format!(", where it and another open edge have corners {apart:.1e} mm apart")
+    })
 }

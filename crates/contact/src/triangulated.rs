@@ -545,6 +545,7 @@ fn normals(at: &[Point], faces: &[[usize; 3]]) -> Result<Vec<Point>, ContactErro
             false => Err(ContactError::Surface {
                 what: "a triangle has no area",
                 at: [a.into(), b.into()],
+                apart: None,
             }),
         }
     };
@@ -661,9 +662,25 @@ fn joins(at: &[Point], faces: &[[usize; 3]]) -> Result<Vec<usize>, ContactError>
         return Err(ContactError::Surface {
             what,
             at: pair.map(|k| at[k].into()),
+            apart: (found.len() == 1)
+                .then(|| apart(at, &edges, pair))
+                .flatten(),
         });
     }
     Ok(opposite)
+}
+
+/// Parts of an edge up to which corners are near each other.
+const NEAR: f64 = 0.1;
+
+/// How far an end of an open edge is from the nearest corner of others that no edge joins it to, if that is near.
+fn apart(at: &[Point], edges: &BTreeMap<[usize; 2], Vec<usize>>, ends: &[usize; 2]) -> Option<f64> {
+    let open = edges.iter().filter(|(_, found)| found.len() == 1);
+    let others = open.flat_map(|(pair, _)| *pair);
+    let pairs = others.flat_map(|other| ends.map(|end| [end.min(other), end.max(other)]));
+    let free = pairs.filter(|[a, b]| a != b && !edges.contains_key(&[*a, *b]));
+    let least = free.map(|[a, b]| (at[a] - at[b]).norm()).reduce(f64::min);
+    least.filter(|least| *least < NEAR * (at[ends[0]] - at[ends[1]]).norm())
 }
 
 fn root(joined: &[usize], mut k: usize) -> usize {

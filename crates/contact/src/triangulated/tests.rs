@@ -608,6 +608,21 @@ fn what_is_no_closed_surface_is_refused() {
             .to_string()
     };
     assert!(said(&faces[1..], &points).contains("open along an edge"));
+    // Without a side all of its corners are far from each other.
+    assert!(!said(&faces[2..], &points).contains("apart"));
+    // One triangle has a corner of its own, 0.003 from that of the others.
+    let (mut torn, mut more) = (faces.clone(), points.clone());
+    more.push([
+        points[torn[0][1]][0] + 3e-3,
+        points[torn[0][1]][1],
+        points[torn[0][1]][2],
+    ]);
+    torn[0][1] = 8;
+    assert!(
+        said(&torn, &more).contains("3.0e-3 mm apart"),
+        "{}",
+        said(&torn, &more)
+    );
     let mut turned = faces.clone();
     turned[3].swap(0, 1);
     assert!(said(&turned, &points).contains("same sense"));
