@@ -329,3 +329,40 @@ fn the_corner_of_a_blunt_tool_finds_its_node_across_a_gap() {
         }
     }
 }
+
+/// A wedge that comes down obliquely, with its tip on the middle node as it meets the block, takes it along as one that
+/// touches it at first; one whose tip is beside the node there pushes it aside with a face.
+#[test]
+fn a_tip_that_comes_obliquely_takes_the_node_that_it_meets() {
+    let pushed = |gap: f64, apart: f64, beside: f64, large: bool| {
+        let rise = 10.0 * RISE.tan();
+        let points = [[10.0, rise], [0.0, 0.0], [-10.0, rise]];
+        let wedge = points.map(|[x, y]| [x - apart + beside, y]);
+        let wedge = Polyline::new(&wedge).expect("valid");
+        let mut driver = pressed(
+            block(gap, false),
+            PlaneStrain::default(),
+            ("b.top", wedge),
+            (0.1, large),
+        );
+        let step = Step::new("press").tool("t", [apart + 0.002, -0.02 - gap]);
+        let step = step.fix("b.bottom", &FULL[..2]);
+        driver
+            .run(&step, Increments::equal(1), |_, _| ())
+            .expect("converges");
+        driver.tool_force("t").expect("exists")
+    };
+    for large in [false, true] {
+        let touching = pushed(0.0, 0.0, 0.0, large);
+        let met = pushed(0.03, 0.003, 0.0, large);
+        assert!(
+            (met - touching).norm() <= 1e-7 * touching.norm(),
+            "{met} {touching}"
+        );
+        let aside = pushed(0.03, 0.003, 1e-4, large);
+        assert!(
+            (aside - touching).norm() > 0.01 * touching.norm(),
+            "{aside}"
+        );
+    }
+}
