@@ -353,3 +353,55 @@ fn reduced(mut basis: DMatrix<f64>) -> DMatrix<f64> {
     }
     basis
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Analysis, Model, Settings};
+    use moreau_laws::Elastic;
+    use moreau_mesh::{CellKind, Mesh, PlaneStrain, Solid, block2, block3, uniform};
+    use proptest::prelude::*;
+
+    /// The nodes keep their distances, and go along the modes where the motion is small.
+    fn check<const D: usize>(
+        (mesh, kind): (Mesh<D>, CellKind),
+        hypothesis: impl Analysis<D>,
+        motion: &[f64],
+    ) -> Result<(), TestCaseError> {
+        let law = Elastic::new(1000.0, 0.3).expect("valid");
+        let model = Model::new(mesh, hypothesis).material("b", law, kind.integration());
+        let driver = Driver::new(model.expect("valid"), Settings::default()).expect("valid");
+        let loading = Loading::default();
+        let modes = RigidModes::new(&driver, &loading);
+        let nodes: Vec<SVector<f64, D>> = driver.mesh.nodes().iter().map(|&x| x.into()).collect();
+        let moved = |part: f64| -> Vec<SVector<f64, D>> {
+            let motion = DVector::from_column_slice(motion) * part;
+            let ways = nodes.iter().enumerate();
+            ways.map(|(a, x)| modes.way(a, x, &motion)).collect()
+        };
+        let (large, little) = (moved(1.0), moved(1e-6));
+        let along = DMatrix::from_column_slice(motion.len(), 1, motion);
+        for (a, x) in nodes.iter().enumerate() {
+            let linear = modes.of_node(a, &along)[0];
+            prop_assert!((little[a] / 1e-6 - linear).norm() < 1e-4, "{}", linear);
+            for (b, y) in nodes.iter().enumerate() {
+                let (before, after) = ((x - y).norm(), (x + large[a] - y - large[b]).norm());
+                prop_assert!((before - after).abs() < 1e-12, "{before} {after}");
+            }
+        }
+        Ok(())
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(16))]
+
+        #[test]
+        fn a_body_is_carried_without_a_strain(q in prop::array::uniform6(-3.0..3.0f64)) {
+            let lines = |n: usize| uniform(0.0, n as f64, n);
+            let plane = block2("b", CellKind::Quad4, &lines(2), &lines(1)).expect("valid");
+            check((plane, CellKind::Quad4), PlaneStrain::default(), &q[..3])?;
+            let solid = block3("b", CellKind::Hex8, &lines(2), &lines(1), &lines(1)).expect("valid");
+            check((solid, CellKind::Hex8), Solid, &q)?;
+        }
+    }
+}
