@@ -140,7 +140,7 @@ tools = [{{ name = "punch", move = [0, 2] }}]
             let left = ended(&freed, column);
             assert!(left.abs() < 2e-3, "{strain}, {column}: {left}");
         }
-        // Once they lie there, nothing has to be looked for.
+        // Once they lie there, nothing takes them away for a solution to bring them back.
         let iterations = freed.history().numbers("newton_iterations");
         assert!(
             iterations[6..].iter().sum::<f64>() <= 8.0,
