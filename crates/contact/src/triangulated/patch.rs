@@ -134,45 +134,56 @@ impl Patch {
             add(&(0.5 * (p + q)), 12.0, of);
         }
         powers[0] += corners[0];
-        let twists = inner.map(|[p, q]| 0.5 * (p - q));
-        // It lies within its coefficients, tips added, and the distance to a triangle is convex.
-        let points = || boundary.iter().chain(inner.iter().flatten());
+        let points = boundary.into_iter().chain(inner.into_iter().flatten());
+        let patch = Self {
+            corners,
+            powers,
+            twists: inner.map(|[p, q]| 0.5 * (p - q)),
+            tips,
+            is_plane: false,
+            around: [[0.0; 3]; 2],
+            bulge: 0.0,
+        };
+        patch.enclosed(&points.collect::<Vec<_>>())
+    }
+
+    /// With the box around it and its bulge, of its coefficients: it lies within these, tips added, and the distance to a
+    /// triangle is convex.
+    fn enclosed(self, points: &[Point]) -> Self {
         let most = |i: usize, side: fn(f64, f64) -> f64| {
-            let of = points().map(|p| p[i]);
+            let of = points.iter().map(|p| p[i]);
             of.reduce(side).unwrap_or_default()
         };
-        let tip: f64 = (tips.iter())
+        let tip: f64 = (self.tips.iter())
             .map(|tip| TIP * tip[0].norm().max(tip[1].norm()))
             .sum();
         let mut around = [f64::min, f64::max].map(|side| std::array::from_fn(|i| most(i, side)));
         around[0].iter_mut().for_each(|low| *low -= tip);
         around[1].iter_mut().for_each(|high| *high += tip);
-        let flat = Self {
-            corners,
-            powers,
-            twists,
-            tips,
-            is_plane: false,
-            around,
-            bulge: 0.0,
-        };
-        let bulge = tip + points().fold(0.0, |most, p| f64::max(most, flat.away(p)));
-        let size = [0, 1, 2].map(|k| (corners[k] - corners[(k + 1) % 3]).norm());
-        let bent = powers
-            .iter()
-            .enumerate()
-            .filter(|(k, _)| ![0, place(0, 1), place(1, 0)].contains(k));
-        let bent = bent
-            .map(|(_, p)| p)
-            .chain(&twists)
-            .chain(tips.iter().flatten());
-        let bent = bent.map(Point::norm).fold(0.0, f64::max);
-        let is_plane = bent <= STRAIGHT * size.into_iter().fold(0.0, f64::max);
+        let is_plane = self.is_straight();
+        let bulge = tip
+            + points
+                .iter()
+                .fold(0.0, |most, p| f64::max(most, self.away(p)));
         Self {
             is_plane,
+            around,
             bulge: if is_plane { 0.0 } else { bulge },
-            ..flat
+            ..self
         }
+    }
+
+    /// Whether it has no coefficients that a plane triangle has not.
+    fn is_straight(&self) -> bool {
+        let size = [0, 1, 2].map(|k| (self.corners[k] - self.corners[(k + 1) % 3]).norm());
+        let powers = self.powers.iter().enumerate();
+        let bent = powers.filter(|(k, _)| ![0, place(0, 1), place(1, 0)].contains(k));
+        let bent = bent
+            .map(|(_, p)| p)
+            .chain(&self.twists)
+            .chain(self.tips.iter().flatten());
+        let bent = bent.map(Point::norm).fold(0.0, f64::max);
+        bent <= STRAIGHT * size.into_iter().fold(0.0, f64::max)
     }
 
     pub(super) fn corners(&self) -> &[Point; 3] {
