@@ -6,6 +6,7 @@ pub(crate) mod corners;
 pub(crate) mod elimination;
 pub(crate) mod free;
 pub(crate) mod grips;
+pub(crate) mod grounds;
 pub(crate) mod kinematics;
 pub(crate) mod nearby;
 pub(crate) mod pairing;

@@ -2,7 +2,7 @@
 //! it is solved.
 
 use crate::interface::elimination::{Elimination, Transformation, row};
-use crate::linear::suspension::{Suspended, steepness};
+use crate::linear::suspension::{Suspended, precedence, steepness};
 use crate::linear::system::System;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Kinematics};
@@ -10,7 +10,6 @@ use moreau_algebra::{DenseCholesky, DenseLdlt, less_gram, mirror, transposed_pro
 use moreau_contact::{CondensedProblem, ContactError};
 use moreau_laws::{Local, Status};
 use nalgebra::{DMatrix, DVector};
-use std::collections::BTreeMap;
 
 /// The contact problem of a linearised increment, and the way back to the interface unknowns.
 ///
@@ -195,33 +194,41 @@ impl InFrames {
         kinematics: &[Kinematics<D>],
         (force, springs): (&[Local<D>], &[Local<D>]),
     ) -> Result<Self, ContactError> {
-        let mut rows = Elimination::new(load.len());
-        let mut suspended = Vec::new();
-        for (c, k) in kinematics.iter().enumerate() {
-            let mut normal = BTreeMap::new();
-            for j in (0..D).filter(|&j| k.active[j]) {
-                let given = (&motion_rows[c], &system.prescribed().directions);
-                let row = row(given, k, j, |dof| system.interface_index(dof));
+        let mut order: Vec<(usize, usize)> = (kinematics.iter().enumerate())
+            .flat_map(|(c, k)| (0..D).filter(|&j| k.active[j]).map(move |j| (c, j)))
+            .collect();
+        let eliminated = |order: &[(usize, usize)]| {
+            let mut rows = Elimination::new(load.len());
+            let mut suspended = Vec::new();
+            for &(c, j) in order {
+                let k = &kinematics[c];
+                let row_of = |j: usize| {
+                    let given = (&motion_rows[c], &system.prescribed().directions);
+                    row(given, k, j, |dof| system.interface_index(dof))
+                };
+                let row = row_of(j);
                 let own = (0..D).filter_map(|i| system.interface_index(D * points[c].node + i));
                 let own: Vec<usize> = own.collect();
-                if j == 0 && k.known_slip.is_some() {
-                    normal.clone_from(&row);
-                }
                 let is_known = j > 0 && k.known_slip.is_some();
                 if row.is_empty() && !is_known {
                     return Err(ContactError::Overconstrained { contact: c });
                 }
                 if !rows.solve(D * c + j, &row, &own) {
-                    let measure = if is_known { &normal } else { &row }.clone();
                     suspended.push(Suspended {
                         component: D * c + j,
+                        measure: if is_known { row_of(0) } else { row.clone() },
                         row,
                         force: force[c][j],
-                        measure,
                         steepness: steepness(k, &force[c], springs[c][j]),
                     });
                 }
             }
+            Ok((rows, suspended))
+        };
+        let (mut rows, mut suspended) = eliminated(&order)?;
+        if !suspended.is_empty() {
+            order.sort_by_key(|&(c, j)| precedence(&kinematics[c].law, &force[c], j));
+            (rows, suspended) = eliminated(&order)?;
         }
         let transformation = rows.finish(D * points.len());
         let of_node = system.shift();

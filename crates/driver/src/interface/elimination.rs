@@ -37,8 +37,9 @@ pub(crate) fn row<const D: usize>(
     row
 }
 
-/// A coefficient below this part of the relative displacement's is none.
-const NONE: f64 = 1e-8;
+/// A coefficient of what rows before leave, beside weights whose sum is one, that is none: unknowns that are solved for
+/// with it are its inverse of what they are.
+const NONE: f64 = 1e-3;
 
 /// Coefficient of an own unknown, over the largest, from which on it is the one solved for.
 const OWN: f64 = 0.05;
@@ -65,12 +66,10 @@ impl Elimination {
         }
     }
 
-    /// Whether a row says something that those solved do not: whether after them a coefficient is left
-    /// that is above a part of its largest.
-    pub(crate) fn is_independent(&self, row: &BTreeMap<usize, f64>, part: f64) -> bool {
-        let largest =
-            |row: &BTreeMap<usize, f64>| row.values().fold(0.0, |m: f64, c| m.max(c.abs()));
-        largest(&self.reduced(row.clone()).1) > part * largest(row)
+    /// Whether a row says something that those solved do not: whether after them a coefficient above the least is left.
+    pub(crate) fn is_independent(&self, row: &BTreeMap<usize, f64>, least: f64) -> bool {
+        let (_, left) = self.reduced(row.clone());
+        left.values().any(|c| c.abs() > least)
     }
 
     /// Solves Σ row x = u_component, for one of the `own` unknowns if it can; false if no unknown

@@ -23,6 +23,7 @@ impl<const D: usize> Driver<D> {
         self.footing.first.clear();
         self.footing.multipliers.clear();
         self.footing.folds = self.folds()?;
+        self.begin_grounds();
         self.turn_ties()?;
         self.pair_at(loading, &rest)?;
         if self.repairs() {

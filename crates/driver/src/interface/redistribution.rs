@@ -1,16 +1,21 @@
-//! Contact points that displacement conditions leave no freedom of their own: between bodies their
-//! multipliers go to their neighbours, on a tool to the nearest; not the multipliers themselves.
+//! Contact points that displacement conditions, or the tools they are on, leave no freedom of their own: between bodies
+//! their multipliers go to their neighbours, on a tool to the nearest; not the multipliers themselves.
 //!
 //! A node of the non-mortar side that is held cannot answer its multiplier, and where many nodes are
 //! held opposite to few that are free, their multipliers are more than what decides them. The sum of
 //! two multipliers is one again: Σ Φ_a = 1 stays true, so that a uniform pressure passes as before,
 //! and weights that are means of weights keep linear fields, and action equal to reaction.
 //!
+//! Two bodies side by side on a rough floor have no freedom at a corner where both stick to it: how much of the force
+//! between them goes through that corner, and how much into the floor beneath, nothing would decide. Where both are on the
+//! floor, sticking or not, nothing decides the shear between them at that corner, which is left out.
+//!
 //! Where nodes are held opposite to a tool that a force drives, rigid meets rigid: the one that the tool
 //! comes to first stops it, and what others at the same distance would bear nothing decides.
 
 use crate::driver::Driver;
 use crate::interface::elimination::{Elimination, row};
+use crate::model::footing::Ground;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Kinematics};
@@ -22,7 +27,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Way of a tool, over the size of the mesh, that is rounding of positions.
 const NO_WAY: f64 = 1e-12;
 
-/// Least coefficient of a row over its largest, after those before it have been taken out, for it to
+/// Least coefficient of a row over its largest weight, after those before it have been taken out, for it to
 /// say something of its own: forces grow by its inverse.
 const DISTINCT: f64 = 0.05;
 
@@ -42,7 +47,8 @@ impl<const D: usize> Driver<D> {
         let all: Vec<usize> = (0..self.points.len())
             .filter(|c| meets(c) && motion_rows[*c].plane(&SVector::zeros()).is_some())
             .collect();
-        if !all.iter().any(is_held) {
+        let grounds = self.grounds_of(motion_rows, &all);
+        if grounds.is_empty() && !all.iter().any(is_held) {
             return;
         }
         let neighbours = self.neighbours(surface);
@@ -70,8 +76,9 @@ impl<const D: usize> Driver<D> {
         kept.extend(stranded);
         // Those about which the others say all.
         loop {
-            let spare = self.spare(motion_rows, &kept, loading);
+            let spare = self.spare(motion_rows, (&kept, &grounds), loading);
             if spare.is_empty() {
+                self.leave_to_tools(motion_rows, (&kept, &grounds), loading);
                 return;
             }
             kept.retain(|c| !spare.contains(c));
@@ -87,6 +94,78 @@ impl<const D: usize> Driver<D> {
                     give(motion_rows, c, &takers);
                 }
             }
+        }
+    }
+
+    /// What tools hold of the points between bodies that are at nodes on a tool, and of what is opposite to them.
+    fn grounds_of(
+        &self,
+        motion_rows: &[RelativeMotionRow<D>],
+        between: &[usize],
+    ) -> Vec<Ground<D>> {
+        let own = |ground: &Ground<D>| self.points[ground.point].own.iter().map(|o| o.0);
+        let grounds = &self.footing.grounds;
+        let held: BTreeSet<usize> = grounds.iter().flat_map(own).collect();
+        let crossing = between
+            .iter()
+            .filter(|&&c| held.contains(&self.points[c].node));
+        let moved: BTreeSet<usize> = crossing.flat_map(|&c| motion_rows[c].nodes()).collect();
+        let bears = |ground: &&Ground<D>| own(ground).any(|a| moved.contains(&a));
+        grounds.iter().filter(bears).copied().collect()
+    }
+
+    /// What tools hold, as rows that come before those of others.
+    fn held_by(
+        &self,
+        grounds: &[Ground<D>],
+        motion_rows: &[RelativeMotionRow<D>],
+        loading: &Loading<D>,
+    ) -> Elimination {
+        let mut rows = Elimination::new(self.state.displacement.len());
+        let unknown = |dof: usize| (!loading.displacement.contains_key(&dof)).then_some(dof);
+        for ground in grounds {
+            let (c, none) = (ground.point, SVector::zeros());
+            let free = loading.free_at(self.points[c].node);
+            let k = Kinematics::new(&self.points[c], &ground.normal, 0.0, &none, &free);
+            let held = if ground.sticks { D } else { 1 };
+            for j in (0..held).filter(|&j| k.active[j]) {
+                let row = row((&motion_rows[c], &loading.directions), &k, j, unknown);
+                rows.solve(D * c + j, &row, &[]);
+            }
+        }
+        rows
+    }
+
+    /// Leaves to tools what they hold of the motion along the surface between bodies, on both sides of it.
+    fn leave_to_tools(
+        &self,
+        motion_rows: &mut [RelativeMotionRow<D>],
+        (kept, grounds): (&BTreeSet<usize>, &[Ground<D>]),
+        loading: &Loading<D>,
+    ) {
+        if grounds.is_empty() {
+            return;
+        }
+        let held = self.held_by(grounds, motion_rows, loading);
+        let unknown = |dof: usize| (!loading.displacement.contains_key(&dof)).then_some(dof);
+        for &c in kept {
+            let (motion_row, point) = (&motion_rows[c], &self.points[c]);
+            let Some((n, _)) = motion_row.plane(&SVector::zeros()) else {
+                continue;
+            };
+            let free = motion_row.free(point.node, |a| loading.free_at(a));
+            let is_held = |m: &SVector<f64, D>| {
+                let k = Kinematics::new(point, m, 0.0, &SVector::zeros(), &free);
+                let along = row((motion_row, &loading.directions), &k, 0, unknown);
+                !held.is_independent(&along, DISTINCT * motion_row.largest_weight())
+            };
+            let own = |ground: &&Ground<D>| {
+                let nodes = &self.points[ground.point].own;
+                nodes.iter().any(|&(a, _)| a == point.node)
+            };
+            let normals = grounds.iter().filter(own).map(|ground| ground.normal);
+            let across = normals.filter(|m| m.dot(&n).abs() < DISTINCT && is_held(m));
+            motion_rows[c].grounded = across.collect();
         }
     }
 
@@ -203,24 +282,27 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Points that are held, of which the relative displacement, as far as it is free, is determined
-    /// by those of others: by the points with a freedom of their own first, then by those with one
+    /// by those of others: by those on tools, then by the points with a freedom of their own, then by those with one
     /// opposite nearly to themselves. Where only that is determined by others which is along the directions in which they
     /// are held, ties are kept as they are, and contacts say what their nodes can do.
     fn spare(
         &self,
         motion_rows: &mut [RelativeMotionRow<D>],
-        kept: &BTreeSet<usize>,
+        (kept, grounds): (&BTreeSet<usize>, &[Ground<D>]),
         loading: &Loading<D>,
     ) -> Vec<usize> {
         let is_free = |dof: usize| !loading.displacement.contains_key(&dof);
         let own = |c: usize| (0..D).map(move |i| D * self.points[c].node + i);
-        let alone = |c: usize| match own(c).all(is_free) {
-            true => f64::INFINITY,
-            false => self.footing.opposite[c],
+        let nodes = |ground: &Ground<D>| self.points[ground.point].own.iter().map(|o| o.0);
+        let grounded: BTreeSet<usize> = grounds.iter().flat_map(nodes).collect();
+        let is_held = |c: usize| !own(c).all(is_free) || grounded.contains(&self.points[c].node);
+        let alone = |c: usize| match is_held(c) {
+            true => self.footing.opposite[c],
+            false => f64::INFINITY,
         };
         let mut order: Vec<(f64, usize)> = kept.iter().map(|&c| (alone(c), c)).collect();
         order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        let mut rows = Elimination::new(self.state.displacement.len());
+        let mut rows = self.held_by(grounds, motion_rows, loading);
         let mut spare = Vec::new();
         for (alone, c) in order {
             let (motion_row, point) = (&motion_rows[c], &self.points[c]);
@@ -228,6 +310,8 @@ impl<const D: usize> Driver<D> {
             let Some((n, gap)) = motion_row.plane(&SVector::zeros()) else {
                 continue;
             };
+            let least = DISTINCT * motion_row.largest_weight();
+            let is_grounded = grounded.contains(&point.node);
             let unknown = |dof: usize| is_free(dof).then_some(dof);
             let rows_in = |free: &Subspace<D>| -> Vec<(usize, BTreeMap<usize, f64>)> {
                 let k = Kinematics::new(point, &n, gap, &SVector::zeros(), free);
@@ -238,8 +322,10 @@ impl<const D: usize> Driver<D> {
                     .collect()
             };
             let are_distinct = |all: &[(usize, BTreeMap<usize, f64>)], rows: &Elimination| {
-                let mut own = all.iter();
-                own.all(|(_, row)| rows.is_independent(row, DISTINCT))
+                // What tools hold of the motion along the surface is left to them afterwards.
+                let decisive = if is_grounded { 1 } else { D };
+                let mut own = all.iter().take(decisive);
+                own.all(|(_, row)| rows.is_independent(row, least))
             };
             let mut all = rows_in(&motion_row.free(point.node, |a| loading.free_at(a)));
             if alone.is_finite() && !are_distinct(&all, &rows) {

@@ -2,7 +2,7 @@
 //! spring whose force starts from the last multiplier; not the contact problem.
 
 use crate::model::points::Kinematics;
-use moreau_laws::Local;
+use moreau_laws::{Friction, Local};
 use nalgebra::{DMatrix, DVector};
 use std::collections::BTreeMap;
 
@@ -40,6 +40,9 @@ const STIFFER: f64 = 30.0;
 /// The same at most, where contacts answer steeply.
 const STIFFEST: f64 = 1e6;
 
+/// Distance of a shear from its limit, over that, which is rounding: it slips.
+const AT_LIMIT: f64 = 1e-9;
+
 /// Least stiffness of the unknowns that a spring is measured by, over that of a node: a tool that a force drives has none
 /// of its own, or that of its turning forces, which may be negative.
 const SOFTEST: f64 = 0.01;
@@ -62,6 +65,20 @@ pub(crate) fn steepness<const D: usize>(
     match compliance > 0.0 {
         true => turns.max(compliance.recip()),
         false => turns,
+    }
+}
+
+/// Which components are unknowns of the bodies first, where not all can be: those that forces hold, then those of which the
+/// force is known as the others are. The spring of one that is free to open or to slip rests as soon as statuses do.
+pub(crate) fn precedence<const D: usize>(law: &Friction, force: &Local<D>, j: usize) -> u8 {
+    let shear = force.rows(1, D - 1).norm();
+    let presses = law.is_tie() || force[0] > 0.0;
+    let sticks = law.is_tie() || shear < (1.0 - AT_LIMIT) * law.bound(force[0].max(0.0));
+    match (j, presses) {
+        (0, true) => 0,
+        (_, true) if sticks => 0,
+        (0, false) => 1,
+        _ => 2,
     }
 }
 

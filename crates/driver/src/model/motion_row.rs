@@ -22,6 +22,8 @@ pub(crate) struct RelativeMotionRow<const D: usize> {
     pub(crate) area: f64,
     /// Whether it says only what its node can do: others say what the nodes opposite do along the rest.
     pub(crate) own_only: bool,
+    /// Directions along which tools hold both its sides, so that nothing is left for it to say.
+    pub(crate) grounded: Vec<SVector<f64, D>>,
     /// Normal and gap where the surfaces were paired, where they are those of a surface.
     plane: Option<(SVector<f64, D>, f64)>,
     /// Slip from the start of the increment to there, in space \[mm\].
@@ -187,6 +189,11 @@ impl<const D: usize> RelativeMotionRow<D> {
         self.own.iter().copied().chain(opposite)
     }
 
+    /// The largest weight, of either side.
+    pub(crate) fn largest_weight(&self) -> f64 {
+        self.weights().fold(0.0, |m: f64, (_, w)| m.max(w.abs()))
+    }
+
     /// Whether another row says the same, of either sign: as vectors of weights their sine is at most `sine`.
     pub(crate) fn is_along(&self, other: &Self, sine: f64) -> bool {
         let others: BTreeMap<usize, f64> = other.weights().collect();
@@ -209,16 +216,20 @@ impl<const D: usize> RelativeMotionRow<D> {
     }
 
     /// Where the relative displacement is free, from where nodes are: as the own node is and, unless it says only that, as
-    /// all of those opposite are.
+    /// all of those opposite are; less what tools hold of both.
     pub(crate) fn free(&self, node: usize, of: impl Fn(usize) -> Subspace<D>) -> Subspace<D> {
         let opposite = self
             .opposite
             .iter()
             .filter(|_| !self.own_only)
             .map(|&(b, _)| of(b));
-        match opposite.reduce(|all, other| all.common(&other)) {
+        let free = match opposite.reduce(|all, other| all.common(&other)) {
             Some(opposite) => of(node).with(&opposite),
             None => of(node),
+        };
+        match self.grounded.is_empty() {
+            true => free,
+            false => free.common(&Subspace::spanned(&self.grounded).complement()),
         }
     }
 }
@@ -275,6 +286,7 @@ mod tests {
             opposite: vec![(2, 0.5), (3, 0.5)],
             area: 3.0,
             own_only: false,
+            grounded: Vec::new(),
             plane: plane(1.0, 0.1),
             slipped: None,
         };
@@ -283,6 +295,7 @@ mod tests {
             opposite: vec![(2, 1.0)],
             area: 2.0,
             own_only: false,
+            grounded: Vec::new(),
             plane: plane(1.0, 0.5),
             slipped: None,
         };

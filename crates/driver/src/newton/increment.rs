@@ -178,7 +178,9 @@ impl<const D: usize> Driver<D> {
             let mut balance = self.balance_of(system, increment)?;
             self.tell(increment, &balance, watch)?;
             if let Some(solution) = self.accepted(system, increment, &balance) {
-                if !self.release(&solution.force) {
+                let (end, iterate) = (&increment.end, &increment.iterate);
+                let stands = (balance.kinematics.as_slice(), solution.status.as_slice());
+                if !self.release(&solution.force) && !self.reground(end, &iterate.d_u, stands)? {
                     let state = (balance.kinematics.as_slice(), solution.status.as_slice());
                     let held = &mut increment.held;
                     increment.counts.negative =
@@ -187,6 +189,12 @@ impl<const D: usize> Driver<D> {
                     return Ok((balance, solution));
                 }
                 increment.solution = Some(solution);
+                balance = self.balance_of(system, increment)?;
+            } else if balance.largest <= balance.accepted
+                && let Some(solution) = &increment.solution
+                && let stands = (balance.kinematics.as_slice(), solution.status.as_slice())
+                && self.reground(&increment.end, &increment.iterate.d_u, stands)?
+            {
                 balance = self.balance_of(system, increment)?;
             }
             self.check_progress(system, increment, &balance)?;

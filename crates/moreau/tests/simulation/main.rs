@@ -8,6 +8,7 @@ mod driven;
 mod flat;
 mod freed;
 mod interrupted;
+mod joints;
 mod keys;
 mod laws;
 mod leaps;

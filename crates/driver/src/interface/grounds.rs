@@ -1,0 +1,112 @@
+//! What tools hold of the nodes that also face another body, as an increment goes on; not what follows for their
+//! multipliers.
+
+use crate::driver::Driver;
+use crate::error::ModelError;
+use crate::model::footing::Ground;
+use crate::model::load::Loading;
+use crate::model::motion_row::RelativeMotionRow;
+use crate::model::points::{Kinematics, turned};
+use moreau_laws::Status;
+use std::collections::BTreeSet;
+
+/// Gap that is none, over the size of the mesh.
+const CLOSED: f64 = 1e-6;
+
+/// How often in an increment it is found anew what tools hold.
+const CHANGES: u8 = 8;
+
+impl<const D: usize> Driver<D> {
+    /// At the start of an increment: as at the end of the last one; of the first where the undeformed bodies touch, and
+    /// nothing sticks yet.
+    pub(crate) fn begin_grounds(&mut self) {
+        let none = CLOSED * self.mesh.size();
+        self.footing.beside = self.points_beside_bodies();
+        let grounds = self.footing.beside.iter().filter_map(|&c| {
+            let (point, record) = (&self.points[c], &self.state.contacts[c]);
+            let tool = point.tool?;
+            let row = RelativeMotionRow::on_tool(&point.own, point.area, self.tool_node(tool));
+            let (obstacle, at) = (self.tools[tool].opposite(point), self.seen(point, &row));
+            let closed = match self.state.increment {
+                0 => obstacle.distance(&at) - point.offset <= none,
+                _ => record.status != Status::Open,
+            };
+            let normal = obstacle.normal(&at);
+            closed.then(|| Ground {
+                point: c,
+                normal: turned(normal, &self.state.loading.turn_of(tool)),
+                sticks: record.status == Status::Stick,
+            })
+        });
+        self.footing.grounds = grounds.collect();
+        self.footing.regrounded = 0;
+    }
+
+    /// What tools hold under these statuses. Whether that changes which multipliers there are.
+    ///
+    /// # Errors
+    /// [`Driver::pair_at`].
+    pub(crate) fn reground(
+        &mut self,
+        loading: &Loading<D>,
+        d_u: &[f64],
+        (kinematics, status): (&[Kinematics<D>], &[Status]),
+    ) -> Result<bool, ModelError> {
+        let footing = &self.footing;
+        let stuck: BTreeSet<usize> = (footing.grounds.iter())
+            .filter(|ground| ground.sticks && footing.regrounded > 0)
+            .map(|ground| ground.point)
+            .collect();
+        let closed = footing.beside.iter().filter(|&&c| {
+            status[c] != Status::Open && kinematics[c].active[0] && self.points[c].tool.is_some()
+        });
+        let grounds: Vec<Ground<D>> = closed
+            .map(|&c| Ground {
+                point: c,
+                normal: kinematics[c].axes.column(0).into_owned(),
+                // What sticks while its neighbours have its multiplier, and slips when it has its own, does one of both.
+                sticks: status[c] == Status::Stick || stuck.contains(&c),
+            })
+            .collect();
+        let held = |all: &[Ground<D>]| all.iter().map(|g| (g.point, g.sticks)).collect::<Vec<_>>();
+        if footing.regrounded >= CHANGES || held(&grounds) == held(&footing.grounds) {
+            return Ok(false);
+        }
+        self.footing.regrounded += 1;
+        self.footing.grounds = grounds;
+        let before = (self.footing.redistributed.clone(), self.along_grounds());
+        match self.repairs() {
+            true => self.pair_at(loading, d_u)?,
+            false => self.pair_at(loading, &vec![0.0; d_u.len()])?,
+        }
+        Ok(before != (self.footing.redistributed.clone(), self.along_grounds()))
+    }
+
+    /// The points of which tools hold some of the motion along the surface.
+    fn along_grounds(&self) -> Vec<usize> {
+        let rows = self.footing.rows.iter().enumerate();
+        rows.filter(|(_, row)| !row.grounded.is_empty())
+            .map(|(c, _)| c)
+            .collect()
+    }
+
+    /// The points on tools of the nodes on surfaces that face another body.
+    fn points_beside_bodies(&self) -> Vec<usize> {
+        if self.points.iter().all(|p| p.tool.is_some()) {
+            return Vec::new();
+        }
+        let mut beside = BTreeSet::new();
+        for contact in self.contacts.iter().filter(|c| c.pairing.is_some()) {
+            for surface in [&contact.surface, &contact.opposite] {
+                let facets = self.mesh.facet_group(surface).unwrap_or(&[]);
+                beside.extend(
+                    facets
+                        .iter()
+                        .flat_map(|&facet| self.mesh.facet_nodes(facet)),
+                );
+            }
+        }
+        let is_beside = |c: &usize| self.points[*c].own.iter().any(|(a, _)| beside.contains(a));
+        (0..self.points.len()).filter(is_beside).collect()
+    }
+}
