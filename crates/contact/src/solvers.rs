@@ -169,6 +169,8 @@ fn is_within(residual: f64, target: f64) -> bool {
 /// When a method on the form u = W t + q of a condensed problem has arrived.
 struct Goal<'a, const D: usize> {
     problem: &'a CondensedProblem<D>,
+    /// Whether displacements weigh as where solutions are judged, not by the stiffness of the problem alone.
+    judged: bool,
     tolerance: Tolerance,
     /// Residual that is enough \[N\].
     enough: f64,
@@ -181,12 +183,30 @@ struct Goal<'a, const D: usize> {
 const PATIENCE: f64 = 0.1;
 
 impl<'a, const D: usize> Goal<'a, D> {
+    /// Of a solution, which will be judged.
     fn new(problem: &'a CondensedProblem<D>, tolerance: Tolerance, enough: f64) -> Self {
         Self {
             problem,
+            judged: true,
             tolerance,
             enough,
             least: (f64::INFINITY, 0),
+        }
+    }
+
+    /// Of displacements that another method starts from.
+    fn of_start(problem: &'a CondensedProblem<D>, tolerance: Tolerance) -> Self {
+        Self {
+            judged: false,
+            ..Self::new(problem, tolerance, 0.0)
+        }
+    }
+
+    /// By how much forces t and displacements u do not obey the law \[N\].
+    fn residual(&self, t: &[Local<D>], u: &[Local<D>]) -> f64 {
+        match self.judged {
+            true => self.problem.judged_residual(u, t),
+            false => self.problem.residual(u, t),
         }
     }
 
@@ -205,7 +225,7 @@ impl<'a, const D: usize> Goal<'a, D> {
         t: &[Local<D>],
         u: &[Local<D>],
     ) -> Option<Result<ContactSolution<D>, ContactError>> {
-        let residual = self.problem.residual(u, t);
+        let residual = self.residual(t, u);
         let target = self.target(t, u);
         if is_within(residual, target.max(self.enough)) {
             return Some(Ok(ContactSolution {

@@ -39,6 +39,8 @@ pub struct CondensedProblem<const D: usize> {
     held: f64,
     /// By how much the load may be rounding \[N\].
     load_rounding: f64,
+    /// The least stiffness by which displacements weigh in the residual of a solution \[N/mm\].
+    weight: f64,
 }
 
 impl<const D: usize> CondensedProblem<D> {
@@ -73,6 +75,7 @@ impl<const D: usize> CondensedProblem<D> {
             previous,
             held: 0.0,
             load_rounding: 0.0,
+            weight: 0.0,
         })
     }
 
@@ -116,6 +119,12 @@ impl<const D: usize> CondensedProblem<D> {
     /// vanished is the rounding of those before. A solution is exact where its residual is no larger.
     pub fn rounds(&mut self, rounding: f64) {
         self.load_rounding = rounding;
+    }
+
+    /// Tells by which stiffness \[N/mm\] displacements weigh at least where a solution is judged. In plastic flow S is softer
+    /// than the bodies, and what is within a tolerance when weighed by S need not be when weighed by them.
+    pub fn weigh(&mut self, stiffness: f64) {
+        self.weight = stiffness;
     }
 
     /// Whether only a proximal term makes S regular that is so small that the inverse is too large to iterate on.
@@ -218,8 +227,18 @@ impl<const D: usize> CondensedProblem<D> {
     /// Largest norm over the contacts of the natural map t − proj(t − α ũ), \[90′\] \[N\]; infinite where a displacement or a
     /// force is no number.
     pub fn residual(&self, u: &[Local<D>], t: &[Local<D>]) -> f64 {
+        self.residual_by(0.0, u, t)
+    }
+
+    /// [`Self::residual`] with displacements weighed as [`Self::weigh`] tells \[N\]: no smaller, since the map grows with α.
+    pub(crate) fn judged_residual(&self, u: &[Local<D>], t: &[Local<D>]) -> f64 {
+        self.residual_by(self.weight, u, t)
+    }
+
+    /// The largest norm of the natural map, with α of this size at least \[N\].
+    fn residual_by(&self, least: f64, u: &[Local<D>], t: &[Local<D>]) -> f64 {
         let size = |i: usize| {
-            let map = self.laws[i].natural_map(&u[i], &t[i], self.alpha(i));
+            let map = self.laws[i].natural_map(&u[i], &t[i], self.alpha(i).max(least));
             size_of_map(&map, &u[i], &t[i])
         };
         (0..self.contacts()).map(size).fold(0.0, f64::max)

@@ -61,7 +61,7 @@ impl<const D: usize, S: LocalSolver<D>> ContactSolver<D> for Dual<S> {
             if let Some(end) = goal.judge(point.solver, iterations, t, u) {
                 return end;
             }
-            let (residual, target) = (problem.residual(u, t), goal.target(t, u).max(enough));
+            let (residual, target) = (goal.residual(t, u), goal.target(t, u).max(enough));
             if !(residual.is_finite() && target.is_finite()) {
                 return Err(ContactError::NotFinite { what: "solution" });
             }

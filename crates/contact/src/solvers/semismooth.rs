@@ -251,7 +251,7 @@ impl<const D: usize> Newton<'_, D> {
             relative: 1e-8,
             iterations: (ATTEMPT * size).max(quick).min(20_000),
         };
-        let goal = || Goal::new(p, tolerance, 0.0);
+        let goal = || Goal::of_start(p, tolerance);
         // Where sweeps cycle, which takes a large friction, corrections may not, and conversely; and
         // the methods for the local form arrive where neither does.
         let swept = GaussSeidel::extrapolated(&form, t.to_vec(), goal()).or_else(|_| {

@@ -549,3 +549,35 @@ fn the_residual_of_what_is_no_number_is_infinite() {
         assert_eq!(problem.residual(&zero, &nan), f64::INFINITY);
     }
 }
+
+/// Where the structure has softened, solutions are judged by the stiffness that it had, and the methods go on until they
+/// meet that.
+#[test]
+fn a_solution_is_as_exact_as_it_will_be_judged() {
+    let n = 12;
+    let a = DMatrix::from_fn(n, n, |i, j| ((7 * i * i + 3 * j * j + i * j) as f64).sin());
+    let w = &a * a.transpose() + DMatrix::identity(n, n) * 0.05;
+    let q = |i: usize| Local::<3>::new(-0.4 + (i as f64 * 1.7).sin(), 0.3, -0.2);
+    let free: Vec<_> = (0..4).map(q).collect();
+    let tolerance = Tolerance::new(1e-8, 20_000);
+    let methods: [Box<dyn ContactSolver<3>>; 3] = [
+        Box::new(Uzawa { tolerance }),
+        Box::new(GaussSeidel { tolerance }),
+        Box::new(Dual(GaussSeidel { tolerance })),
+    ];
+    for law in laws(0.3, 0.2) {
+        for method in &methods {
+            let problem = CondensedProblem::from_delassus(w.clone(), &free, vec![law; 4]);
+            let mut problem = problem.expect("definite");
+            let stiffness = 1e3 * (0..4).map(|i| problem.alpha(i)).fold(0.0, f64::max);
+            problem.weigh(stiffness);
+            let found = method.solve(&problem, None).expect("solvable");
+            let (u, t) = (&found.displacement, &found.force);
+            let map = |i: usize| law.natural_map(&u[i], &t[i], stiffness).norm();
+            let left = (0..4).map(map).fold(0.0, f64::max);
+            let asked = 1e-8 * problem.force_scale(t);
+            assert!(left <= asked, "{law:?}, {method:?}: {left:.1e} {asked:.1e}");
+            assert!((found.residual / left - 1.0).abs() < 1e-9 || left < 1e-14);
+        }
+    }
+}
