@@ -571,7 +571,11 @@ impl<const D: usize> Driver<D> {
             Nesting::Outside {
                 tolerance,
                 iterations,
-            } => self.nested_increment(&mut system, &start, end, (tolerance, iterations), watch),
+                extrapolated,
+            } => {
+                let until = (tolerance, iterations, extrapolated);
+                self.nested_increment(&mut system, &start, end, until, watch)
+            }
         };
         let other = match &outcome {
             Err(error) => self.other_seam(&mut system, error, end)?,

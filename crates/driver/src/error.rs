@@ -725,8 +725,21 @@ fn collapse_hint(
             | IncrementError::NotFinite { .. }
             | IncrementError::Law(_)
             | IncrementError::Snap { .. }
+            | IncrementError::Contact {
+                source: ContactError::Floating { .. },
+                ..
+            }
     ) {
         return String::new();
+    }
+    if let IncrementError::Contact {
+        source: ContactError::NotConverged { .. },
+        ..
+    } = cause
+    {
+        return "The contact problem was not solved, which tells nothing of the load: take the method \"exact\" \
+                inside of each iteration (semismooth Newton), if it is another one, or allow smaller increments. "
+            .into();
     }
     if plastic_fraction <= 0.02 {
         return "Hardly anything flows plastically: look for a contact that opens or a missing support. "

@@ -13,8 +13,11 @@ pub enum Nesting {
     Outside {
         /// Natural-map residual at which the increment is accepted, over the largest force.
         tolerance: f64,
-        /// Outer iterations after which an increment fails.
+        /// Outer iterations after which an increment fails; sooner where they do not get on.
         iterations: usize,
+        /// Whether each correction is extrapolated from those before, which takes a small part of the iterations; without
+        /// it is the paper's own method.
+        extrapolated: bool,
     },
 }
 

@@ -127,6 +127,7 @@ fn nested() -> Settings<2> {
         nesting: Nesting::Outside {
             tolerance: OUTER_TOLERANCE,
             iterations: 200_000,
+            extrapolated: false,
         },
         cuts: 0,
         ..Settings::default()

@@ -14,8 +14,9 @@ use crate::newton::iterate::Candidate;
 use crate::newton::line_search::NewtonStep;
 use crate::report::{IncrementReport, Iteration};
 use crate::vector::{SparseVector, largest};
-use moreau_contact::{ContactError, ContactSolution, uzawa_steps};
+use moreau_contact::{Anderson, ContactError, ContactSolution, uzawa_steps};
 use moreau_laws::{Local, Status};
+use nalgebra::DVector;
 use std::ops::ControlFlow;
 
 /// Contact forces on their way to the fixed point t = proj(t − α ũ(t)).
@@ -28,7 +29,14 @@ struct Uzawa<const D: usize> {
     common: Vec<f64>,
     /// t and ũ before the last correction.
     before: Option<(Vec<Local<D>>, Vec<Local<D>>)>,
+    /// What extrapolates the corrections.
+    anderson: Option<Anderson>,
+    /// The least residual that counted as progress \[N\], and the correction in which it was found.
+    least: (f64, usize),
 }
+
+/// Part of the corrections allowed in which the residual must fall by as large a part: what is slower arrives nowhere.
+const PATIENCE: f64 = 0.1;
 
 /// What a nonlinear solve under frozen contact forces answers.
 struct Response<const D: usize> {
@@ -41,7 +49,8 @@ struct Response<const D: usize> {
 }
 
 impl<const D: usize> Uzawa<D> {
-    /// The correction \[90′\].
+    /// The correction \[90′\], extrapolated from those before, which leaves its fixed point what it is: where bodies flow
+    /// they are so much softer against some forces than against others that thousands of plain corrections do not arrive.
     fn correct(&mut self, response: &Response<D>) {
         let (u, law) = (&response.displacement, |i: usize| {
             &response.kinematics[i].law
@@ -49,10 +58,24 @@ impl<const D: usize> Uzawa<D> {
         let all = 0..self.force.len();
         let shifted: Vec<Local<D>> = all.clone().map(|i| law(i).shifted(&u[i])).collect();
         self.shorten(&shifted);
-        let corrected = all.map(|i| law(i).correct(&u[i], &self.force[i], self.alpha[i]));
-        let corrected = corrected.collect();
-        let force = std::mem::replace(&mut self.force, corrected);
+        let corrected = |i: usize| law(i).correct(&u[i], &self.force[i], self.alpha[i]);
+        let corrected: Vec<Local<D>> = all.clone().map(corrected).collect();
+        let next = match &mut self.anderson {
+            Some(anderson) => anderson.next(&stacked(&self.force), stacked(&corrected)),
+            None => stacked(&corrected),
+        };
+        // Between admissible forces an extrapolation need not be one.
+        let admissible = |i: usize| law(i).project(&Local::from_fn(|j, _| next[D * i + j]));
+        let force = std::mem::replace(&mut self.force, all.map(admissible).collect());
         self.before = Some((force, shifted));
+    }
+
+    /// Whether the corrections get on, of which this many are allowed.
+    fn gets_on(&mut self, residual: f64, (correction, allowed): (usize, usize)) -> bool {
+        if residual < (1.0 - PATIENCE) * self.least.0 {
+            self.least = (residual, correction);
+        }
+        (correction - self.least.1) as f64 <= PATIENCE * allowed as f64
     }
 
     /// Lowers α where the last correction overshot: a contraction needs α ‖Δũ‖ < 2 ‖Δt‖, from which it
@@ -70,6 +93,8 @@ impl<const D: usize> Uzawa<D> {
         if change > 0.0 && answer > 1.2 * change {
             let factor = 0.8 * change / answer;
             self.alpha.iter_mut().for_each(|a| *a *= factor);
+            // The corrections are another map now.
+            self.anderson = self.anderson.take().map(|_| Anderson::default());
         }
     }
 }
@@ -85,16 +110,19 @@ impl<const D: usize> Driver<D> {
         system: &mut System,
         start: &Loading<D>,
         end: &Loading<D>,
-        (tolerance, iterations): (f64, usize),
+        (tolerance, iterations, extrapolated): (f64, usize, bool),
         watch: &mut dyn FnMut(&Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<IncrementReport, IncrementError> {
         let guess = self.predictor(start, end);
         let mut increment = self.begin_increment(system, (start, end), guess, None);
         increment.counts.solves = 0;
-        let mut uzawa = self.prediction(system, end, &mut increment)?;
+        let mut uzawa = self.prediction(system, end, &mut increment, extrapolated)?;
         let mut left = f64::INFINITY;
-        for _ in 0..iterations {
-            self.solve_bulk(system, end, &uzawa.force, &mut increment)?;
+        let mut corrections = 0;
+        while corrections < iterations && uzawa.gets_on(left, (corrections, iterations)) {
+            corrections += 1;
+            self.solve_bulk(system, end, &uzawa.force, &mut increment)
+                .map_err(|error| self.not_borne(error))?;
             let response = self.response(system, end, &uzawa, &increment);
             let iterate = &increment.iterate;
             let scale =
@@ -135,7 +163,7 @@ impl<const D: usize> Driver<D> {
         let iterate = &increment.iterate;
         let source = ContactError::NotConverged {
             solver: "Uzawa around the nonlinear solve",
-            iterations,
+            iterations: corrections,
             residual: left,
             tolerance: tolerance
                 * self.force_scale((&iterate.assembly, iterate.heated), end, &iterate.contact),
@@ -144,12 +172,36 @@ impl<const D: usize> Driver<D> {
         Err(IncrementError::Contact { iteration, source })
     }
 
+    /// That bodies were not brought into balance under frozen contact forces is the method's failure, not that of what is
+    /// prescribed: bodies that do not harden bear no larger forces than those of collapse, and corrections on their way go
+    /// beyond them.
+    fn not_borne(&self, error: IncrementError) -> IncrementError {
+        match error {
+            IncrementError::NotConverged {
+                iterations,
+                out_of_balance,
+                tolerance,
+                ..
+            } if !self.points.is_empty() => IncrementError::Contact {
+                iteration: iterations,
+                source: ContactError::NotConverged {
+                    solver: "Uzawa around the nonlinear solve, whose bodies do not bear the contact forces of a correction,",
+                    iterations,
+                    residual: out_of_balance,
+                    tolerance,
+                },
+            },
+            other => other,
+        }
+    }
+
     /// The committed forces, and α of the tangent at the first iterate.
     fn prediction(
         &mut self,
         system: &mut System,
         end: &Loading<D>,
         increment: &mut Increment<'_, '_, D>,
+        extrapolated: bool,
     ) -> Result<Uzawa<D>, IncrementError> {
         let contact = |source: ContactError| IncrementError::Contact {
             iteration: 0,
@@ -173,6 +225,8 @@ impl<const D: usize> Driver<D> {
             common: (0..force.len()).map(|i| problem.alpha(i)).collect(),
             force,
             before: None,
+            anderson: extrapolated.then(Anderson::default),
+            least: (f64::INFINITY, 0),
         })
     }
 
@@ -263,6 +317,11 @@ impl<const D: usize> Driver<D> {
             }
         }
     }
+}
+
+/// All components of all contacts as one vector.
+fn stacked<const D: usize>(forces: &[Local<D>]) -> DVector<f64> {
+    DVector::from_iterator(D * forces.len(), forces.iter().flatten().copied())
 }
 
 /// The increment at the fixed point.

@@ -280,6 +280,7 @@ fn settings<const D: usize>(
         settings.nesting = Nesting::Outside {
             tolerance: 1e-8,
             iterations: 20_000,
+            extrapolated: true,
         };
     }
     Some(settings)

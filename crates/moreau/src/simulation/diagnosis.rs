@@ -172,6 +172,9 @@ fn suggestion(
         && (matches!(cause, IncrementError::Mechanism { .. }) || plastic_fraction > WIDESPREAD);
     let exact = deck.solver.method == Method::Exact && !deck.solver.outside;
     match (load, cause) {
+        (_, IncrementError::Contact { .. }) if !exact => {
+            "set contact = \"exact\" in [solver]: it needs no parameter and no contraction".into()
+        }
         (Some(load), _) if yields => format!(
             "the load on \"{}\" is probably beyond the limit load: in step \"{name}\" prescribe a \
              displacement there instead (move), which passes the limit and shows the load",
@@ -183,9 +186,6 @@ fn suggestion(
              (move, turn) along what slides",
             pushed.map_or("", |p| &p.on.value)
         ),
-        (_, IncrementError::Contact { .. }) if !exact => {
-            "set contact = \"exact\" in [solver]: it needs no parameter and no contraction".into()
-        }
         (_, IncrementError::NotFinite { .. }) => format!(
             "in step \"{name}\" prescribe what the model can follow: displacements of its size at most, and \
              loads of the size of its strength, in the units of the deck"

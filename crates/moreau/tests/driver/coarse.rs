@@ -144,6 +144,7 @@ fn other_ways_to_treat_contact_go_the_same_way() {
         nesting: Nesting::Outside {
             tolerance: 1e-6,
             iterations: 500,
+            extrapolated: true,
         },
         memory,
         ..Settings::default()

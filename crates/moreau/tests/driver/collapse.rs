@@ -230,6 +230,7 @@ fn a_step_that_stops_before_collapse_says_how_far_it_is() {
         nesting: Nesting::Outside {
             tolerance: 1e-8,
             iterations: 100,
+            extrapolated: true,
         },
         ..Settings::default()
     };

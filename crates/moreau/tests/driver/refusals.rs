@@ -132,6 +132,7 @@ fn the_papers_nesting_cannot_hold_a_floating_body() {
     let nesting = Nesting::Outside {
         tolerance: 1e-6,
         iterations: 100,
+        extrapolated: true,
     };
     let mut driver = on_floor(
         [4, 2],

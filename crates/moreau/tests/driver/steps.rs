@@ -215,23 +215,28 @@ fn the_papers_nesting_ends_where_the_exact_method_ends() {
         (driver, reports)
     };
     let (exact, _) = press(Settings::default());
-    let nesting = Nesting::Outside {
-        tolerance: 1e-8,
-        iterations: 20_000,
-    };
-    let (nested, reports) = press(Settings {
-        nesting,
-        ..Settings::default()
-    });
-    assert!(reports.iter().all(|r| r.nonlinear_solves > 10));
     let largest = exact
         .contacts()
         .iter()
         .map(|c| c.t.norm())
         .fold(0.0, f64::max);
-    for (a, b) in exact.contacts().iter().zip(nested.contacts()) {
-        assert!((a.t - b.t).norm() < 1e-6 * largest, "{} {}", a.t, b.t);
-    }
+    let [plain, extrapolated] = [false, true].map(|extrapolated| {
+        let nesting = Nesting::Outside {
+            tolerance: 1e-8,
+            iterations: 20_000,
+            extrapolated,
+        };
+        let (nested, reports) = press(Settings {
+            nesting,
+            ..Settings::default()
+        });
+        for (a, b) in exact.contacts().iter().zip(nested.contacts()) {
+            assert!((a.t - b.t).norm() < 1e-6 * largest, "{} {}", a.t, b.t);
+        }
+        reports.iter().map(|r| r.nonlinear_solves).sum::<usize>()
+    });
+    assert!(extrapolated > 20, "{extrapolated}");
+    assert!(3 * extrapolated < plain, "{extrapolated} {plain}");
 }
 
 #[test]

@@ -14,6 +14,7 @@ mod laws;
 mod leaps;
 mod let_go;
 mod limits;
+mod methods;
 mod narrow;
 mod nearby;
 mod outside;

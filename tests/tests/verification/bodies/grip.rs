@@ -115,6 +115,7 @@ fn all_methods_find_the_same_forces_between_two_bodies() -> Fallible {
     let nesting = Nesting::Outside {
         tolerance: 1e-6,
         iterations: 20_000,
+        extrapolated: true,
     };
     let settings = Settings {
         nesting,
