@@ -9,6 +9,7 @@ mod groups;
 mod initial;
 mod laws;
 mod meshes;
+mod methods;
 mod names;
 mod parts;
 mod penetrations;
@@ -204,6 +205,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     penetrations::warn(deck, &driver, &gaps, findings);
     ties::warn(deck, &driver, findings);
     let supports = supports(&driver, (deck, &gaps), &stages, &groups, findings);
+    methods::check(deck, &supports, &groups, findings);
     conditions::doubts(deck, &gaps, findings);
     conditions::driven::<D>(deck, findings);
     conditions::heat(deck, &groups, findings);

@@ -577,6 +577,8 @@ pub struct SolverEntry {
     pub method: Method,
     /// Whether the contact problem is solved around the nonlinear solve.
     pub outside: bool,
+    /// Place of the method, or of the nesting that takes its place.
+    pub chosen: Range<usize>,
     /// Threads; 0: all.
     pub threads: usize,
 }

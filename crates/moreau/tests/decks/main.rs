@@ -12,6 +12,7 @@ mod keys;
 mod laws;
 mod meshes;
 mod metamorphic;
+mod methods;
 mod mutants;
 mod parameters;
 mod parts;

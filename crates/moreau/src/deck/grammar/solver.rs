@@ -21,6 +21,7 @@ pub(super) fn read_solver(root: &Table<'_>) -> SolverEntry {
     let mut solver = SolverEntry {
         method: Method::Exact,
         outside: false,
+        chosen: 0..0,
         threads: 0,
         tolerance: TOLERANCE,
     };
@@ -30,7 +31,12 @@ pub(super) fn read_solver(root: &Table<'_>) -> SolverEntry {
     let log = table.log();
     let method = method(&table);
     let nesting = table.choice_if("nesting", &["inside", "outside"]);
-    solver.outside = nesting.is_some_and(|n| n.value == "outside");
+    solver.outside = nesting.as_ref().is_some_and(|n| n.value == "outside");
+    solver.chosen = match (nesting, table.get("contact")) {
+        (Some(nesting), _) if solver.outside => nesting.span,
+        (_, Some(contact)) => contact.span(),
+        _ => 0..0,
+    };
     if let Some(value) = table.get("contact")
         && solver.outside
         && method != Some(Method::Uzawa)
