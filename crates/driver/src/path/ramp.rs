@@ -252,15 +252,16 @@ impl<const D: usize> Ramp<D> {
         limit.map(|limit| limit.max(self.done))
     }
 
-    /// The error of a step that has been cut as far as allowed.
-    fn stopped(&self, cause: IncrementError, smallest: f64) -> IncrementError {
-        let last = self.plastic_fraction;
+    /// The error of a step that has been cut as far as allowed, after a last attempt in whose last iterate a part of the
+    /// volume flows: what no increment before has made flow may be why there is no other.
+    fn stopped(&self, cause: IncrementError, smallest: f64, flows: f64) -> IncrementError {
         let plastic_fraction = match &cause {
             IncrementError::NotConverged {
                 plastic_fraction, ..
-            } => plastic_fraction.max(last),
-            _ => last,
+            } => *plastic_fraction,
+            _ => flows,
         };
+        let plastic_fraction = plastic_fraction.max(self.plastic_fraction);
         IncrementError::Stopped {
             step: self.step.clone(),
             reached: self.done,
@@ -401,7 +402,8 @@ impl<const D: usize> Driver<D> {
                             (may_leap, ramp.length) = (true, beyond - ramp.done);
                             continue;
                         }
-                        let stopped = ramp.stopped(cause, 2.0 * ramp.length);
+                        let stopped =
+                            ramp.stopped(cause, 2.0 * ramp.length, self.plastic_fraction());
                         return Err(self.out_of_hand(ramp, stopped));
                     }
                 }
@@ -561,7 +563,7 @@ impl<const D: usize> Driver<D> {
                     ramp.cuts += 1;
                     halved += 1;
                     if halved > self.settings.cuts {
-                        let stopped = ramp.stopped(cause, path.last.abs());
+                        let stopped = ramp.stopped(cause, path.last.abs(), self.plastic_fraction());
                         return Err(self.out_of_hand(ramp, stopped));
                     }
                 }

@@ -168,8 +168,7 @@ fn suggestion(
     });
     let pushed = pushed(deck, stage);
     let yields = deck.materials.iter().any(|m| m.yields().is_some());
-    let yields = yields
-        && (matches!(cause, IncrementError::Mechanism { .. }) || plastic_fraction > WIDESPREAD);
+    let yields = yields && plastic_fraction > WIDESPREAD;
     let exact = deck.solver.method == Method::Exact && !deck.solver.outside;
     match (load, cause) {
         (_, IncrementError::Contact { .. }) if !exact => {

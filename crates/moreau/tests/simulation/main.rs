@@ -3,6 +3,7 @@
 mod ahead;
 mod axis;
 mod beside;
+mod beyond;
 mod cornered;
 mod driven;
 mod flat;
