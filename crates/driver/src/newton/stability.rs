@@ -3,13 +3,15 @@
 
 use crate::driver::Driver;
 use crate::interface::condensation::{InFrames, gives_way};
+use crate::interface::elimination;
 use crate::interface::free::Free;
 use crate::interface::tied::{Held, Tied};
 use crate::linear::system::System;
 use crate::model::load::Loading;
-use crate::model::points::Kinematics;
+use crate::model::points::{Kinematics, in_space};
 use moreau_laws::{Local, Status};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector, SVector};
+use std::collections::BTreeMap;
 
 /// A negative pivot below this part of the largest diagonal is rounding, and a motion without stiffness: of a body that
 /// is held, and of one that may move as a rigid one, whose motions all terms of the stiffness cancel in.
@@ -22,7 +24,8 @@ impl<const D: usize> Driver<D> {
     /// stiffness condensed on it.
     ///
     /// Slip under friction has no symmetric tangent. Shears are taken for forces that stay what they are, which
-    /// resist nothing: the tangent is that of a surface without friction that is loaded by them.
+    /// resist nothing: the tangent is that of a surface without friction that is loaded by them. But shears are opposite
+    /// to the slip, which a surface that spins about its normal carries along. See [`Driver::spinning`].
     ///
     /// Where contacts are tied in the factor that counts itself, if its ties are those of the statuses; else they are
     /// made so, by one factorisation. Where that leaves a motion without stiffness, none is known and none is counted.
@@ -39,12 +42,92 @@ impl<const D: usize> Driver<D> {
         if system.is_tied() {
             let holds = held.factor.holds_just(status)
                 || self.hold_statuses(system, (kinematics, status), held);
-            return if holds { system.negative() } else { 0 };
+            return match holds {
+                true => {
+                    let negative = system.negative();
+                    self.not_spinning(system, (kinematics, status), None, negative)
+                }
+                false => 0,
+            };
         }
         let free = self.free(system, kinematics, status);
         let moves_rigidly = system.floats && !self.is_held(loading, status);
         let none = NONE[usize::from(moves_rigidly)];
-        system.negative() + free.map_or(0, |free| free.negative(none))
+        let negative = system.negative() + free.as_ref().map_or(0, |free| free.negative(none));
+        self.not_spinning(system, (kinematics, status), free.as_ref(), negative)
+    }
+
+    /// Negative eigenvalues of so many that are left where no surface that slips under friction spins: less those of
+    /// sᵢ·K⁻¹ sⱼ, s the spins, by Haynsworth's law again. With shears that do not turn with it a spin is unstable, however
+    /// short the body; with those that do it is neutral, and friction resists it.
+    fn not_spinning(
+        &self,
+        system: &mut System,
+        (kinematics, status): (&[Kinematics<D>], &[Status]),
+        free: Option<&Free>,
+        negative: usize,
+    ) -> usize {
+        if negative == 0 {
+            return 0;
+        }
+        let spins = self.spins(system, (kinematics, status));
+        if spins.is_empty() {
+            return negative;
+        }
+        let factor = free.and_then(Free::factor);
+        let interface = free.zip(factor.as_ref());
+        let answers = spins
+            .iter()
+            .map(|s| self.compliance(system, interface, s.clone()));
+        let Some(answers) = answers.collect::<Option<Vec<_>>>() else {
+            return negative;
+        };
+        let entry = |i: usize, j: usize| answers[j].dot(&DVector::from_column_slice(&spins[i]));
+        let compliance = DMatrix::from_fn(spins.len(), spins.len(), entry);
+        let values = compliance.symmetric_eigen().eigenvalues;
+        negative.saturating_sub(values.iter().filter(|value| **value < 0.0).count())
+    }
+
+    /// Of every contact in space, at every degree of freedom, the row that tells how far what slips of it under friction
+    /// spins about its mean normal.
+    fn spins(
+        &self,
+        system: &System,
+        (kinematics, status): (&[Kinematics<D>], &[Status]),
+    ) -> Vec<Vec<f64>> {
+        let mut contacts: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (i, k) in kinematics.iter().enumerate() {
+            if D == 3 && status[i] == Status::Slip && k.law.resists_slip() {
+                contacts.entry(self.points[i].contact).or_default().push(i);
+            }
+        }
+        let place = |i: usize| -> SVector<f64, D> {
+            let own = self.footing.rows[i].own.iter();
+            own.map(|&(a, w)| self.position(a) * w).sum()
+        };
+        let directions = &system.prescribed().directions;
+        let spin = |slipping: Vec<usize>| {
+            let normal: SVector<f64, D> = slipping
+                .iter()
+                .map(|&i| kinematics[i].axes.column(0).into_owned())
+                .sum();
+            let middle: SVector<f64, D> = slipping.iter().map(|&i| place(i)).sum();
+            let middle = middle / slipping.len() as f64;
+            let mut row = vec![0.0; self.state.displacement.len()];
+            for i in slipping {
+                let way = in_space(&normal).cross(&in_space(&(place(i) - middle)));
+                let way = kinematics[i].local_force(&SVector::from_fn(|k, _| way[k]));
+                for j in (1..D).filter(|&j| kinematics[i].active[j]) {
+                    let own = (&self.footing.rows[i], directions);
+                    for (dof, coefficient) in elimination::row(own, &kinematics[i], j, Some) {
+                        row[dof] += way[j] * coefficient;
+                    }
+                }
+            }
+            row
+        };
+        let rows = contacts.into_values().map(spin);
+        rows.filter(|row| row.iter().any(|s| *s != 0.0)).collect()
     }
 
     /// Ties the contacts as the statuses tell, springs of a penalty in series; false where that leaves a motion

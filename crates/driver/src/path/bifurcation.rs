@@ -88,7 +88,7 @@ impl<const D: usize> Driver<D> {
     }
 
     /// K⁻¹ f on what the interface leaves free, or with contacts tied as they are.
-    fn compliance(
+    pub(crate) fn compliance(
         &self,
         system: &mut System,
         interface: Option<(&Free, &DenseLdlt)>,

@@ -2,8 +2,8 @@
 
 use moreau_contact::{Ball, ContactSolver, Penalty, Plane, SemismoothNewton};
 use moreau_driver::{Axis, Driver, IncrementReport, Model, Numbers, Seam, Settings, Step};
-use moreau_laws::{Coulomb, Elastic, Friction};
-use moreau_mesh::{CellKind, Integration, Pairing, PlaneStrain, block2, uniform};
+use moreau_laws::{Coulomb, Elastic, Friction, Status};
+use moreau_mesh::{CellKind, Integration, Pairing, PlaneStrain, Solid, block2, block3, uniform};
 use std::f64::consts::PI;
 
 const YOUNG: f64 = 1000.0;
@@ -329,4 +329,38 @@ fn a_guess_along_the_mode_leads_to_its_branch() {
     let mut guess = vec![0.0; 2 * nodes];
     guess[1] = f64::NAN;
     assert!(driver.guess(&guess).is_err());
+}
+
+/// A cube that spreads under friction between platens, whose shears are all inwards: they would spin it if they did not turn
+/// with it.
+#[test]
+fn a_cube_that_spreads_under_friction_does_not_spin() {
+    for seam in BOTH {
+        let (wide, high) = (uniform(-5.0, 5.0, 2), uniform(0.0, 10.0, 2));
+        let mesh = block3("cube", CellKind::Hex8, &wide, &high, &wide).expect("valid");
+        let law = Coulomb::new(0.1).expect("valid");
+        let platen = |y: f64, n: f64| Plane::new([0.0, y, 0.0], [0.0, n, 0.0]).expect("valid");
+        let elastic = Elastic::new(YOUNG, 0.3).expect("valid");
+        let model = Model::with_large_strains(mesh, Solid)
+            .material("cube", elastic, CellKind::Hex8.integration())
+            .and_then(|m| m.tool("floor", platen(0.0, 1.0)))
+            .and_then(|m| m.tool("press", platen(10.0, -1.0)))
+            .and_then(|m| m.contact("cube.bottom", "floor", law))
+            .and_then(|m| m.contact("cube.top", "press", law))
+            .expect("valid");
+        let settings = Settings {
+            seam,
+            ..Settings::default()
+        };
+        let mut driver = Driver::new(model, settings).expect("valid");
+        let step = Step::new("press").tool("press", [0.0, -0.5, 0.0]);
+        let mut slips = false;
+        let reports = driver.run(&step, 2, |driver, _| {
+            slips |= driver.contacts().iter().any(|c| c.status == Status::Slip);
+        });
+        assert!(slips);
+        for report in reports.expect("in balance") {
+            assert_eq!(report.negative_eigenvalues, 0, "{seam:?}");
+        }
+    }
 }

@@ -24,6 +24,7 @@ mod replaced;
 mod saved;
 mod sheared;
 mod shears;
+mod spins;
 mod surfaces;
 mod unjoined;
 
