@@ -235,7 +235,7 @@ impl<'a, const D: usize> Goal<'a, D> {
                 force: t.to_vec(),
                 status: self.problem.statuses(u, t),
                 iterations,
-                residual,
+                residual: self.problem.residual(u, t),
                 exact: is_within(residual, target),
             }));
         }

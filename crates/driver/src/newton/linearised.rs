@@ -51,6 +51,9 @@ pub(crate) struct Linearised<'a, const D: usize> {
     pub(crate) loose: bool,
     /// Residual that the contact solution may keep \[N\].
     pub(crate) enough: f64,
+    /// The least stiffness by which displacements weigh in that residual \[N/mm\]: that of the bodies where they are in balance
+    /// and the law does not hold yet, else none.
+    pub(crate) weight: f64,
     /// Rounding of the forces that it is to balance \[N\].
     pub(crate) rounding: f64,
     /// The factor that the last contact problem has left, where contacts are tied.

@@ -60,27 +60,3 @@ fn a_force_that_drags_its_tool_off_is_not_beyond_the_limit_load() {
     assert!(told.contains("missing support"), "{told}");
     assert!(!told.contains("limit load"), "{told}");
 }
-
-/// A method that needs bodies which are held without their contacts, and one that is not, far from yielding.
-#[test]
-fn a_body_that_nothing_holds_is_not_beyond_the_limit_load() {
-    let mut simulation = simulation(
-        r#"units = "mm-N-MPa"
-analysis = "plane-strain"
-mesh.block = [{ name = "b", element = "quad8", x = [0, 4], y = [0, 2], cells = [4, 2] }]
-material = [{ on = "b", young = 1e5, poisson = 0.3, yield-stress = 300.0 }]
-tool = [{ name = "floor", plane = { point = [0, 0], normal = [0, 1] } }]
-contact = [{ surface = "b.bottom", against = "floor", friction = 0.3 }]
-solver = { contact = "uzawa", nesting = "outside" }
-[[step]]
-name = "push"
-increments = 2
-load = [{ on = "b", body-force = [0, -0.5] }]
-"#,
-    );
-    let error = simulation.advance(&mut |_, _| ControlFlow::Continue(()));
-    assert!(error.is_err());
-    let told = simulation.outcome().diagnosis.clone().expect("stopped");
-    assert!(told.suggestion.contains("it moves freely"), "{told}");
-    assert!(told.plastic_fraction < 1e-12, "{told}");
-}

@@ -117,7 +117,7 @@ impl<const D: usize> Driver<D> {
             Condensation::new(seam.system, stiffness, points, contacts, seam.forces)?;
         condensation.problem.hold(linearised.proximal);
         condensation.problem.rounds(ROUNDED * linearised.rounding);
-        condensation.problem.weigh(seam.system.shift());
+        condensation.problem.weigh(linearised.weight);
         Ok(condensation)
     }
 
