@@ -7,7 +7,7 @@ use crate::linear::system::System;
 use crate::model::footing::Ground;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
-use crate::model::points::{Kinematics, turned};
+use crate::model::points::{ContactPoint, Kinematics, turned};
 use moreau_laws::Status;
 use std::collections::BTreeSet;
 
@@ -62,9 +62,8 @@ impl<const D: usize> Driver<D> {
             .filter(|ground| ground.sticks && footing.regrounded > 0)
             .map(|ground| ground.point)
             .collect();
-        let closed = footing.beside.iter().filter(|&&c| {
-            status[c] != Status::Open && kinematics[c].active[0] && self.points[c].tool.is_some()
-        });
+        let closed = |c: &&usize| status[**c] != Status::Open && kinematics[**c].active[0];
+        let closed = footing.beside.iter().filter(closed);
         let grounds: Vec<Ground<D>> = closed
             .map(|&c| Ground {
                 point: c,
@@ -79,20 +78,22 @@ impl<const D: usize> Driver<D> {
         }
         self.footing.regrounded += 1;
         self.footing.grounds = grounds;
-        let before = (self.footing.redistributed.clone(), self.along_grounds());
+        let before = self.left_to_others();
         match self.repairs() {
             true => self.pair_at(loading, d_u)?,
             false => self.pair_at(loading, &vec![0.0; d_u.len()])?,
         }
-        Ok(before != (self.footing.redistributed.clone(), self.along_grounds()))
+        Ok(before != self.left_to_others())
     }
 
-    /// The points of which tools hold some of the motion along the surface.
-    fn along_grounds(&self) -> Vec<usize> {
+    /// The points whose multipliers their neighbours have, and those of which tools hold some of the motion along the surface.
+    fn left_to_others(&self) -> (Vec<usize>, Vec<usize>) {
         let rows = self.footing.rows.iter().enumerate();
-        rows.filter(|(_, row)| !row.grounded.is_empty())
-            .map(|(c, _)| c)
-            .collect()
+        let held = rows.filter(|(_, row)| !row.grounded.is_empty());
+        (
+            self.footing.redistributed.clone(),
+            held.map(|(c, _)| c).collect(),
+        )
     }
 
     /// The points on tools of the nodes on surfaces that face another body.
@@ -111,7 +112,10 @@ impl<const D: usize> Driver<D> {
                 );
             }
         }
-        let is_beside = |c: &usize| self.points[*c].own.iter().any(|(a, _)| beside.contains(a));
+        let is_beside = |c: &usize| {
+            let ContactPoint { own, tool, .. } = &self.points[*c];
+            tool.is_some() && own.iter().any(|(a, _)| beside.contains(a))
+        };
         (0..self.points.len()).filter(is_beside).collect()
     }
 }
