@@ -1,11 +1,17 @@
 //! The name nearest to a misspelt one; not a fuzzy search.
 
-/// The candidate at the least edit distance from `name`, for a "did you mean"; the first of
-/// equals, `None` if there is no candidate.
+/// The candidate at the least edit distance from `name`, for a "did you mean", of those that have it as one of their
+/// words if there are any: `yield` is for `yield-stress`, not for `hill`. The first of equals, `None` if there is no
+/// candidate.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let is_word_of = |candidate: &str| {
+        candidate
+            .split(['-', '_', '.', ' '])
+            .any(|word| word == name)
+    };
     candidates
         .into_iter()
-        .min_by_key(|candidate| edit_distance(name, candidate))
+        .min_by_key(|candidate| (!is_word_of(candidate), edit_distance(name, candidate)))
 }
 
 /// Levenshtein distance: least number of insertions, deletions and substitutions of characters.
@@ -41,5 +47,18 @@ mod tests {
     fn the_first_of_equally_near_names_wins() {
         assert_eq!(nearest("tap", ["top", "tip", "bottom"]), Some("top"));
         assert_eq!(nearest("tap", []), None);
+    }
+
+    #[test]
+    fn a_name_that_has_it_as_a_word_is_nearer_than_one_of_other_letters() {
+        assert_eq!(
+            nearest("yield", ["hill", "yield-stress"]),
+            Some("yield-stress")
+        );
+        assert_eq!(nearest("top", ["tip", "block.top"]), Some("block.top"));
+        assert_eq!(
+            nearest("block.tob", ["block", "block.top"]),
+            Some("block.top")
+        );
     }
 }
