@@ -18,8 +18,7 @@ const CLOSED: f64 = 1e-6;
 const CHANGES: u8 = 8;
 
 impl<const D: usize> Driver<D> {
-    /// At the start of an increment: as at the end of the last one; of the first where the undeformed bodies touch, and
-    /// nothing sticks yet.
+    /// At the start of an increment: as at the end of the last one; of the first where the undeformed bodies touch.
     pub(crate) fn begin_grounds(&mut self) {
         let none = CLOSED * self.mesh.size();
         self.footing.beside = self.points_beside_bodies();
@@ -36,7 +35,7 @@ impl<const D: usize> Driver<D> {
             closed.then(|| Ground {
                 point: c,
                 normal: turned(normal, &self.state.loading.turn_of(tool)),
-                sticks: record.status == Status::Stick,
+                sticks: self.holds_along(record.status),
             })
         });
         self.footing.grounds = grounds.collect();
@@ -69,7 +68,7 @@ impl<const D: usize> Driver<D> {
                 point: c,
                 normal: kinematics[c].axes.column(0).into_owned(),
                 // What sticks while its neighbours have its multiplier, and slips when it has its own, does one of both.
-                sticks: status[c] == Status::Stick || stuck.contains(&c),
+                sticks: self.holds_along(status[c]) || stuck.contains(&c),
             })
             .collect();
         let held = |all: &[Ground<D>]| all.iter().map(|g| (g.point, g.sticks)).collect::<Vec<_>>();
@@ -84,6 +83,13 @@ impl<const D: usize> Driver<D> {
             false => self.pair_at(loading, &vec![0.0; d_u.len()])?,
         }
         Ok(before != self.left_to_others())
+    }
+
+    /// Whether a tool counts as holding a point along its surface. Under small strains it does wherever it touches, so that
+    /// all of the pressure of a joint has its friction: what overlaps at the foot is of the size of its slip. Where slips are
+    /// large too, what slips has a multiplier of its own.
+    fn holds_along(&self, status: Status) -> bool {
+        status == Status::Stick || !self.repairs()
     }
 
     /// The points whose multipliers their neighbours have, and those of which tools hold some of the motion along the surface.

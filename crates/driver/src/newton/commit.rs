@@ -212,8 +212,8 @@ impl<const D: usize> Driver<D> {
     fn loading_after(&self, d_u: &[f64], end: &Loading<D>) -> Loading<D> {
         let mut loading = end.clone();
         for tool in (0..self.tools.len()).filter(|&tool| end.axle_of(tool).is_some()) {
-            let turn = self.turn_at(tool, end, d_u);
-            (0..3).for_each(|i| loading.turn.add(3 * tool + i, turn[i]));
+            let turned = self.turn_at(tool, end, d_u) - end.turn_of(tool);
+            (0..3).for_each(|i| loading.turn.add(3 * tool + i, turned[i]));
         }
         loading
     }

@@ -197,6 +197,35 @@ fn two_bodies_have_one_answer() {
     compare(space, &[step], 2, 1e-8);
 }
 
+/// Beside each other on a rough floor, where a floor and a body hold the nodes at the foot of the joint.
+#[test]
+fn bodies_side_by_side_have_one_answer() {
+    let side_by_side = |seam: Seam| {
+        let (side, height) = (uniform(0.0, 10.0, 3), uniform(0.0, 10.0, 3));
+        let one = block3("one", CellKind::Hex20, &side, &height, &side).expect("valid");
+        let beyond = uniform(10.0, 20.0, 3);
+        let two = block3("two", CellKind::Hex20, &beyond, &height, &side).expect("valid");
+        let floor = Plane::new([0.0; 3], [0.0, 1.0, 0.0]).expect("valid");
+        let model = Model::new(one.joined(two).expect("valid"), Solid)
+            .material("one", steel(), Integration::Reduced)
+            .and_then(|m| m.material("two", steel(), Integration::Reduced))
+            .and_then(|m| m.tool("floor", floor))
+            .and_then(|m| m.contact("one.bottom", "floor", coulomb(0.3)))
+            .and_then(|m| m.contact("two.bottom", "floor", coulomb(0.3)))
+            .and_then(|m| m.pair("one.right", "two.left", coulomb(0.2), Pairing::default()))
+            .expect("valid");
+        Driver::new(model, settings(seam)).expect("valid")
+    };
+    let step = Step::new("press")
+        .fix("one.left", &[Axis::X])
+        .fix("two.right", &[Axis::X])
+        .fix("one.back", &[Axis::Z])
+        .fix("two.back", &[Axis::Z])
+        .pressure("one.top", 100.0)
+        .pressure("two.top", 30.0);
+    compare(side_by_side, &[step], 3, 1e-8);
+}
+
 fn punched(seam: Seam) -> Driver<2> {
     let (x, y) = (uniform(0.0, 50.0, 10), uniform(0.0, 20.0, 4));
     let mut mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");

@@ -119,3 +119,39 @@ contact = [{{ surface = ["bar.top", "bar.left", "bar.right"], against = "roll", 
         assert!(history.numbers("stick").iter().all(|&n| n == 1.0));
     }
 }
+
+/// Past the largest moment that a roll transmits its turn is followed along the path of equilibria: the strip goes on by as
+/// much as the roll's surface does, and by the forward slip of some parts in a hundred.
+#[test]
+fn a_roll_turns_as_far_as_it_has_drawn_the_strip_past_the_largest_moment() {
+    let steps = [("bite", 4, "turn = 0"), ("roll", 10, "moment = 1900.0")].map(|(name, increments, turned)| {
+        format!(
+            "[[step]]\nname = \"{name}\"\nincrements = {increments}\nfix = [{{ on = \"s.bottom\", u = [\"y\"] }}]\n\
+             tools = [{{ name = \"r\", move = [0, -0.2], {turned} }}]\n"
+        )
+    });
+    let run = finish(simulation(&format!(
+        r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+strain = "finite"
+mesh = {{ block = [{{ name = "s", element = "quad8", x = [0, 10], y = [0, 1], cells = [16, 1] }}] }}
+material = [{{ on = "s", young = 70e3, poisson = 0.33, yield-stress = 100, hardening = {{ linear = 100 }} }}]
+tool = [{{ name = "r", cylinder = {{ center = [6, 61], radius = 60 }} }}]
+contact = [{{ surface = "s.top", against = "r", friction = 0.15 }}]
+output = {{ probes = ["s.right"] }}
+{}"#,
+        steps.join("")
+    )));
+    let of = |name: &str| run.history().numbers(name);
+    let (front, turn, moment) = (of("u.s.right.x"), of("turn.r"), of("moment.r"));
+    let falls = moment.windows(2).skip(4).filter(|m| m[1] < m[0]).count();
+    assert!(falls > 0, "the moment has no limit: {moment:?}");
+    for (front, turn) in front.windows(2).zip(turn.windows(2)).skip(4) {
+        let drawn = (front[1] - front[0]) / (60.0 * (turn[1] - turn[0]).to_radians());
+        assert!(
+            (0.99..1.05).contains(&drawn),
+            "{drawn} of the roll's way at {} degrees",
+            turn[1]
+        );
+    }
+}
