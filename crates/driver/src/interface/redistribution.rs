@@ -6,9 +6,9 @@
 //! two multipliers is one again: Σ Φ_a = 1 stays true, so that a uniform pressure passes as before,
 //! and weights that are means of weights keep linear fields, and action equal to reaction.
 //!
-//! Two bodies side by side on a rough floor have no freedom at a corner where both stick to it: how much of the force
-//! between them goes through that corner, and how much into the floor beneath, nothing would decide. Where both are on the
-//! floor, sticking or not, nothing decides the shear between them at that corner, which is left out.
+//! Two bodies side by side on a rough floor have no freedom at a corner where it holds both: how much of the force between
+//! them goes through that corner, and how much into the floor beneath, nothing would decide. Where both slip on it, nothing
+//! decides the shear between them at that corner, which is left out.
 //!
 //! Where nodes are held opposite to a tool that a force drives, rigid meets rigid: the one that the tool
 //! comes to first stops it, and what others at the same distance would bear nothing decides.
