@@ -31,6 +31,10 @@ const ROUNDED: f64 = 100.0;
 const COLD: usize = 5;
 const FAINT: [f64; 2] = [0.03, 0.1];
 
+/// Solves with the structure, and what factorisations are worth in them, after which an iteration is given up. Those that
+/// arrive take tens, and a few hundred at most; where steps go through all that lies between opening and slipping, a dense matrix or a smaller increment costs less.
+const MOST: usize = 600;
+
 /// How much larger the merit may be after a step with the statuses of the last solution: where few contacts hold
 /// a body it may tip over them into all that it rests on, which then has to be opened again.
 const WORSE: f64 = 4.0;
@@ -53,6 +57,8 @@ struct Tied<'a, 'b, const D: usize> {
     /// Which of the parts α is.
     part: usize,
     factor: TiedFactor<D>,
+    /// Solves with the structure, and what factorisations are worth in them.
+    solves: usize,
 }
 
 /// Where the iteration stands.
@@ -94,6 +100,7 @@ pub fn solve_tied<const D: usize>(
         problem,
         part: 0,
         factor: std::mem::take(held),
+        solves: 0,
     };
     let mut now = newton.begin(&mut guess)?;
     let mut first = Some(guess);
@@ -121,7 +128,7 @@ pub fn solve_tied<const D: usize>(
             progress.forget();
             continue;
         }
-        if !now.residual.is_finite() {
+        if !now.residual.is_finite() || newton.solves > MOST {
             break;
         }
         let faint = if cold {

@@ -127,6 +127,7 @@ impl<const D: usize> Tied<'_, '_, D> {
         loose.sort_by(|&a, &b| u[a][0].total_cmp(&u[b][0]));
         let mut more = 3 * D;
         let mut loose = loose.into_iter();
+        self.solves += self.problem.structure.worth() as usize;
         while !self.problem.structure.tie(&self.factor.ties) {
             let mut some = loose.by_ref().take(more).peekable();
             if some.peek().is_none() {
@@ -180,6 +181,7 @@ impl<const D: usize> Tied<'_, '_, D> {
     /// The iterate at z, solved for.
     pub(super) fn answered(&mut self, z: DVector<f64>) -> At<D> {
         self.factor.used += 1;
+        self.solves += 1;
         let v = self.problem.structure.displacement(&z, true);
         self.at(z, v)
     }
@@ -206,6 +208,7 @@ impl<const D: usize> Tied<'_, '_, D> {
         let size = D * status.len();
         let unit = |&k: &usize| DVector::from_fn(size, |i, _| f64::from(u8::from(i == k)));
         let forces: Vec<DVector<f64>> = lacking.iter().map(unit).collect();
+        self.solves += forces.len();
         let answers = self.problem.structure.displacements(&forces);
         for (force, answer) in forces.into_iter().zip(answers) {
             self.factor.pairs.add(force, answer);

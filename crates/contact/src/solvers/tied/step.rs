@@ -131,6 +131,7 @@ impl<const D: usize> Tied<'_, '_, D> {
         let z = &least.left / least.left.norm();
         let answer = self.problem.structure.displacement(&z, false);
         self.factor.used += 1;
+        self.solves += 1;
         let independent = least.add(equations.image(&z, &answer));
         self.factor.pairs.add(z, answer);
         independent
