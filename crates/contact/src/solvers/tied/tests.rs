@@ -16,6 +16,8 @@ struct Dense {
     factor: Option<nalgebra::Cholesky<f64, nalgebra::Dyn>>,
     factorisations: usize,
     solves: usize,
+    /// Solves that a factorisation takes as long as.
+    worth: f64,
 }
 
 impl<const D: usize> Structure<D> for Dense {
@@ -49,7 +51,7 @@ impl<const D: usize> Structure<D> for Dense {
     }
 
     fn worth(&self) -> f64 {
-        6.0
+        self.worth
     }
 
     fn together(&self) -> f64 {
@@ -101,6 +103,7 @@ fn sample<const D: usize>(
         factor: None,
         factorisations: 0,
         solves: 0,
+        worth: 6.0,
     };
     (dense, problem.expect("valid"))
 }
@@ -318,6 +321,7 @@ fn what_lifts_off_is_not_peeled_off() {
         factor: None,
         factorisations: 0,
         solves: 0,
+        worth: 6.0,
     };
     let springs = Springs {
         compliance: Local::<2>::new(1.0, 1.0),
@@ -395,4 +399,22 @@ fn sums_that_cancel_are_answered_anew() {
     let (mut structure, problem) = sample::<3>(5, &seed, &[law], false);
     let found = tied(&mut structure, &problem, None).expect("solvable");
     assert_solves(&structure, &problem, &found).expect("solved");
+}
+
+/// What takes more than its iteration is worth is given up, and not iterated to its last.
+#[test]
+fn an_iteration_that_costs_too_much_is_given_up() {
+    let seed: Vec<f64> = (0..37).map(|k| f64::sin(3.0 * f64::from(k))).collect();
+    let law = Coulomb::new(0.2).expect("valid").into();
+    let (mut structure, problem) = sample::<3>(6, &seed, &[law], false);
+    assert!(tied(&mut structure, &problem, None).is_ok());
+    let taken = structure.factorisations + structure.solves;
+    structure.worth = 2.0 * MOST as f64;
+    (structure.factorisations, structure.solves) = (0, 0);
+    let found = tied(&mut structure, &problem, None);
+    assert!(
+        matches!(found, Err(ContactError::NotConverged { .. })),
+        "{found:?}"
+    );
+    assert!(structure.factorisations + structure.solves < taken);
 }
