@@ -471,36 +471,40 @@ fn between(a: usize, b: usize) -> usize {
 }
 
 /// f = p² q / (p + q), f_p, f_q, f_pp, f_pq and f_qq; where both are zero, nothing.
+///
+/// Of the parts a and b of the sum that p and q are: powers of the sum itself are none near enough to the corner.
 fn share(p: f64, q: f64) -> [f64; 6] {
     let s = p + q;
     if s <= 0.0 {
         return [0.0; 6];
     }
-    let (p, q, s2, s3) = (p, q, s * s, s * s * s);
+    let (a, b) = (p / s, q / s);
     [
-        p * p * q / s,
-        p * q * (p + 2.0 * q) / s2,
-        p * p * p / s2,
-        2.0 * q * q * q / s3,
-        p * p * (p + 3.0 * q) / s3,
-        -2.0 * p * p * p / s3,
+        a * p * q,
+        a * b * (p + 2.0 * q),
+        a * a * p,
+        2.0 * b * b * b,
+        a * a * (a + 3.0 * b),
+        -2.0 * a * a * a,
     ]
 }
 
 /// f = p² q / (p + q)², f_p, f_q, f_pp, f_pq and f_qq; where both are zero, nothing.
+///
+/// The second derivatives grow without bounds towards the corner: nearer than [`MET`] they are those at that distance.
 fn cone(p: f64, q: f64) -> [f64; 6] {
     let s = p + q;
     if s <= 0.0 {
         return [0.0; 6];
     }
-    let (s2, s3, s4) = (s * s, s * s * s, s * s * s * s);
+    let (a, b, s) = (p / s, q / s, s.max(MET));
     [
-        p * p * q / s2,
-        2.0 * p * q * q / s3,
-        p * p * (p - q) / s3,
-        2.0 * q * q * (q - 2.0 * p) / s4,
-        2.0 * p * q * (2.0 * p - q) / s4,
-        2.0 * p * p * (q - 2.0 * p) / s4,
+        a * a * q,
+        2.0 * a * b * b,
+        a * a * (a - b),
+        2.0 * b * b * (b - 2.0 * a) / s,
+        2.0 * a * b * (2.0 * a - b) / s,
+        2.0 * a * a * (b - 2.0 * a) / s,
     ]
 }
 
@@ -526,5 +530,33 @@ impl Jet {
     pub(super) fn second(&self, along: &Point) -> Matrix2<f64> {
         let [a, b, c] = self.dd.map(|dd| dd.dot(along));
         Matrix2::new(a, b, b, c)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What the corner is near, in the same direction, only scales: nothing underflows on the way.
+    #[test]
+    fn near_a_corner_derivatives_are_those_farther_off() {
+        let (p, q) = (3.0, 5.0);
+        let (wide, steep) = (share(p, q), cone(p, q));
+        for far in [1.0, 1e-40, 1e-109, 1e-160, 1e-300, 5e-324] {
+            let same = |found: f64, expected: f64| {
+                // What is less than the least of numbers is one of its neighbours.
+                (found - expected).abs() <= 1e-14 * expected.abs() + 10.0 * 5e-324
+            };
+            let (f, g) = (share(far * p, far * q), cone(far * p, far * q));
+            let by = |order: i32| [far * far, far, 1.0][order as usize];
+            for (k, order) in [0, 1, 1, 2, 2, 2].into_iter().enumerate() {
+                assert!(same(f[k], wide[k] * by(order)), "{far:e}: {f:?}");
+            }
+            // The tip of a cone is bent the more the nearer it is, up to what is told apart.
+            let bent = 8.0 / (8.0 * far).max(MET);
+            for (k, by) in [far, 1.0, 1.0, bent, bent, bent].into_iter().enumerate() {
+                assert!(same(g[k], steep[k] * by), "{far:e}: {g:?}");
+            }
+        }
     }
 }

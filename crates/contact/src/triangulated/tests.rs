@@ -702,6 +702,36 @@ fn a_cone_ends_in_its_tip() {
     }
 }
 
+/// However near: the distance is that to the tip, and normals and curvatures are numbers, on the surface and off it.
+#[test]
+fn a_cone_is_met_at_any_distance_of_its_tip() {
+    let (n, radius) = (24, 5.6);
+    let cone = surface(&cone(n, radius, 1));
+    let slope = Point::new(2.0, 0.0, -radius).normalize();
+    for far in [1e-12, 1e-40, 1e-109, 1e-160, 1e-300, 1e-310, 5e-324] {
+        for k in 0..12 {
+            let turn = Rotation3::from_axis_angle(&Point::z_axis(), 0.618 * f64::from(k));
+            for off in [0.0, far, 1e-3] {
+                let x = turn * (Point::new(radius, 0.0, 2.0) * far + slope * off);
+                let (distance, normal, bend) =
+                    (cone.distance(&x), cone.normal(&x), cone.curvature(&x));
+                assert!(
+                    (distance - off).abs() < 1e-12,
+                    "{far:e} {off:e}: {distance:e}"
+                );
+                assert!(
+                    (normal.norm() - 1.0).abs() < 1e-12,
+                    "{far:e} {off:e}: {normal}"
+                );
+                assert!(
+                    bend.iter().all(|b| b.is_finite()),
+                    "{far:e} {off:e}: {bend}"
+                );
+            }
+        }
+    }
+}
+
 /// Straight ahead of an edge or a corner of a cube, at it, behind it, and beside it; in the middle there are none, and of a
 /// hollow none at all.
 #[test]
