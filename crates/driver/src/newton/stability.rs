@@ -10,12 +10,15 @@ use crate::linear::system::System;
 use crate::model::load::Loading;
 use crate::model::points::{Kinematics, in_space};
 use moreau_laws::{Local, Status};
-use nalgebra::{DMatrix, DVector, SVector};
-use std::collections::BTreeMap;
+use nalgebra::{DMatrix, DVector, SVector, Vector3};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A negative pivot below this part of the largest diagonal is rounding, and a motion without stiffness: of a body that
 /// is held, and of one that may move as a rigid one, whose motions all terms of the stiffness cancel in.
 const NONE: [f64; 2] = [1e-12, 1e-9];
+
+/// Stiffness against a rigid motion, in parts of that of a node, below which it is rounding where nothing resists it.
+const NEUTRAL: f64 = 1e-6;
 
 impl<const D: usize> Driver<D> {
     /// Negative eigenvalues of the factorised tangent K on the displacements that statuses leave free: what is open
@@ -54,7 +57,76 @@ impl<const D: usize> Driver<D> {
         let moves_rigidly = system.floats && !self.is_held(loading, status);
         let none = NONE[usize::from(moves_rigidly)];
         let negative = system.negative() + free.as_ref().map_or(0, |free| free.negative(none));
+        let negative = match moves_rigidly {
+            true => self.not_rigid(system, free.as_ref(), negative),
+            false => negative,
+        };
         self.not_spinning(system, (kinematics, status), free.as_ref(), negative)
+    }
+
+    /// Negative eigenvalues of so many that are left where no body moves as a rigid one without stiffness: less those of
+    /// rᵢ·K⁻¹ rⱼ, r the rigid motions, that are of rounding, by Haynsworth's law. What nothing resists is neutral, and of a
+    /// body that is thin and bent its stiffness rounds to more than the least of those that are.
+    fn not_rigid(&self, system: &mut System, free: Option<&Free>, negative: usize) -> usize {
+        let rows = match negative {
+            0 => Vec::new(),
+            _ => self.rigid_motions(),
+        };
+        let values = self.compliances_along(system, free, &rows);
+        let softest = -1.0 / (NEUTRAL * system.shift());
+        let neutral = values.map_or(0, |values| values.iter().filter(|c| **c < softest).count());
+        negative.saturating_sub(neutral)
+    }
+
+    /// Translations and rotations of every body where it is now, each of unit length at all degrees of freedom.
+    fn rigid_motions(&self) -> Vec<Vec<f64>> {
+        let turns = [Vector3::z(), Vector3::x(), Vector3::y()];
+        let mut all = Vec::new();
+        for cells in self.mesh.bodies() {
+            let nodes = cells.iter().flat_map(|&cell| self.mesh.cell_nodes(cell));
+            let nodes: BTreeSet<usize> = nodes.copied().collect();
+            let middle: SVector<f64, D> = nodes.iter().map(|&a| self.position(a)).sum();
+            let middle = middle / nodes.len() as f64;
+            let mut add = |motion: &dyn Fn(&SVector<f64, D>) -> SVector<f64, D>| {
+                let mut row = DVector::zeros(self.state.displacement.len());
+                for &a in &nodes {
+                    let v = motion(&(self.position(a) - middle));
+                    (0..D).for_each(|i| row[D * a + i] = v[i]);
+                }
+                all.extend(row.try_normalize(0.0).map(|row| row.as_slice().to_vec()));
+            };
+            for i in 0..D {
+                add(&|_| SVector::from_fn(|k, _| f64::from(u8::from(k == i))));
+            }
+            for turn in &turns[..2 * D - 3] {
+                add(&|x| {
+                    let v = turn.cross(&in_space(x));
+                    SVector::from_fn(|k, _| v[k])
+                });
+            }
+        }
+        all
+    }
+
+    /// Eigenvalues of rᵢ·K⁻¹ rⱼ, of rows r at every degree of freedom \[mm/N\]; `None` where there are no numbers.
+    fn compliances_along(
+        &self,
+        system: &mut System,
+        free: Option<&Free>,
+        rows: &[Vec<f64>],
+    ) -> Option<DVector<f64>> {
+        if rows.is_empty() {
+            return None;
+        }
+        let factor = free.and_then(Free::factor);
+        let interface = free.zip(factor.as_ref());
+        let answers = rows
+            .iter()
+            .map(|row| self.compliance(system, interface, row.clone()));
+        let answers = answers.collect::<Option<Vec<_>>>()?;
+        let entry = |i: usize, j: usize| answers[j].dot(&DVector::from_column_slice(&rows[i]));
+        let compliance = DMatrix::from_fn(rows.len(), rows.len(), entry);
+        Some(compliance.symmetric_eigen().eigenvalues)
     }
 
     /// Negative eigenvalues of so many that are left where no surface that slips under friction spins: less those of
@@ -71,21 +143,9 @@ impl<const D: usize> Driver<D> {
             return 0;
         }
         let spins = self.spins(system, (kinematics, status));
-        if spins.is_empty() {
-            return negative;
-        }
-        let factor = free.and_then(Free::factor);
-        let interface = free.zip(factor.as_ref());
-        let answers = spins
-            .iter()
-            .map(|s| self.compliance(system, interface, s.clone()));
-        let Some(answers) = answers.collect::<Option<Vec<_>>>() else {
-            return negative;
-        };
-        let entry = |i: usize, j: usize| answers[j].dot(&DVector::from_column_slice(&spins[i]));
-        let compliance = DMatrix::from_fn(spins.len(), spins.len(), entry);
-        let values = compliance.symmetric_eigen().eigenvalues;
-        negative.saturating_sub(values.iter().filter(|value| **value < 0.0).count())
+        let values = self.compliances_along(system, free, &spins);
+        let unstable = values.map_or(0, |values| values.iter().filter(|c| **c < 0.0).count());
+        negative.saturating_sub(unstable)
     }
 
     /// Of every contact in space, at every degree of freedom, the row that tells how far what slips of it under friction

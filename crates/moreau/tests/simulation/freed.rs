@@ -280,3 +280,79 @@ tools = [{{ name = "punch", move = [0, 2] }}]
         assert!((few - many).abs() < 0.05, "{places:?}");
     }
 }
+
+/// A strip is drawn over a die and springs free: the least that its stiffness against bending is, is less than what a rigid
+/// motion rounds to.
+#[test]
+fn a_strip_that_springs_free_is_not_unstable() {
+    let freed = finish(simulation(
+        r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+strain = "finite"
+[[mesh.block]]
+name = "b"
+element = "quad8"
+x = [0, 35]
+y = [0, 1]
+cells = [30, 1]
+[[material]]
+on = "b"
+young = 210e3
+poisson = 0.3
+yield-stress = 300.0
+hardening = { linear = 500 }
+[[tool]]
+name = "punch"
+profile = { points = [[10, 60], [10, 1], [-5, 1]], radii = [3] }
+[[tool]]
+name = "die"
+profile = { points = [[11.1, -60], [11.1, 0], [80, 0]], radii = [3] }
+[[tool]]
+name = "hold"
+plane = { point = [0, 1], normal = [0, -1] }
+[[mesh.group]]
+name = "in"
+on = "b.top"
+x = [0, 20]
+[[mesh.group]]
+name = "out"
+on = "b.top"
+x = [20, 35]
+[[contact]]
+surface = "b.bottom"
+against = "die"
+friction = 0.05
+[[contact]]
+surface = "in"
+against = "punch"
+friction = 0.05
+[[contact]]
+surface = "out"
+against = "hold"
+friction = 0.05
+[[step]]
+name = "hold"
+increments = 2
+fix = [{ on = "b.left", u = ["x", "y"] }]
+tools = [{ name = "hold", force = [0, -50] }]
+[[step]]
+name = "bend"
+increments = 40
+fix = [{ on = "b.left", u = ["x"] }]
+tools = [{ name = "hold", force = [0, -50] }, { name = "punch", move = [0, -10] }]
+[[step]]
+name = "open"
+increments = 8
+fix = [{ on = "b.left", u = ["x"] }]
+tools = [{ name = "hold", move = [0, 5] }, { name = "punch", move = [0, 5] }]
+"#,
+    ));
+    let outcome = freed.outcome();
+    assert!(freed.history().numbers("force.die.y").last() == Some(&0.0));
+    let told = |what: &str| outcome.warnings.iter().any(|w| w.contains(what));
+    assert!(
+        told("1 rigid motions are free") && !told("unstable"),
+        "{:?}",
+        outcome.warnings
+    );
+}
