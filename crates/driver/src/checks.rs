@@ -9,6 +9,7 @@ pub(crate) mod narrow;
 pub(crate) mod passage;
 pub(crate) mod rigid;
 pub(crate) mod smallness;
+pub(crate) mod strides;
 pub(crate) mod supports;
 pub(crate) mod unjoined;
 pub(crate) mod untied;

@@ -57,6 +57,7 @@ pub use checks::gaps::LeastGap;
 pub use checks::narrow::Narrow;
 pub use checks::rigid::Stopper;
 pub use checks::smallness::{Deformation, Extent};
+pub use checks::strides::Stride;
 pub use checks::supports::{RigidMotion, Support};
 pub use driver::Driver;
 pub use error::{Imbalance, IncrementError, LawFault, ModelError, Place, ToolOutOfContact};

@@ -60,6 +60,9 @@ impl<const D: usize> Deformation<D> {
 /// Displacement gradient below which no cell is turned inside out, extrapolated to its nodes or not.
 const FAR_FROM_INVERTED: f64 = 0.1;
 
+/// Part of the work, or of the volume, that is not told as one at the corners of a punch.
+const TENTH: f64 = 0.1;
+
 /// Largest principal value in magnitude of a symmetric matrix, if that is above a bound.
 fn principal(a: &Matrix3<f64>, bound: f64) -> f64 {
     match a.norm() > bound {
@@ -115,6 +118,52 @@ impl<const D: usize> Driver<D> {
             rotation,
             inverted,
         }
+    }
+
+    /// The strain of the last increment that a tenth of the work, or of the volume if that has more, exceeds where plastic
+    /// strain has been: the largest principal logarithmic strain in magnitude, of the positions at the start of the increment.
+    /// Laws go straight from one deformation to the next, and what is on the way is not seen.
+    pub fn strain_of_increment(&self) -> f64 {
+        let Some((d_u, _)) = &self.state.last else {
+            return 0.0;
+        };
+        let (d_u, u) = (
+            &d_u[..self.mesh_dofs()],
+            &self.state.displacement[..self.mesh_dofs()],
+        );
+        let (mut strained, mut all) = (Vec::new(), [0.0; 2]);
+        for block in &self.blocks {
+            let mut last = Vec::new();
+            block.gradients(d_u, &mut |_, h| last.push(*h));
+            let mut last = last.into_iter();
+            block.gradients(u, &mut |point, h| {
+                let d_h = last.next().unwrap_or_default();
+                let Some(before) = (Matrix3::identity() + h - d_h).try_inverse() else {
+                    return;
+                };
+                let stretch = Matrix3::identity() + d_h * before;
+                let squares = (stretch.transpose() * stretch).symmetric_eigenvalues();
+                let strain = squares.map(|square| 0.5 * square.ln()).amax();
+                let power = point.stress.dot(&from_matrix(
+                    &(0.5 * (stretch + stretch.transpose()) - Matrix3::identity()),
+                ));
+                let shares = [point.weight * power.abs(), point.weight];
+                (0..2).for_each(|k| all[k] += shares[k]);
+                if point.plastic_strain > 0.0 {
+                    strained.push((strain, shares));
+                }
+            });
+        }
+        strained.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let exceeded = |k: usize| {
+            let mut left = TENTH * all[k];
+            let found = strained.iter().find(|(_, shares)| {
+                left -= shares[k];
+                left < 0.0
+            });
+            found.map_or(0.0, |(strain, _)| *strain)
+        };
+        exceeded(0).max(exceeded(1))
     }
 
     /// The quality of the worst cell where the body is, which cell that is, and where, as
