@@ -1,4 +1,5 @@
-//! Tools within a surface between its nodes, where contact does not act; not how that could be prevented.
+//! Tools and nodes of other bodies within a surface between its nodes, where contact does not act; not how that could be
+//! prevented.
 
 use crate::driver::Driver;
 use crate::model::points::turned;
@@ -6,18 +7,20 @@ use moreau_contact::Obstacle;
 use moreau_mesh::{Facet, FacetKind};
 use nalgebra::SVector;
 
-/// Where a tool is deepest within a surface between its nodes.
+/// Where a tool or a node of the surface opposite is deepest within a surface between its nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Between<const D: usize> {
     /// Index of the contact, in the order in which contacts and pairs were added to the model.
     pub contact: usize,
-    /// How far the tool reaches behind the surface, at least \[mm\].
+    /// The node opposite, if it is that of a body.
+    pub node: Option<usize>,
+    /// How far that reaches behind the surface, at least \[mm\].
     pub depth: f64,
     /// Length of the facet \[mm\].
     pub facet: f64,
     /// Where that is now \[mm\].
     pub position: [f64; D],
-    /// How far the nodes of the surface have been pressed in along the normal of the tool there, against
+    /// How far the nodes of the surface have been pressed in along the normal there, against
     /// each other \[mm\].
     pub pressed: f64,
 }
@@ -211,12 +214,13 @@ fn quarters(piece: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
 }
 
 impl<const D: usize> Driver<D> {
-    /// Where a tool is deepest within a surface between its nodes, if that is more than the bow
-    /// of a round tool over a facet: deeper than [`Between::DEEP`] of the facet and than
+    /// Where a tool, or a node of the surface opposite, is deepest within a surface between its nodes, if that is more than the
+    /// bow of a round tool over a facet: deeper than [`Between::DEEP`] of the facet and than
     /// [`Between::BESIDE_PRESSED`] of what nodes are pressed in.
     pub fn between_nodes(&self) -> Option<Between<D>> {
         let count = (self.points.iter()).fold(0, |most, p| most.max(p.contact + 1));
-        let all = (0..count).filter_map(|k| self.deepest_between(k));
+        let of = |k: usize| self.deepest_between(k).or_else(|| self.corner_between(k));
+        let all = (0..count).filter_map(of);
         all.max_by(|a, b| (a.depth / a.facet).total_cmp(&(b.depth / b.facet)))
     }
 
@@ -261,9 +265,48 @@ impl<const D: usize> Driver<D> {
         let pressed = self.pressed(contact, &normal, facet);
         (depth > Between::<D>::BESIDE_PRESSED * pressed).then(|| Between {
             contact,
+            node: None,
             depth,
             facet,
             position: (body.turned(x, &turn) + at).into(),
+            pressed,
+        })
+    }
+
+    /// The node of the surface of a body that is deepest within the body whose nodes are kept out of it, if that counts.
+    fn corner_between(&self, contact: usize) -> Option<Between<D>> {
+        let own = self.points.iter().filter(|p| p.contact == contact);
+        if own.clone().any(|p| p.tool.is_some() || p.law.is_tie()) {
+            return None;
+        }
+        let (surface, opposite) = self.surfaces(contact);
+        let nodes = 0..self.mesh.nodes().len();
+        let positions: Vec<[f64; D]> = nodes.map(|a| self.position(a).into()).collect();
+        let (node, depth, _) = self.mesh.overlap(&positions, (opposite, surface))?;
+        // Gaps that are adjusted or given may leave bodies within each other.
+        let depth = depth + own.fold(0.0, |least: f64, p| least.min(p.offset));
+        let position = self.position(node);
+        let near_and_size = |facet: &Facet| {
+            let nodes = self.mesh.facet_nodes(*facet);
+            let places: Vec<_> = nodes.map(|a| self.position(a)).collect();
+            let near = (places.iter().map(|a| (a - position).norm())).fold(f64::INFINITY, f64::min);
+            let apart = |a: &SVector<f64, D>| {
+                let others = places.iter().map(|b| (a - b).norm());
+                others.fold(0.0, f64::max)
+            };
+            (near, places.iter().map(apart).fold(0.0, f64::max))
+        };
+        let facets = surface.iter().map(near_and_size);
+        let (_, facet) = facets.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let normal = *self.mesh.node_normals(&positions, opposite).get(&node)?;
+        let pressed = self.pressed(contact, &normal.into(), facet);
+        let deep = (Between::<D>::DEEP * facet).max(Between::<D>::BESIDE_PRESSED * pressed);
+        (depth > deep).then(|| Between {
+            contact,
+            node: Some(node),
+            depth,
+            facet,
+            position: position.into(),
             pressed,
         })
     }

@@ -198,13 +198,15 @@ impl Warnings {
         }
         if let Some(Between {
             contact,
+            node,
             depth,
             facet,
             position,
             pressed,
         }) = driver.between_nodes()
         {
-            let numbers = vec![depth, facet, pressed];
+            let mut numbers = vec![depth, facet, pressed];
+            numbers.extend(node.map(|node| node as f64));
             let at = (contact, position.to_vec());
             self.note(Kind::Between, numbers, at, report.increment);
         }
@@ -518,6 +520,17 @@ impl Worst {
         let length = deck.units.length();
         let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
         let (surface, tool) = driver.contact_name(index);
+        if let Some(node) = self.numbers.get(3) {
+            return format!(
+                "node {node} of \"{tool}\" is {} {length} within \"{surface}\" between its nodes, at {at} in increment {when}, on a \
+                 facet {} {length} long whose surface is pressed in by {} {length} at its nodes: contact keeps the nodes of \
+                 \"{surface}\" out of \"{tool}\" and not those the other way, which makes forces too small; exchange the two, so \
+                 that `surface` is the side with the finer facets and the corners, or use facets of a fifth of that length there",
+                shown(self.number(0), 3),
+                shown(self.number(1), 3),
+                shown(self.number(2), 3)
+            );
+        }
         format!(
             "the tool \"{tool}\" is {} {length} within \"{surface}\" between its nodes, at {at} in \
              increment {when}, on a facet {} {length} long whose surface is pressed in by {} {length} at \

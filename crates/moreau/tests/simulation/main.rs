@@ -19,6 +19,7 @@ mod limits;
 mod methods;
 mod narrow;
 mod nearby;
+mod opposite;
 mod outside;
 mod points;
 mod replaced;
