@@ -489,6 +489,13 @@ impl<const D: usize> Driver<D> {
         if path.ended {
             return Err(self.ended(ramp, &path, &load));
         }
+        // Where nothing presses any more what follows is the way of the tool alone.
+        if ramp.done < LEFT * path.peak && self.is_let_go() {
+            return Err(IncrementError::SnapsAway {
+                step: ramp.step.clone(),
+                limit: path.peak,
+            });
+        }
         let mut halved = 0;
         loop {
             let mut control = Control {

@@ -81,3 +81,55 @@ tools = [{ name = "pin", move = [6, -9] }]
     let strip = flicked.displacements();
     assert!(strip.iter().all(|u| u.abs() < 1e-9), "{strip:?}");
 }
+
+/// A roll that a force drives along a block over the most that this resists: the path falls until it has left the block, and
+/// the run ends there, with the limit, and not with the way of a roll that nothing holds.
+#[test]
+fn a_path_ends_where_the_body_has_left_its_tool() {
+    let mut driven = simulation(
+        r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+strain = "finite"
+[[mesh.block]]
+name = "b"
+element = "quad8"
+x = [0, 14]
+y = [0, 4]
+cells = [28, 6]
+[[material]]
+on = "b"
+young = 70e3
+poisson = 0.33
+yield-stress = 100.0
+hardening = { linear = 500 }
+[[tool]]
+name = "i"
+cylinder = { center = [4, 9], radius = 5 }
+[[contact]]
+surface = "b.top"
+against = "i"
+friction = 0.1
+[[step]]
+name = "press"
+increments = 6
+fix = [{ on = "b.bottom", u = ["x", "y"] }]
+tools = [{ name = "i", move = [0, -0.15] }]
+[[step]]
+name = "slide"
+increments = 24
+fix = [{ on = "b.bottom", u = ["x", "y"] }]
+tools = [{ name = "i", move = [0, -0.15], force = [250, 0] }]
+"#,
+    );
+    let error = loop {
+        if let Err(error) = driven.advance(&mut |_, _| ControlFlow::Continue(())) {
+            break error;
+        }
+    };
+    let StepError::Increment(IncrementError::SnapsAway { limit, .. }) = error else {
+        panic!("{error}");
+    };
+    assert!((0.4..0.6).contains(&limit), "{limit}");
+    let way = driven.history().numbers("u.i.x");
+    assert!(way.last().is_some_and(|x| x.abs() < 100.0), "{way:?}");
+}
