@@ -619,7 +619,7 @@ pub enum IncrementError {
     /// The step was cut as far as allowed.
     #[error(
         "step {step:?} stopped at {:.4} % of its load: increments were cut to {smallest:.2e} of the \
-         step. {}Last attempt: {cause}", 100.0 * .reached, collapse_hint(.cause, *.plastic_fraction, *.limit, *.moves)
+         step. {}Last attempt: {cause}", 100.0 * .reached, collapse_hint(.cause, *.plastic_fraction, *.limit, (*.moves, *.reached))
     )]
     Stopped {
         /// Name of the step.
@@ -716,7 +716,7 @@ fn collapse_hint(
     cause: &IncrementError,
     plastic_fraction: f64,
     limit: Option<f64>,
-    moves: bool,
+    (moves, reached): (bool, f64),
 ) -> String {
     if matches!(
         cause,
@@ -745,10 +745,16 @@ fn collapse_hint(
         return "Hardly anything flows plastically: look for a contact that opens or a missing support. "
             .into();
     }
+    if moves && reached == 0.0 {
+        return "Plastic flow is widespread in the first increment, however short it is: what begins inside of a body \
+                pushes that apart at once, and what moves farther than the body is large leaves it no room; look where \
+                tools begin and how far they go. "
+            .into();
+    }
     if moves {
-        return "Plastic flow is widespread under motions that are prescribed: the load has probably passed \
-                its limit, and the path of equilibria turns back or breaks off where flow gathers in \
-                bands; allow smaller increments, and compare with another mesh. "
+        return "Plastic flow is widespread under motions that are prescribed: the load has probably passed its limit, and \
+                the path of equilibria turns back or breaks off where flow gathers in bands, or the motions leave the \
+                body no room, as in a die that is full; allow smaller increments, and compare with another mesh. "
             .into();
     }
     let estimate = limit.map_or_else(String::new, |limit| {

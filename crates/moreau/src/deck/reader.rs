@@ -342,6 +342,10 @@ impl<'a> Table<'a> {
 
 /// Notes that a value is of the wrong type.
 pub(super) fn wrong<T>(value: Value<'_>, what: &str, expected: &str, log: &Log) -> Option<T> {
+    // What is no TOML is told as that, and left without a value.
+    if matches!(value.get_ref(), DeValue::Float(n) if n.as_str().is_empty()) {
+        return None;
+    }
     let found = match value.get_ref() {
         DeValue::String(s) => format!("the text {:?}", s.as_ref()),
         DeValue::Integer(n) => format!("the integer {}", n.as_str()),

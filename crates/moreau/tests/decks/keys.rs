@@ -208,3 +208,22 @@ fn what_is_no_toml_is_told_in_words_of_the_deck() {
         &["not TOML: "],
     );
 }
+
+/// Coulomb's coefficient is the tangent of the angle that is meant.
+#[test]
+fn an_angle_of_friction_is_told_as_that() {
+    says(
+        "friction = 0.1",
+        "friction = { angle = 10 }",
+        "{ angle = 10 }",
+        &["friction has an angle, expected coulomb, the tangent of that"],
+    );
+}
+
+/// What is no TOML has no value that could be wrong, too.
+#[test]
+fn a_number_that_is_no_toml_is_told_once() {
+    let shown = shown("friction = 0.1", "friction = 1.");
+    assert!(shown.contains("not TOML: invalid fraction"), "{shown}");
+    assert!(!shown.contains("is the number"), "{shown}");
+}

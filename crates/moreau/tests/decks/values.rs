@@ -532,13 +532,13 @@ fn a_checksum_of_no_file_is_told() {
 /// A side of a body that lies across a tool, alone and beside the side that faces it, and a tool that turns towards it.
 #[test]
 fn a_side_that_does_not_face_its_tool_is_told() {
-    let told = |surface: &str, turn: &str| {
+    let told_at = |height: &str, surface: &str, turn: &str| {
         let text = format!(
             r#"units = "mm-N-MPa"
 analysis = "plane-strain"
 mesh = {{ block = [{{ name = "b", element = "quad8", x = [0, 40], y = [0, 10], cells = [8, 4] }}] }}
 material = [{{ on = "b", young = 1000, poisson = 0.3 }}]
-tool = [{{ name = "die", plane = {{ point = [0, 10], normal = [0, -1] }} }}]
+tool = [{{ name = "die", plane = {{ point = [0, {height}], normal = [0, -1] }} }}]
 contact = [{{ surface = {surface}, against = "die", friction = 0.1 }}]
 step = [{{ name = "s", increments = 1, fix = [{{ on = "b.bottom", u = ["x", "y"] }}], tools = [{{ name = "die", move = [0, -0.05]{turn} }}] }}]
 "#
@@ -548,7 +548,10 @@ step = [{{ name = "s", increments = 1, fix = [{{ on = "b.bottom", u = ["x", "y"]
         assert!(problem.is_some(), "{shown}");
         flat(&shown).contains("\"b.left\" does not face the tool \"die\" anywhere")
     };
+    let told = |surface: &str, turn: &str| told_at("10", surface, turn);
     assert!(told("\"b.left\"", ""));
+    // What begins inside is told as that.
+    assert!(!told_at("8", "\"b.left\"", ""));
     assert!(!told("\"b.top\"", ""));
     assert!(!told("[\"b.left\", \"b.top\"]", ""));
     assert!(!told("\"b.left\"", ", turn = 90"));

@@ -246,12 +246,14 @@ fn away<const D: usize>(
             let x = SVector::from(mesh.nodes()[node]);
             -SVector::from(*normal).dot(&obstacle.normal(&x)) > FACES
         };
-        // What is inside of a tool is told to have it turned round.
-        let is_outside = |node: &usize| {
+        // What is inside of a tool is told to have it turned round, and that it begins there.
+        let farther = |node: &usize, side: f64| {
             let x = SVector::from(mesh.nodes()[*node]);
-            obstacle.distance(&x) > OUTSIDE * mesh.size()
+            side * obstacle.distance(&x) > OUTSIDE * mesh.size()
         };
-        if normals.keys().any(is_outside) && !normals.iter().any(faces) {
+        let lies_outside = normals.keys().any(|node| farther(node, 1.0))
+            && !normals.keys().any(|node| farther(node, -1.0));
+        if lies_outside && !normals.iter().any(faces) {
             let message = format!(
                 "\"{}\" does not face the tool \"{}\" anywhere: only its edge can touch, and what lies beside it passes into the \
                  tool; give the side of the body that is opposite",

@@ -3,10 +3,11 @@
 use crate::deck::entries::{
     Adjust, Analysis, ContactEntry, FrictionEntry, Shape, SkinEntry, TieEntry, ToolEntry,
 };
-use crate::deck::finding::At;
+use crate::deck::finding::{At, Class};
 use crate::deck::grammar::material::row;
 use crate::deck::reader::{self, Table, Value};
 use crate::files::read_skin;
+use toml::de::DeTable;
 
 const SHAPES: [&str; 6] = [
     "plane", "cylinder", "sphere", "polyline", "profile", "surface",
@@ -262,6 +263,16 @@ fn friction(table: &Table<'_>, dimension: usize) -> Option<FrictionEntry> {
     }
     if !value.get_ref().is_table() {
         return reader::number(value, "friction", log).map(FrictionEntry::Coulomb);
+    }
+    let angle = |table: &DeTable<'_>| ["angle", "phi"].iter().any(|key| table.contains_key(*key));
+    if value.get_ref().as_table().is_some_and(angle) {
+        let message = "friction has an angle, expected coulomb, the tangent of that";
+        let label = "10° are a coulomb of 0.176";
+        let mut findings = log.borrow_mut();
+        findings
+            .error(&value.span(), message, label)
+            .about(Class::Keys);
+        return None;
     }
     let inner = reader::table(value, "friction", "friction", log)?;
     let axis = inner.get("axis");
