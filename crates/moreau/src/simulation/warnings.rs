@@ -236,8 +236,10 @@ impl Warnings {
     /// Takes note of what is too much for one increment in which the body yields, with how many of its step would do.
     fn coarse<const D: usize>(&mut self, driver: &Driver<D>, report: &IncrementReport) {
         let when = report.increment;
-        let length = (report.fraction - self.done).abs();
-        let enough = |parts: f64| (parts / length.max(f64::MIN_POSITIVE)).ceil();
+        // Along a path on which loads fall no number of increments decides how long they are.
+        let length = report.fraction - self.done;
+        let is_known = length > 0.0 && self.worst[Kind::Limit as usize].is_none();
+        let enough = |parts: f64| f64::from(u8::from(is_known)) * (parts / length).ceil();
         if let Some(stride) = driver.strides() {
             let enough = enough(stride.way / (PART_OF_A_FACET * stride.facet));
             let numbers = vec![enough, stride.way, stride.facet, stride.contact as f64];
@@ -467,10 +469,10 @@ impl Worst {
             Kind::Stride => self.stride(driver, deck),
             Kind::Strained => format!(
                 "strains are large for one increment: in increment {when} a tenth of the body is strained by {} or more, and its \
-                 law goes straight from one state to the other, which makes forces wrong by percents; use increments = {} or \
-                 more in that step",
+                 law goes straight from one state to the other, which makes forces wrong by percents; use {} \
+                 in that step",
                 percent(self.number(1)),
-                self.number(0)
+                self.more_increments()
             ),
             Kind::Free => self.free(driver),
             Kind::Unstable => format!(
@@ -633,6 +635,14 @@ impl Worst {
         )
     }
 
+    /// How many increments would do, if that is known.
+    fn more_increments(&self) -> String {
+        match self.number(0) > 0.0 {
+            true => format!("increments = {} or more", self.number(0)),
+            false => "smaller increments".into(),
+        }
+    }
+
     fn stride<const D: usize>(&self, driver: &Driver<D>, deck: &Deck) -> String {
         let length = deck.units.length();
         let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
@@ -640,10 +650,10 @@ impl Worst {
         format!(
             "\"{tool}\" goes {} {length} along \"{surface}\" in increment {when}, at node {index} at {at}, over facets {} {length} \
              long, while the body yields: contact acts at the ends of increments, and what the tool passes between them it does \
-             not press in, which makes forces too small; use increments = {} or more in that step, a quarter of a facet each",
+             not press in, which makes forces too small; use {} in that step, of a quarter of a facet each",
             shown(self.number(1), 3),
             shown(self.number(2), 3),
-            self.number(0)
+            self.more_increments()
         )
     }
 

@@ -130,6 +130,14 @@ tools = [{ name = "i", move = [0, -0.15], force = [250, 0] }]
         panic!("{error}");
     };
     assert!((0.4..0.6).contains(&limit), "{limit}");
+    // Beyond the limit no number of increments decides how long they are.
+    let warnings = driven.outcome().warnings;
+    let told = |w: &&String| w.contains("along \"b.top\" in increment");
+    let asked = warnings.iter().find(told).expect("told");
+    assert!(
+        asked.contains("use smaller increments in that step"),
+        "{asked}"
+    );
     let way = driven.history().numbers("u.i.x");
     assert!(way.last().is_some_and(|x| x.abs() < 100.0), "{way:?}");
 }
