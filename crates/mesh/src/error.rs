@@ -130,6 +130,13 @@ pub enum MeshError {
         name: String,
     },
 
+    /// A group whose name no file could have.
+    #[error("the name of a group is {name:?}: it must be one line, of one character at least")]
+    GroupName {
+        /// The name.
+        name: String,
+    },
+
     /// A group would hold nothing.
     #[error("the group \"{name}\" would be empty: it needs at least one of its {kind}")]
     EmptyGroup {

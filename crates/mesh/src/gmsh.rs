@@ -31,7 +31,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 /// | physical group of dimension | becomes a group of |
 /// |---|---|
 /// | D | cells |
-/// | D − 1 | facets: sides of the cells with the same nodes, of the first cell inside a body |
+/// | D − 1 | facets: sides of the cells with the same nodes, inside a body of the cell that goes round them in their order |
 /// | less | nodes |
 ///
 /// A mesh has one set of names. Where a group of facets is called like one of cells, it becomes

@@ -164,8 +164,12 @@ impl<const D: usize> Mesh<D> {
     }
 
     /// The cells that displaced nodes turn inside out, those whose Jacobian determinant is not positive
-    /// somewhere among the nodes and the points of the full rule: each with its worst point \[mm\].
+    /// somewhere among the nodes and the points of the full rule, or is no number: each with its worst point \[mm\].
+    ///
+    /// # Panics
+    /// If there are not as many positions as nodes.
     pub fn inverted(&self, positions: &[[f64; D]]) -> Vec<(usize, [f64; D])> {
+        assert_eq!(positions.len(), self.nodes.len(), "a position a node");
         let mut samples = BTreeMap::new();
         let mut inverted = Vec::new();
         for cell in 0..self.cell_count() {
@@ -175,7 +179,7 @@ impl<const D: usize> Mesh<D> {
                 .map(|&a| positions[a])
                 .collect();
             if let Some((det, point)) = least_determinant(&x, table)
-                && det <= 0.0
+                && (det.is_nan() || det <= 0.0)
             {
                 inverted.push((cell, point));
             }
@@ -186,10 +190,14 @@ impl<const D: usize> Mesh<D> {
     /// The quality of the worst cell with displaced nodes, which cell that is, and where \[mm\]: D det(M)^(2/D) / |M|²,
     /// least among the points of the full rule, of the map M from a square, cube or equilateral simplex. Of a
     /// rectangle with sides 1 : a it is 2 a / (1 + a²), of a square sheared by γ 2 / (2 + γ²), and of what is turned
-    /// inside out not positive.
+    /// inside out not positive; where a position is no number, nor is the quality.
     ///
     /// Source: P. M. Knupp, *SIAM J. Sci. Comput.* 23 (2001) 193-218.
+    ///
+    /// # Panics
+    /// If there are not as many positions as nodes.
     pub fn worst_quality(&self, positions: &[[f64; D]]) -> (f64, usize, [f64; D]) {
+        assert_eq!(positions.len(), self.nodes.len(), "a position a node");
         let mut samples = BTreeMap::new();
         let mut worst = (f64::INFINITY, 0, [0.0; D]);
         for cell in 0..self.cell_count() {
@@ -200,7 +208,8 @@ impl<const D: usize> Mesh<D> {
             let simplex = kind.corner_count() == D + 1;
             for sample in &table.rule {
                 let quality = sample.regularity(&x, simplex);
-                if quality < worst.0 {
+                // What is no number is worse than any.
+                if quality < worst.0 || (quality.is_nan() && !worst.0.is_nan()) {
                     worst = (quality, cell, sample.position(&x));
                 }
             }
@@ -277,7 +286,9 @@ fn least_determinant<const D: usize>(
 ) -> Option<(f64, [f64; D])> {
     let det = |sample: &Sample<D>| (sample.det(positions), sample.position(positions));
     let all = samples.nodes.iter().chain(&samples.rule).map(det);
-    all.min_by(|a, b| a.0.total_cmp(&b.0))
+    // What is no number is less than any.
+    let order = |det: f64| if det.is_nan() { f64::NEG_INFINITY } else { det };
+    all.min_by(|a, b| order(a.0).total_cmp(&order(b.0)))
 }
 
 /// Checks the Jacobian determinant of a cell, where it is least among its samples.

@@ -8,7 +8,9 @@ use std::fmt::{self, Write};
 const REST: &str = "ungrouped";
 
 /// A mesh as the text of an MSH file, version 2.2, which Gmsh and [`read_gmsh`](crate::read_gmsh)
-/// read back with the same nodes and groups.
+/// read back with the same nodes and groups, facets on the same side also inside a body. Cells come back in the order of
+/// their nodes, as from any file of Gmsh: the mesh is equal where they were in it, and members of groups have other
+/// numbers where they were not.
 ///
 /// Groups of cells, facets and nodes are physical groups of dimension D, D − 1 and 0; a member of
 /// several groups is written for each, which is how this version of the format has it. Cells in no

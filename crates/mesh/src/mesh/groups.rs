@@ -44,7 +44,7 @@ impl<const D: usize> Mesh<D> {
     ///
     /// # Errors
     ///
-    /// [`MeshError::DuplicateGroup`] (cells, facets and nodes share one set of names),
+    /// [`MeshError::GroupName`], [`MeshError::DuplicateGroup`] (cells, facets and nodes share one set of names),
     /// [`MeshError::EmptyGroup`], [`MeshError::GroupOutOfRange`].
     pub fn add_cell_group(&mut self, name: &str, cells: Vec<usize>) -> Result<(), MeshError> {
         self.check_range(name, GroupKind::Cells, &cells, self.cell_count())?;
@@ -55,7 +55,7 @@ impl<const D: usize> Mesh<D> {
     ///
     /// # Errors
     ///
-    /// [`MeshError::DuplicateGroup`], [`MeshError::EmptyGroup`], [`MeshError::GroupOutOfRange`] for
+    /// [`MeshError::GroupName`], [`MeshError::DuplicateGroup`], [`MeshError::EmptyGroup`], [`MeshError::GroupOutOfRange`] for
     /// the cell and [`MeshError::FacetOutOfRange`] for its side.
     pub fn add_facet_group(&mut self, name: &str, facets: Vec<Facet>) -> Result<(), MeshError> {
         for &Facet { cell, facet } in &facets {
@@ -77,7 +77,7 @@ impl<const D: usize> Mesh<D> {
     ///
     /// # Errors
     ///
-    /// [`MeshError::DuplicateGroup`], [`MeshError::EmptyGroup`], [`MeshError::GroupOutOfRange`].
+    /// [`MeshError::GroupName`], [`MeshError::DuplicateGroup`], [`MeshError::EmptyGroup`], [`MeshError::GroupOutOfRange`].
     pub fn add_node_group(&mut self, name: &str, nodes: Vec<usize>) -> Result<(), MeshError> {
         self.check_range(name, GroupKind::Nodes, &nodes, self.nodes.len())?;
         self.insert_group(name, Group::Nodes(sorted(nodes)))
@@ -176,6 +176,9 @@ impl<const D: usize> Mesh<D> {
                 name: owned(),
                 kind: group.kind(),
             });
+        }
+        if name.is_empty() || name.contains(['\n', '\r']) {
+            return Err(MeshError::GroupName { name: owned() });
         }
         if self.groups.contains_key(name) {
             return Err(MeshError::DuplicateGroup { name: owned() });

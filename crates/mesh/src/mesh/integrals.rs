@@ -33,6 +33,9 @@ pub struct Share<const D: usize> {
 
 impl<const D: usize> Mesh<D> {
     /// Volume ∫ dV of a set of cells under a hypothesis \[mm³\].
+    ///
+    /// # Panics
+    /// Of a cell that the mesh has not.
     pub fn measure<H: Hypothesis<D>>(&self, cells: &[usize], hypothesis: &H) -> f64 {
         self.volume_shares(cells, hypothesis)
             .iter()
@@ -44,6 +47,9 @@ impl<const D: usize> Mesh<D> {
     /// node: what turns a body force into nodal forces.
     ///
     /// Exact for cells with straight sides and parallel faces; each mention of a cell counts.
+    ///
+    /// # Panics
+    /// Of a cell that the mesh has not.
     pub fn volume_shares<H: Hypothesis<D>>(
         &self,
         cells: &[usize],
@@ -74,6 +80,9 @@ impl<const D: usize> Mesh<D> {
     ///
     /// A straight quadratic edge gives 1/6, 2/3 and 1/6 of its area to its first end, middle and
     /// second end. Exact for flat facets; each mention of a facet counts.
+    ///
+    /// # Panics
+    /// Of a facet that the mesh has not, see [`Mesh::has_facet`].
     pub fn facet_shares<H: Hypothesis<D>>(
         &self,
         facets: &[Facet],
@@ -83,12 +92,16 @@ impl<const D: usize> Mesh<D> {
     }
 
     /// The same with the nodes at other positions \[mm\].
+    ///
+    /// # Panics
+    /// Of a facet that the mesh has not, or if there are not as many positions as nodes.
     pub fn facet_shares_at<H: Hypothesis<D>>(
         &self,
         positions: &[[f64; D]],
         facets: &[Facet],
         hypothesis: &H,
     ) -> Vec<Share<D>> {
+        assert_eq!(positions.len(), self.nodes.len(), "a position a node");
         let mut samples = BTreeMap::new();
         let mut shares = BTreeMap::new();
         for &facet in facets {

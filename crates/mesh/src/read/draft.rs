@@ -237,7 +237,7 @@ fn facets<const D: usize>(
             let nodes = placed(*element, nodes, &place)?;
             nodes.iter().flatten().for_each(|&node| near[node] = true);
             if let Some(key) = nodes.and_then(key) {
-                wanted.insert(key, None);
+                wanted.insert(key, Vec::new());
             }
         }
     }
@@ -247,8 +247,7 @@ fn facets<const D: usize>(
                 && let Some(key) = key(mesh.facet_nodes(facet))
                 && let Some(found) = wanted.get_mut(&key)
             {
-                // Of two cells that share the facet, the first one has it.
-                found.get_or_insert(facet);
+                found.push(facet);
             }
         }
     }
@@ -263,8 +262,9 @@ fn facets<const D: usize>(
         for side in sides {
             match side {
                 Side::Element { element, nodes } => {
-                    let key = placed(*element, nodes, &place)?.and_then(key);
-                    let found = key.and_then(|key| wanted.get(&key).copied().flatten());
+                    let own = placed(*element, nodes, &place)?;
+                    let found =
+                        own.and_then(|own| side_of(mesh, &own, wanted.get(&key(own.clone())?)?));
                     facets.push(found.ok_or_else(|| ReadError::FacetWithoutCell {
                         group: name.clone(),
                         element: *element,
@@ -285,6 +285,26 @@ fn facets<const D: usize>(
         result.insert(name.clone(), facets);
     }
     Ok(result)
+}
+
+/// Of the facets that have these nodes, of two cells inside a body, the one whose cell goes round them in their sense; the
+/// first where none does.
+fn side_of<const D: usize>(mesh: &Mesh<D>, nodes: &[usize], found: &[Facet]) -> Option<Facet> {
+    let goes_with = |facet: &&Facet| {
+        let own: Vec<usize> = mesh.facet_nodes(**facet).collect();
+        // Corners come first: two of a line, three or four of a surface.
+        let corners = match (D, own.len()) {
+            (2, _) => 2,
+            (_, 3 | 6) => 3,
+            _ => 4,
+        };
+        match own[..corners].iter().position(|node| *node == nodes[0]) {
+            Some(first) if D == 2 => first == 0,
+            Some(first) => own[(first + 1) % corners] == nodes[1],
+            None => false,
+        }
+    };
+    found.iter().find(goes_with).or(found.first()).copied()
 }
 
 fn every_facet<const D: usize>(mesh: &Mesh<D>) -> impl Iterator<Item = Facet> {

@@ -303,3 +303,23 @@ fn the_quality_of_cells_is_known() {
     check::<2>();
     check::<3>();
 }
+
+/// What is no number is turned inside out, and of the worst quality, in its cells and no others.
+#[test]
+fn positions_that_are_no_numbers_are_told() {
+    let mesh = block2("b", CellKind::Quad8, &[0.0, 1.0, 2.0, 3.0], &[0.0, 1.0]).expect("valid");
+    let node = mesh.cell_nodes(0)[0];
+    for k in 0..2 {
+        let mut positions = mesh.nodes().to_vec();
+        positions[node][k] = f64::NAN;
+        let cells: Vec<usize> = mesh
+            .inverted(&positions)
+            .iter()
+            .map(|(cell, _)| *cell)
+            .collect();
+        assert_eq!(cells, [0]);
+        let (quality, cell, _) = mesh.worst_quality(&positions);
+        assert!(quality.is_nan() && cell == 0, "{quality} {cell}");
+    }
+    assert_eq!(mesh.inverted(mesh.nodes()), []);
+}
