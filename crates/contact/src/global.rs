@@ -57,8 +57,9 @@ impl<const D: usize> GlobalProblem<D> {
     ///
     /// # Errors
     /// [`ContactError::Dimension`] for entries beyond the unknowns or contacts,
-    /// [`ContactError::NotFinite`], [`ContactError::Indefinite`] if M is singular, and those of
-    /// [`LocalProblem::new`].
+    /// [`ContactError::NotFinite`], [`ContactError::Unsymmetric`] if M is not symmetric up to rounding,
+    /// [`ContactError::Indefinite`] if it is singular or two of its unknowns tell that it is not positive definite, and
+    /// those of [`LocalProblem::new`].
     pub fn new(
         stiffness: Vec<Entry>,
         directions: Vec<Entry>,
@@ -84,6 +85,8 @@ impl<const D: usize> GlobalProblem<D> {
         }
         expect_finite("load", &load)?;
         expect_sizes([("free displacements", free.len(), contacts)])?;
+        BlockMatrix::<1>::from_entries(n, stiffness.iter().copied())
+            .expect_compliance("matrix M")?;
         let mut bodies = bodies(n, &stiffness)?;
         let operator = delassus(contacts, &mut bodies, &directions)?;
         let at_rest = solve(&mut bodies, &load)?;
@@ -92,7 +95,7 @@ impl<const D: usize> GlobalProblem<D> {
             q[j / D][j % D] += h * at_rest[i];
         }
         Ok(Self {
-            local: LocalProblem::new(operator, q, laws)?,
+            local: LocalProblem::of_inverse(operator, q, laws)?,
             stiffness,
             directions,
             load,
@@ -116,7 +119,11 @@ impl<const D: usize> GlobalProblem<D> {
     }
 
     /// The solution of the bodies under contact forces, and how good it is.
+    ///
+    /// # Panics
+    /// If there are not as many forces as contacts.
     pub fn expand(&mut self, mut local: LocalSolution<D>) -> GlobalSolution<D> {
+        assert_eq!(local.force.len(), self.free.len(), "a force a contact");
         let mut forces = vec![0.0; self.load.len()];
         for &(i, j, h) in &self.directions {
             forces[i] += h * local.force[j / D][j % D];

@@ -13,6 +13,9 @@ pub use local::{LocalProblem, Residual};
 use moreau_laws::{Friction, Local, Status};
 use nalgebra::DVector;
 
+/// What a caller must give.
+const PAIRS: &str = "a pair (u, t) a law";
+
 /// How far a pair (u, t) is from the contact law: the bipotential gap and what it cannot see.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Certificate {
@@ -38,7 +41,7 @@ impl Certificate {
         u: &[Local<D>],
         t: &[Local<D>],
     ) -> Self {
-        assert_eq!([u.len(), t.len()], [laws.len(); 2], "a pair (u, t) a law");
+        assert_eq!([u.len(), t.len()], [laws.len(); 2], "{PAIRS}");
         let mut certificate = Self::default();
         for ((&law, u), t) in laws.iter().zip(u).zip(t) {
             let law: Friction = law.into();
@@ -60,6 +63,7 @@ pub(crate) fn statuses<const D: usize>(
     t: &[Local<D>],
     alpha: impl Fn(usize) -> f64,
 ) -> Vec<Status> {
+    assert_eq!([u.len(), t.len()], [laws.len(); 2], "{PAIRS}");
     let status = |(i, law): (usize, &Friction)| law.status(&u[i], &t[i], alpha(i));
     laws.iter().enumerate().map(status).collect()
 }

@@ -103,12 +103,13 @@ pub trait ContactSolver<const D: usize>: std::fmt::Debug + Send + Sync {
     }
 
     /// Solves a problem until a residual of `enough` \[N\] is left, or to the method's own tolerance
-    /// where that is larger; at zero as [`ContactSolver::solve`].
+    /// where that is larger; at zero as [`ContactSolver::solve`], and where it is infinite the first point is enough.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] with the residual left, [`ContactError::Floating`] where
     /// the method needs an invertible stiffness, [`ContactError::Singular`]; [`ContactError::Dimension`] of a guess of
-    /// another number of contacts, and [`ContactError::NotFinite`] of a guess or of a solution that is none in numbers.
+    /// another number of contacts, [`ContactError::NotFinite`] of a guess or of a solution that is none in numbers, and
+    /// [`ContactError::OutOfRange`] of an `enough` that is negative or no number.
     fn approach(
         &self,
         problem: &CondensedProblem<D>,
@@ -147,6 +148,21 @@ fn expect_guess<const D: usize>(
     let pairs = [&guess.displacement, &guess.irreversible, &guess.force];
     expect_sizes(pairs.map(|part| ("guess", part.len(), contacts)))?;
     expect_finite("guess", pairs.into_iter().flatten().flatten())
+}
+
+/// The residual that is enough \[N\], as a number: all are where it is infinite.
+///
+/// # Errors
+/// [`ContactError::OutOfRange`] if it is negative or no number.
+fn expect_enough(enough: f64) -> Result<f64, ContactError> {
+    match enough >= 0.0 {
+        true => Ok(enough.min(f64::MAX)),
+        false => Err(ContactError::OutOfRange {
+            what: "residual that is enough",
+            value: enough,
+            expected: "a number that is not negative",
+        }),
+    }
 }
 
 /// Forces of a guess to start from.

@@ -1,17 +1,23 @@
 //! The condensed contact problem t = S (u − g) − f and its residual; not how it is solved.
 
-use super::{BlockMatrix, LocalProblem, criticality, size_of_map, split, stack, statuses};
+use super::{BlockMatrix, LocalProblem, PAIRS, criticality, size_of_map, split, stack, statuses};
 use crate::ContactError;
 use crate::error::{expect_finite, expect_sizes, expect_symmetric};
 use moreau_algebra::DenseCholesky;
 use moreau_laws::{Friction, Local, Status};
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use nalgebra::{Cholesky, DMatrix, DVector, Matrix2, Vector2};
 
 /// Eigenvalue of S, over its largest diagonal, below which it is rounding.
 const FAINT: f64 = 1e-9;
 
 /// Least proximal term, over the stiffest diagonal, whose inverse is not too large to iterate on.
 const SWEPT: f64 = 1e-9;
+
+/// Least α of a contact, over that of the stiffest: it sees displacements where the contact has no stiffness of its own.
+const SEEN: f64 = 1e-6;
+
+/// Part of a gap to which a contact is closed at least, however soft the structure is.
+const CLOSED: f64 = 1e-9;
 
 /// The largest proximal term that is looked for, over the stiffest diagonal, and how near the least that makes S stable is
 /// found.
@@ -27,7 +33,8 @@ const NEAR: f64 = 2.0;
 /// u = (u_n, u_t) is the gap at the end of the step and the slip of the step \[mm\], t the contact
 /// force on the body \[N\]; S is the stiffness of the structure condensed on the interface \[N/mm\],
 /// symmetric positive semi-definite, `D·contacts` square; f the condensed load \[N\] and g the
-/// displacement about which the structure was linearised \[mm\].
+/// displacement about which the structure was linearised \[mm\]. Where stresses make the structure unstable S is indefinite:
+/// such a problem may have several solutions, of which methods find one or another, or none.
 #[derive(Debug, Clone)]
 pub struct CondensedProblem<const D: usize> {
     stiffness: DMatrix<f64>,
@@ -41,13 +48,16 @@ pub struct CondensedProblem<const D: usize> {
     load_rounding: f64,
     /// The least stiffness by which displacements weigh in the residual of a solution \[N/mm\].
     weight: f64,
+    /// The least α of a contact \[N/mm\].
+    least: f64,
 }
 
 impl<const D: usize> CondensedProblem<D> {
     /// A problem from its parts; `previous` are the forces t₀ at the start of the step.
     ///
     /// # Errors
-    /// [`ContactError::Dimension`] if sizes disagree, [`ContactError::NotFinite`] for NaN or ∞.
+    /// [`ContactError::Dimension`] if sizes disagree, [`ContactError::NotFinite`] for NaN or ∞,
+    /// [`ContactError::Unsymmetric`] if S is not symmetric up to rounding.
     pub fn new(
         stiffness: DMatrix<f64>,
         load: DVector<f64>,
@@ -63,11 +73,11 @@ impl<const D: usize> CondensedProblem<D> {
             ("origin", origin.len(), contacts),
             ("previous", previous.len(), contacts),
         ])?;
-        expect_finite("stiffness", &stiffness)?;
+        expect_symmetric("stiffness", &stiffness)?;
         expect_finite("load", &load)?;
         expect_finite("origin", origin.iter().flatten())?;
         expect_finite("previous", previous.iter().flatten())?;
-        Ok(Self {
+        let mut problem = Self {
             stiffness,
             load,
             origin,
@@ -76,7 +86,29 @@ impl<const D: usize> CondensedProblem<D> {
             held: 0.0,
             load_rounding: 0.0,
             weight: 0.0,
-        })
+            least: 0.0,
+        };
+        problem.least = problem.least_alpha();
+        Ok(problem)
+    }
+
+    /// The least α: a part of the stiffest contact's, and where no contact has any stiffness that with which the load
+    /// closes the gaps.
+    fn least_alpha(&self) -> f64 {
+        let own = (0..self.contacts()).map(|i| self.mean_stiffness(i));
+        let (stiffest, closing) = (own.fold(0.0, f64::max), self.closing());
+        // Beyond any rounding of gaps.
+        match stiffest > f64::EPSILON.powi(2) * closing {
+            true => SEEN * stiffest,
+            false => closing,
+        }
+    }
+
+    /// Stiffness with which the load closes the gaps \[N/mm\]; 1 where there is no load or no gap, and so nothing to weigh.
+    pub(crate) fn closing(&self) -> f64 {
+        let load = self.load.amax();
+        let gap = self.origin.iter().map(|g| g.amax()).fold(0.0, f64::max);
+        Some(load / gap).filter(|c| c.is_normal()).unwrap_or(1.0)
     }
 
     /// A problem given in the form u = W t + q of discrete frictional contact; t₀ = 0.
@@ -113,6 +145,7 @@ impl<const D: usize> CondensedProblem<D> {
             self.stiffness[(k, k)] += c - self.held;
         }
         self.held = c;
+        self.least = self.least_alpha();
     }
 
     /// Tells by how much the load may be rounding \[N\] beyond that of its own size: what is left of stresses that have
@@ -122,7 +155,8 @@ impl<const D: usize> CondensedProblem<D> {
     }
 
     /// Tells by which stiffness \[N/mm\] displacements weigh at least where a solution is judged. In plastic flow S is softer
-    /// than the bodies, and what is within a tolerance when weighed by S need not be when weighed by them.
+    /// than the bodies, and what is within a tolerance when weighed by S need not be when weighed by them. Newton's method
+    /// on S, whose last step leaves rounding only, heeds it where S is next to nothing beside it.
     pub fn weigh(&mut self, stiffness: f64) {
         self.weight = stiffness;
     }
@@ -189,12 +223,16 @@ impl<const D: usize> CondensedProblem<D> {
     }
 
     /// Forces that displacements u ask of the structure: t = S (u − g) − f \[N\].
+    ///
+    /// # Panics
+    /// If there are not as many displacements as contacts.
     pub fn force(&self, u: &[Local<D>]) -> Vec<Local<D>> {
         self.force_of(&self.relative(u))
     }
 
     /// Displacements from the origin, x = u − g \[mm\].
     pub(crate) fn relative(&self, u: &[Local<D>]) -> Vec<Local<D>> {
+        assert_eq!(u.len(), self.contacts(), "a displacement a contact");
         u.iter().zip(&self.origin).map(|(u, g)| u - g).collect()
     }
 
@@ -212,12 +250,22 @@ impl<const D: usize> CondensedProblem<D> {
             .map_err(|component| ContactError::Floating { component })?;
         let free = split::<D>(&(&operator * &self.load));
         let free = free.iter().zip(&self.origin).map(|(w, g)| w + g).collect();
-        LocalProblem::new(BlockMatrix::from_dense(&operator)?, free, self.laws.clone())
+        LocalProblem::of_inverse(BlockMatrix::from_dense(&operator)?, free, self.laws.clone())
     }
 
     /// Parameter α of \[90′\] for contact i \[N/mm\]: the mean stiffness of its own components, so
-    /// that a residual in newtons weighs gaps and forces alike in any system of units.
+    /// that a residual in newtons weighs gaps and forces alike in any system of units. It never vanishes, or a gap would
+    /// not be seen: where a contact has next to no stiffness it is a small part of the stiffest one's, and where none has
+    /// any that with which the load closes the gaps.
+    ///
+    /// # Panics
+    /// If there is no contact i.
     pub fn alpha(&self, i: usize) -> f64 {
+        self.mean_stiffness(i).max(self.least)
+    }
+
+    /// Mean stiffness of the components of contact i \[N/mm\].
+    fn mean_stiffness(&self, i: usize) -> f64 {
         (0..D)
             .map(|k| self.stiffness[(D * i + k, D * i + k)])
             .sum::<f64>()
@@ -226,6 +274,9 @@ impl<const D: usize> CondensedProblem<D> {
 
     /// Largest norm over the contacts of the natural map t − proj(t − α ũ), \[90′\] \[N\]; infinite where a displacement or a
     /// force is no number.
+    ///
+    /// # Panics
+    /// If there are not as many displacements and forces as contacts.
     pub fn residual(&self, u: &[Local<D>], t: &[Local<D>]) -> f64 {
         self.residual_by(0.0, u, t)
     }
@@ -235,8 +286,42 @@ impl<const D: usize> CondensedProblem<D> {
         self.residual_by(self.weight, u, t)
     }
 
+    /// The weight of displacements in the residual of a solution of this relative tolerance \[N/mm\], zero where none is asked
+    /// for beside α, as where its last step is Newton's, which leaves rounding. Of a structure so soft that its forces do not
+    /// see the gaps it is such that what is within the tolerance has closed them.
+    pub(crate) fn weight_of_gaps(&self, relative: f64) -> f64 {
+        let unseen = match self.is_blind() {
+            true => self.closing() * relative / CLOSED,
+            false => 0.0,
+        };
+        let told = match self.least < SEEN * SEEN * self.weight {
+            true => self.weight,
+            false => 0.0,
+        };
+        told.max(unseen)
+    }
+
+    /// [`Self::residual`] with this weight, the rounding of positions x = u − g taken off \[N\].
+    pub(crate) fn residual_of_gaps(
+        &self,
+        weight: f64,
+        (x, u): (&[Local<D>], &[Local<D>]),
+        t: &[Local<D>],
+    ) -> f64 {
+        let reach = x.iter().chain(&self.origin).map(|x| x.amax());
+        let rounding = 4.0 * f64::EPSILON * reach.fold(0.0, f64::max);
+        self.residual_by(weight, u, t) - weight * rounding
+    }
+
+    /// Whether the stiffest contact with all its gap makes a force that is next to none beside the load. Where the load is
+    /// told to be rounding in part, such a gap is rounding, too.
+    fn is_blind(&self) -> bool {
+        self.load_rounding == 0.0 && self.least < SEEN * CLOSED * self.closing()
+    }
+
     /// The largest norm of the natural map, with α of this size at least \[N\].
     fn residual_by(&self, least: f64, u: &[Local<D>], t: &[Local<D>]) -> f64 {
+        assert_eq!([u.len(), t.len()], [self.contacts(); 2], "{PAIRS}");
         let size = |i: usize| {
             let map = self.laws[i].natural_map(&u[i], &t[i], self.alpha(i).max(least));
             size_of_map(&map, &u[i], &t[i])
@@ -278,7 +363,11 @@ impl<const D: usize> CondensedProblem<D> {
     /// stick: an indicator, not a bound (A. Klarbring, *Ingenieur-Archiv* 60 (1990) 529-541). Of a single
     /// contact it is that of [`LocalProblem::criticality`]; of several, the block of W is taken while all
     /// others are open.
+    ///
+    /// # Panics
+    /// If there are not as many statuses as contacts.
     pub fn criticality(&self, status: &[Status]) -> Option<(usize, f64)> {
+        assert_eq!(status.len(), self.contacts(), "a status a contact");
         let touches = |i: &usize| status[*i] != Status::Open || self.previous[*i][0] > 0.0;
         let touching = (0..self.contacts()).filter(touches);
         criticality(&self.laws, touching, |i| self.moved_along(i))
@@ -299,25 +388,37 @@ impl<const D: usize> CondensedProblem<D> {
     }
 
     /// Status of every contact at (u, t), \[35\].
+    ///
+    /// # Panics
+    /// If there are not as many displacements and forces as contacts.
     pub fn statuses(&self, u: &[Local<D>], t: &[Local<D>]) -> Vec<Status> {
         statuses(&self.laws, u, t, |i| self.alpha(i))
     }
 }
 
-/// Inverse of a symmetric positive definite matrix, or the component at which it is not.
-fn inverse(a: DMatrix<f64>) -> Result<DMatrix<f64>, usize> {
+/// Inverse of a symmetric positive definite matrix, or the first component at which it is not: that of the first pivot of
+/// Cholesky's factorisation at rounding level, a rigid motion and not a stiffness, or below.
+fn inverse(mut a: DMatrix<f64>) -> Result<DMatrix<f64>, usize> {
     if a.is_empty() {
         return Ok(a); // Nothing touches.
     }
-    let scale = a.diagonal().amax();
-    match a.clone().cholesky() {
-        // A pivot at rounding level is a rigid motion, not a stiffness.
-        Some(factor) if factor.l_dirty().diagonal().amin().powi(2) > 1e-13 * scale => {
-            Ok(factor.inverse())
+    let least = 1e-13 * a.diagonal().amax();
+    for j in 0..a.ncols() {
+        for k in 0..j {
+            let across = -a[(j, k)];
+            let (mut own, before) = a.columns_range_pair_mut(j, k);
+            own.rows_range_mut(j..)
+                .axpy(across, &before.rows_range(j..), 1.0);
         }
-        Some(factor) => Err(factor.l_dirty().diagonal().imin()),
-        None => Err(a.diagonal().imin()),
+        let root = a[(j, j)].sqrt();
+        // A negative pivot has no root.
+        if root.is_nan() || root.powi(2) <= least {
+            return Err(j);
+        }
+        a[(j, j)] = root;
+        a.view_range_mut(j + 1.., j).unscale_mut(root);
     }
+    Ok(Cholesky::pack_dirty(a).inverse())
 }
 
 #[cfg(test)]

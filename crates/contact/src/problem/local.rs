@@ -1,7 +1,7 @@
 //! The discrete frictional contact problem in its local form and how far a point is from solving it;
 //! not the bodies, see [`GlobalProblem`](crate::GlobalProblem).
 
-use super::{BlockMatrix, criticality, statuses};
+use super::{BlockMatrix, PAIRS, criticality, statuses};
 use crate::error::{expect_finite, expect_sizes};
 use crate::{ContactError, Springs};
 use moreau_laws::{Friction, Local, Status};
@@ -75,8 +75,24 @@ impl<const D: usize> LocalProblem<D> {
     ///
     /// # Errors
     /// [`ContactError::Dimension`] if sizes disagree, [`ContactError::NotFinite`] for NaN or ∞,
-    /// [`ContactError::Rigid`] where a diagonal block of W has no normal compliance.
+    /// [`ContactError::Unsymmetric`] if W is not symmetric up to rounding, [`ContactError::Rigid`] where a diagonal block
+    /// of W has no normal compliance, [`ContactError::Indefinite`] where two components of W tell that it is not positive
+    /// semi-definite: all together are not looked at.
     pub fn new(
+        operator: BlockMatrix<D>,
+        free: Vec<Local<D>>,
+        laws: Vec<impl Into<Friction>>,
+    ) -> Result<Self, ContactError> {
+        let expected = operator.expect_compliance("Delassus operator");
+        let problem = Self::of_inverse(operator, free, laws)?;
+        expected.map(|()| problem)
+    }
+
+    /// A problem whose W was found as the inverse of a symmetric matrix, and is symmetric as far as that was regular.
+    ///
+    /// # Errors
+    /// As [`Self::new`], but what W is as a whole.
+    pub(crate) fn of_inverse(
         operator: BlockMatrix<D>,
         free: Vec<Local<D>>,
         laws: Vec<impl Into<Friction>>,
@@ -135,19 +151,29 @@ impl<const D: usize> LocalProblem<D> {
     }
 
     /// |W_ii|₂ of contact i, the unit of everything that would otherwise need one.
+    ///
+    /// # Panics
+    /// If there is no contact i.
     #[inline]
     pub fn compliance(&self, i: usize) -> f64 {
         self.compliance[i]
     }
 
     /// u = W r + q.
+    ///
+    /// # Panics
+    /// If there are not as many forces as contacts.
     pub fn displacement(&self, r: &[Local<D>]) -> Vec<Local<D>> {
+        assert_eq!(r.len(), self.contacts(), "a force a contact");
         (0..self.contacts())
             .map(|i| self.operator.row_times(i, r) + self.free[i])
             .collect()
     }
 
     /// Natural-map residual of forces r at u = W r + q.
+    ///
+    /// # Panics
+    /// If there are not as many forces and displacements as contacts.
     pub fn residual(&self, r: &[Local<D>], u: &[Local<D>]) -> Residual {
         let norms = self.norms(r, u);
         Residual {
@@ -174,6 +200,7 @@ impl<const D: usize> LocalProblem<D> {
 
     /// The norms of which residuals are made.
     pub(crate) fn norms(&self, r: &[Local<D>], u: &[Local<D>]) -> Norms {
+        assert_eq!([u.len(), r.len()], [self.contacts(); 2], "{PAIRS}");
         let mut squares = Norms::default();
         for (i, law) in self.laws.iter().enumerate() {
             let rho = 1.0 / self.compliance[i];
@@ -194,6 +221,9 @@ impl<const D: usize> LocalProblem<D> {
     }
 
     /// Status of every contact at (r, u), \[35\].
+    ///
+    /// # Panics
+    /// If there are not as many forces and displacements as contacts.
     pub fn statuses(&self, r: &[Local<D>], u: &[Local<D>]) -> Vec<Status> {
         statuses(&self.laws, u, r, |i| 1.0 / self.compliance[i])
     }

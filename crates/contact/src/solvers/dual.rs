@@ -1,6 +1,6 @@
 //! Any method for u = W r + q on a condensed problem; not a method.
 
-use super::{ContactSolution, ContactSolver, Goal, LocalSolver, Tolerance, forces};
+use super::{ContactSolution, ContactSolver, Goal, LocalSolver, Tolerance, expect_enough, forces};
 use crate::{CondensedProblem, ContactError};
 
 /// A method for local problems on the dual form of condensed ones, u = W t + q with W = S⁻¹, whose
@@ -38,6 +38,7 @@ impl<const D: usize, S: LocalSolver<D>> ContactSolver<D> for Dual<S> {
         guess: Option<&ContactSolution<D>>,
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
+        let enough = expect_enough(enough)?;
         let form = problem.delassus()?;
         let own = Tolerance {
             relative: self.0.tolerance(),

@@ -3,7 +3,9 @@
 use super::fixed_point::fixed_point;
 use super::local::{Best, LocalSolver, Reason, Unsolved, start};
 use super::one_contact::{self, Bound};
-use super::{ContactSolution, ContactSolver, Goal, LocalSolution, Tolerance, forces};
+use super::{
+    ContactSolution, ContactSolver, Goal, LocalSolution, Tolerance, expect_enough, forces,
+};
 use crate::{CondensedProblem, ContactError, LocalProblem};
 use moreau_laws::Local;
 
@@ -33,6 +35,7 @@ impl<const D: usize> ContactSolver<D> for GaussSeidel {
         guess: Option<&ContactSolution<D>>,
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
+        let enough = expect_enough(enough)?;
         let form = problem.delassus()?;
         let goal = Goal::new(problem, self.tolerance, enough);
         Self::extrapolated(&form, forces(&form, guess)?, goal)

@@ -5,7 +5,7 @@ mod linearised;
 use self::linearised::Row;
 use super::{
     Auto, ContactSolution, ContactSolver, GaussSeidel, Goal, LocalSolver, Tolerance, Uzawa,
-    expect_guess, is_within,
+    expect_enough, expect_guess, is_within,
 };
 use crate::problem::{size_of_map, statuses};
 use crate::{CondensedProblem, ContactError, Springs};
@@ -52,6 +52,7 @@ impl<const D: usize> ContactSolver<D> for SemismoothNewton {
             problem,
             springs: &springs,
             part: PARTS[0],
+            least: 0.0,
         };
         let here = vec![Local::zeros(); problem.contacts()];
         let now = newton.iterate(here.clone());
@@ -119,6 +120,7 @@ pub(super) fn newton<const D: usize>(
     (tolerance, enough): (Tolerance, f64),
 ) -> Result<ContactSolution<D>, ContactError> {
     expect_guess(problem.contacts(), guess)?;
+    let enough = expect_enough(enough)?;
     let springs: Vec<Springs<D>> = (problem.previous().iter().zip(problem.laws()))
         .map(|(previous, law)| Springs::of_penalty(compliance, *previous, law))
         .collect();
@@ -135,6 +137,7 @@ pub(super) fn newton<const D: usize>(
             problem,
             springs: &springs,
             part: PARTS[part % PARTS.len()],
+            least: 0.0,
         };
         let mut now = newton.iterate(start.clone());
         if !now.residual.is_finite() {
@@ -144,9 +147,21 @@ pub(super) fn newton<const D: usize>(
             // The residual grows with α, at most in proportion: this bounds it for the common α.
             let target = newton.part * tolerance.relative * problem.force_scale(&now.t);
             let target = target.max(problem.rounding(&now.x) + newton.rounding_of_sums(&now));
-            if is_within(now.residual, target.max(newton.part * enough)) {
+            let bound = target.max(newton.part * enough);
+            if is_within(now.residual, bound) {
                 let exact = now.residual <= target;
-                return Ok(newton.solution(now, iterations, exact));
+                // Displacements may weigh more where a solution is judged than in the map.
+                let asked = (target / newton.part).max(enough);
+                let nearer = (iterations < tolerance.iterations)
+                    .then(|| newton.nearer(&now, tolerance, asked))
+                    .flatten()
+                    .filter(|next| is_within(next.residual, bound));
+                let Some(next) = nearer else {
+                    return Ok(newton.solution(now, iterations, exact));
+                };
+                iterations += 1;
+                now = next;
+                continue;
             }
             if iterations >= tolerance.iterations {
                 return Err(newton.stalled(now, iterations, tolerance));
@@ -197,12 +212,14 @@ struct Newton<'a, const D: usize> {
     problem: &'a CondensedProblem<D>,
     springs: &'a [Springs<D>],
     part: f64,
+    /// The least α of the structure \[N/mm\].
+    least: f64,
 }
 
 impl<const D: usize> Newton<'_, D> {
     /// α of \[90′\]: the stiffness of the structure and of the penalty spring in series.
     fn alpha(&self, i: usize) -> f64 {
-        let alpha = self.part * self.problem.alpha(i);
+        let alpha = (self.part * self.problem.alpha(i)).max(self.least);
         let compliance = self.springs[i].compliance.mean();
         alpha / (1.0 + alpha * compliance)
     }
@@ -291,6 +308,26 @@ impl<const D: usize> Newton<'_, D> {
             s *= 0.5;
         }
         None
+    }
+
+    /// The iterate after a step of a map in which displacements weigh as where solutions are judged, if a residual of
+    /// `asked` is not met so; `None` if it is, or if no step comes nearer.
+    fn nearer(&self, now: &Iterate<D>, tolerance: Tolerance, asked: f64) -> Option<Iterate<D>> {
+        let weight = self.problem.weight_of_gaps(tolerance.relative);
+        let left = || {
+            let (positions, forces) = ((&*now.x, &*now.irreversible), Self::projected(now));
+            self.problem.residual_of_gaps(weight, positions, &forces)
+        };
+        if weight == 0.0 || left() <= asked {
+            return None;
+        }
+        // What presses must not seem to open by its gap.
+        let judging = Self {
+            least: weight.min(PARTS[0] * self.problem.closing()),
+            ..*self
+        };
+        let next = judging.advance(&judging.at(now.x.clone(), now.t.clone()))?;
+        Some(self.at(next.x, next.t))
     }
 
     /// Newton step of the map; `None` if its matrix is singular.
@@ -431,6 +468,7 @@ mod tests {
                 problem: &problem,
                 springs: &springs,
                 part: PARTS[0],
+                least: 0.0,
             };
             let u = newton.sweep(&[Local::zeros(); 4]).expect("solvable");
             let at = newton.iterate(problem.relative(&u));

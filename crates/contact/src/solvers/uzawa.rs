@@ -2,7 +2,9 @@
 
 use super::fixed_point::fixed_point;
 use super::local::{Best, LocalSolver, Reason, Unsolved, start};
-use super::{ContactSolution, ContactSolver, Goal, LocalSolution, Tolerance, forces};
+use super::{
+    ContactSolution, ContactSolver, Goal, LocalSolution, Tolerance, expect_enough, forces,
+};
 use crate::problem::{split, stack};
 use crate::{CondensedProblem, ContactError, LocalProblem};
 use moreau_laws::Local;
@@ -37,6 +39,7 @@ impl<const D: usize> ContactSolver<D> for Uzawa {
         guess: Option<&ContactSolution<D>>,
         enough: f64,
     ) -> Result<ContactSolution<D>, ContactError> {
+        let enough = expect_enough(enough)?;
         let form = problem.delassus()?;
         let mut goal = Goal::new(problem, self.tolerance, enough);
         Self::corrections(&form, forces(&form, guess)?, |k, t, u| {
