@@ -88,6 +88,7 @@ fn the_weight_of_displacements_never_vanishes() {
     let mixed = problem(&[100.0, 0.0, 1.0], &[-1.0; 3], &[0.1; 3]);
     assert!(mixed.alpha(1) > 0.0 && mixed.alpha(1) < 1e-3);
     assert_eq!((mixed.alpha(0), mixed.alpha(2)), (100.0, 1.0));
+    assert_eq!(problem(&[-3.0, 2.0], &[-1.0; 2], &[0.1; 2]).alpha(0), -3.0);
     let mut held = problem(&[0.0], &[-1.0], &[0.1]);
     held.hold(2.0);
     assert_eq!(held.alpha(0), 2.0);

@@ -256,12 +256,16 @@ impl<const D: usize> CondensedProblem<D> {
     /// Parameter α of \[90′\] for contact i \[N/mm\]: the mean stiffness of its own components, so
     /// that a residual in newtons weighs gaps and forces alike in any system of units. It never vanishes, or a gap would
     /// not be seen: where a contact has next to no stiffness it is a small part of the stiffest one's, and where none has
-    /// any that with which the load closes the gaps.
+    /// any that with which the load closes the gaps. It is negative where stresses make the structure so unstable.
     ///
     /// # Panics
     /// If there is no contact i.
     pub fn alpha(&self, i: usize) -> f64 {
-        self.mean_stiffness(i).max(self.least)
+        match self.mean_stiffness(i) {
+            // Of a structure that stresses make unstable.
+            own if own < 0.0 => own,
+            own => own.max(self.least),
+        }
     }
 
     /// Mean stiffness of the components of contact i \[N/mm\].
