@@ -95,8 +95,10 @@ impl<L: ShearBound> From<&'static L> for Friction {
 
 impl Friction {
     /// The law between forces \[N\] of a law between tractions \[MPa\], on an area ≥ 0 \[mm²\]: a
-    /// limit of the shear is multiplied by it, a coefficient is not.
+    /// limit of the shear is multiplied by it, a coefficient is not. A negative area is none.
     pub fn scaled(self, area: f64) -> Self {
+        // Not `f64::max`, which would turn NaN into no area.
+        let area = if area <= 0.0 { 0.0 } else { area };
         match self {
             Self::Coulomb(_) | Self::Anisotropic(_) | Self::Tie(_) => self,
             Self::Tresca(law) => Self::Tresca(law.scaled(area)),
@@ -107,10 +109,12 @@ impl Friction {
 
     /// The law at a sharp corner, whose normals fill a cone of this half angle \[rad\]: the forces of all
     /// of them fill Coulomb's cone of the angle of friction and that one together. Of a law that limits
-    /// the shear only the coefficient counts.
+    /// the shear only the coefficient counts. A corner of a negative angle is none.
     pub fn at_corner(self, half_angle: f64) -> Self {
+        let half_angle = if half_angle <= 0.0 { 0.0 } else { half_angle };
         let angle = self.coefficient().atan() + half_angle;
-        Self::Coulomb(Coulomb::of(angle.min(STEEPEST).tan()))
+        let angle = if angle >= STEEPEST { STEEPEST } else { angle };
+        Self::Coulomb(Coulomb::of(angle.tan()))
     }
 
     /// Whether the law is a tie: linear, and without a sign of the pressure.
@@ -122,10 +126,11 @@ impl Friction {
     /// The displacement nearest to u at which the law has forces, where b is finite: no penetration, or none at all.
     pub fn admissible<const D: usize>(&self, u: &Local<D>) -> Local<D> {
         if self.is_tie() {
-            return Local::zeros();
+            return u.map(|u| if u.is_nan() { u } else { 0.0 });
         }
         let mut open = *u;
-        open[0] = open[0].max(0.0);
+        // Not `f64::max`, which would turn NaN into contact.
+        open[0] = if u[0] <= 0.0 { 0.0 } else { u[0] };
         open
     }
 

@@ -55,7 +55,7 @@
 //!
 //! Tensors are in Mandel notation, see `moreau_mandel`; units are N, mm and MPa. Constructors
 //! return [`LawError`] for data that define no law; past them nothing fails, and data that are not
-//! numbers come out as NaN.
+//! numbers come out as NaN, or as +∞ of a function that is +∞ outside of its domain.
 
 mod bulk;
 pub mod contract;

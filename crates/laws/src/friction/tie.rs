@@ -15,7 +15,7 @@ impl<const D: usize> Superpotential<Local<D>> for Tie {
         indicator(x.iter().all(|x| *x == 0.0))
     }
 
-    fn w(&self, _y: &Local<D>) -> f64 {
-        0.0
+    fn w(&self, y: &Local<D>) -> f64 {
+        indicator(!y.iter().any(|y| y.is_nan()))
     }
 }

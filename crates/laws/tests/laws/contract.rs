@@ -1,8 +1,8 @@
 //! The public contract on samples that proptest draws, and on laws that are wrong; not the contract.
 
-use moreau_laws::Bipotential;
 pub(crate) use moreau_laws::contract::Departure;
 use moreau_laws::contract::{self, Space};
+use moreau_laws::{AnisotropicCoulomb, Bipotential, Coulomb};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, TestRunner};
@@ -58,5 +58,21 @@ pub(crate) fn check<X: Space>(b: &impl Bipotential<X>, samples: &Samples<X>) {
     };
     if let Err(violation) = contract::bipotential(b, &samples) {
         panic!("{violation}");
+    }
+}
+
+/// Laws of friction at the ends of their parameters are laws: what is allowed is of the size of what is compared.
+#[test]
+fn laws_at_the_ends_of_their_parameters_pass() {
+    for mu in [1e-6, 1e2, 1e4, 1e6] {
+        let law = Coulomb::new(mu).expect("valid");
+        for report in [contract::friction::<2>(law), contract::friction::<3>(law)] {
+            report.unwrap_or_else(|violation| panic!("{mu}: {violation}"));
+        }
+    }
+    for (across, along) in [(1e-5, 1.0), (1e-3, 10.0), (1.0, 1e-5)] {
+        let law = AnisotropicCoulomb::new(across, along).expect("valid");
+        let report = contract::friction::<3>(law);
+        report.unwrap_or_else(|violation| panic!("{across} {along}: {violation}"));
     }
 }

@@ -338,3 +338,33 @@ fn a_tie_holds_under_any_force() {
     tied::<2>();
     tied::<3>();
 }
+
+/// What is not a number is neither contact nor a corner nor an area; what is negative is no corner and no area.
+#[test]
+fn what_is_no_number_comes_out_of_every_law() {
+    let coulomb: Friction = Coulomb::new(0.3).expect("valid").into();
+    let tresca: Friction = Tresca::new(0.5).expect("valid").into();
+    let nan = Local::<2>::new(f64::NAN, 0.0);
+    let none = Local::<2>::zeros();
+    for law in [coulomb, tresca, Tie.into()] {
+        assert!(law.admissible(&nan)[0].is_nan(), "{law:?}");
+        assert_eq!(law.admissible(&none), none);
+        assert_eq!(law.b(&none, &nan), f64::INFINITY, "{law:?}");
+        assert_eq!(law.b(&nan, &none), f64::INFINITY, "{law:?}");
+    }
+    assert_eq!(
+        Friction::from(Tie).admissible(&Local::<2>::new(-1.0, 2.0)),
+        none
+    );
+    assert_eq!(
+        coulomb.admissible(&Local::<2>::new(-1.0, 2.0)),
+        Local::<2>::new(0.0, 2.0)
+    );
+    let Friction::Coulomb(corner) = coulomb.at_corner(f64::NAN) else {
+        panic!("a corner is Coulomb's");
+    };
+    assert!(corner.friction().is_nan());
+    assert_eq!(coulomb.at_corner(-1.0), coulomb.at_corner(0.0));
+    assert_eq!(tresca.scaled(-1.0), tresca.scaled(0.0));
+    assert!(tresca.scaled(f64::NAN).bound(1.0).is_nan());
+}
