@@ -94,12 +94,13 @@ impl<const D: usize> Driver<D> {
     /// The virgin state of a model.
     ///
     /// # Errors
-    /// [`ModelError::MissingMaterial`].
+    /// [`ModelError::MissingMaterial`]; [`ModelError::OutOfRange`] of settings that no increment could meet, and of a negative radius around an axis.
     pub fn new<H: Analysis<D>>(
         mut model: Model<D, H>,
         settings: Settings<D>,
     ) -> Result<Self, ModelError> {
         model.check()?;
+        settings.check()?;
         let dofs = D * (model.mesh.nodes().len() + 2 * model.tools.len());
         let rest = |p: &ContactPoint<D>| ContactRecord {
             contact: p.contact,
@@ -252,8 +253,19 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Displacement of a node since the virgin state \[mm\].
+    ///
+    /// # Panics
+    /// If the mesh has no such node.
     pub fn displacement(&self, node: usize) -> SVector<f64, D> {
+        self.expect_node(node);
         SVector::from_column_slice(&self.state.displacement[D * node..D * node + D])
+    }
+
+    /// Panics of a node that is none, of the mesh or of a tool.
+    #[inline]
+    fn expect_node(&self, node: usize) {
+        let nodes = self.state.displacement.len() / D;
+        assert!(node < nodes, "node {node} is none of the mesh");
     }
 
     /// Displacements of all nodes since the virgin state, D components each \[mm\].
@@ -301,10 +313,16 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Names of the surface of a contact and of the tool or surface opposite.
+    ///
+    /// # Panics
+    /// If there is no such contact.
     pub fn contact_name(&self, contact: usize) -> (&str, &str) {
         let Contact {
             surface, opposite, ..
-        } = &self.contacts[contact];
+        } = match self.contacts.get(contact) {
+            Some(contact) => contact,
+            None => panic!("contact {contact} is none of the model"),
+        };
         (surface, opposite)
     }
 
@@ -379,7 +397,11 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Force that the prescribed displacements of a node exert on it \[N\].
+    ///
+    /// # Panics
+    /// If the mesh has no such node.
     pub fn nodal_reaction(&self, node: usize) -> SVector<f64, D> {
+        self.expect_node(node);
         let State {
             internal,
             loading,
@@ -500,7 +522,11 @@ impl<const D: usize> Driver<D> {
     }
 
     /// Contact force on a node \[N\].
+    ///
+    /// # Panics
+    /// If the mesh has no such node.
     pub fn nodal_contact_force(&self, node: usize) -> SVector<f64, D> {
+        self.expect_node(node);
         SVector::from(self.state.contact.at_node::<D>(node))
     }
 

@@ -412,8 +412,10 @@ pub enum ModelError {
     /// The factor does not fit into memory or a 32-bit index; where cells have nodes between their
     /// corners, nor does that of the coarse space.
     #[error(
-        "the factor of {unknowns} unknowns takes {needed:.3} GB, and there is room for {room:.3} GB; \
-         larger cells away from the contact, or a plane of symmetry, take less"
+        "the factor of {unknowns} unknowns takes {}, and there is room for {}; \
+         larger cells away from the contact, or a plane of symmetry, take less",
+        memory(*needed),
+        memory(*room)
     )]
     TooLarge {
         /// Number of unknowns.
@@ -430,6 +432,14 @@ pub(crate) fn list(vector: &[f64]) -> String {
     let rounded = |x: &f64| format!("{x:.11e}").parse().unwrap_or(*x);
     let all: Vec<String> = vector.iter().map(|x| format!("{:?}", rounded(x))).collect();
     format!("({})", all.join(", "))
+}
+
+/// A size in gigabytes, in the unit in which it is not next to nothing.
+fn memory(gigabytes: f64) -> String {
+    let units = [(1.0, "GB"), (1e3, "MB"), (1e6, "kB")];
+    let unit = units.iter().find(|(parts, _)| gigabytes * parts >= 1.0);
+    let (parts, unit) = unit.unwrap_or(&units[2]);
+    format!("{:.3} {unit}", gigabytes * parts)
 }
 
 fn names(names: &[String]) -> String {

@@ -141,11 +141,20 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         blocks.into_iter().zip(members).map(wrapped).collect()
     }
 
-    /// Whether every cell has a material.
+    /// Whether every cell has a material, and no node is on the other side of an axis.
     ///
     /// # Errors
-    /// [`ModelError::MissingMaterial`].
+    /// [`ModelError::MissingMaterial`], [`ModelError::OutOfRange`].
     pub(crate) fn check(&self) -> Result<(), ModelError> {
+        let beyond = |x: &[f64; D]| self.hypothesis.measure(x) < 0.0;
+        if let Some(node) = self.mesh.nodes().iter().position(beyond) {
+            let radius = self.mesh.nodes()[node][0];
+            return Err(out_of_range(
+                &format!("radius of node {node}"),
+                radius,
+                "one that is not negative: the axis is at x = 0",
+            ));
+        }
         let mut bare = (0..self.material.len()).filter(|&c| self.material[c].is_none());
         match bare.next() {
             Some(first) => Err(ModelError::MissingMaterial {

@@ -46,7 +46,15 @@ pub trait Saved: Clone {
     }
 }
 
-impl Numbers<'_> {
+impl<'a> Numbers<'a> {
+    /// What is left to read.
+    fn left(&self) -> &'a [f64] {
+        match self {
+            Self::Read(left) => left,
+            Self::Written(_) => &[],
+        }
+    }
+
     /// Values, as many as there are.
     ///
     /// # Errors
@@ -187,9 +195,12 @@ impl Numbers<'_> {
     }
 }
 
+/// Counts up to which a number tells one from the next.
+const COUNTED: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
+
 /// A number that is a count.
 fn counted(value: f64) -> Result<usize, ModelError> {
-    let is_count = value >= 0.0 && value.fract() == 0.0;
+    let is_count = value >= 0.0 && value <= COUNTED && value.fract() == 0.0;
     is_count
         .then_some(value as usize)
         .ok_or(ModelError::OutOfRange {
@@ -344,7 +355,16 @@ impl<const D: usize> Driver<D> {
     /// driver is then of no use.
     pub fn read(&mut self, numbers: &mut Numbers<'_>) -> Result<(), ModelError> {
         self.guessed = None;
+        let given = numbers.left();
         self.state.read(numbers)?;
+        let read = &given[..given.len() - numbers.left().len()];
+        if let Some(at) = read.iter().position(|value| !value.is_finite()) {
+            return Err(ModelError::OutOfRange {
+                what: format!("number {at} of a saved state"),
+                value: read[at],
+                expected: "a finite number",
+            });
+        }
         let dofs = self.state.displacement.len();
         let contact = Loading::<D> {
             force: self.state.contact.clone(),

@@ -1,5 +1,6 @@
 //! How increments are solved; no number here decides the answer.
 
+use crate::error::ModelError;
 use moreau_contact::{ContactSolver, SemismoothNewton};
 
 /// Where the contact problem is solved.
@@ -65,5 +66,44 @@ impl<const D: usize> Default for Settings<D> {
             cuts: 10,
             memory: None,
         }
+    }
+}
+
+impl<const D: usize> Settings<D> {
+    /// Whether tolerances are positive numbers, and iterations are allowed.
+    pub(crate) fn check(&self) -> Result<(), ModelError> {
+        let nested = match self.nesting {
+            Nesting::Inside => None,
+            Nesting::Outside {
+                tolerance,
+                iterations,
+                ..
+            } => Some((
+                ("the tolerance of the outer iterations", tolerance),
+                ("outer iterations", iterations),
+            )),
+        };
+        let own = (
+            ("the tolerance of increments", self.tolerance),
+            ("iterations of an increment", self.iterations),
+        );
+        for ((what, tolerance), (counted, iterations)) in [Some(own), nested].into_iter().flatten()
+        {
+            if !(tolerance > 0.0 && tolerance.is_finite()) {
+                return Err(refused(what, tolerance, "a positive number"));
+            }
+            if iterations == 0 {
+                return Err(refused(counted, 0.0, "at least one"));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn refused(what: &str, value: f64, expected: &'static str) -> ModelError {
+    ModelError::OutOfRange {
+        what: what.into(),
+        value,
+        expected,
     }
 }

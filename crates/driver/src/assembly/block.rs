@@ -73,6 +73,16 @@ pub trait Block<const D: usize>: Send + Sync {
     /// Nodes of the k-th cell of the block.
     fn nodes(&self, k: usize) -> &[usize];
 
+    /// How many cells it has, each of which must be one of [`Block::cells`].
+    fn count(&self) -> usize {
+        self.cells().len()
+    }
+
+    /// Whether the k-th cell of the block was made of nodes at these positions \[mm\], in the order of [`Block::nodes`].
+    fn is_at(&self, _k: usize, _nodes: &[[f64; D]]) -> bool {
+        true
+    }
+
     /// Quadrature points of a cell.
     fn points_per_cell(&self) -> usize;
 
@@ -287,6 +297,14 @@ impl<C: CellLaw<D>, const D: usize> Block<D> for SolidBlock<C, D> {
 
     fn nodes(&self, k: usize) -> &[usize] {
         self.cells.nodes(k)
+    }
+
+    fn count(&self) -> usize {
+        self.cells.count()
+    }
+
+    fn is_at(&self, k: usize, nodes: &[[f64; D]]) -> bool {
+        self.cells.is_at(k, nodes)
     }
 
     fn evaluate(

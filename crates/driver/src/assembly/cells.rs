@@ -6,6 +6,7 @@ use moreau_mandel::{GradientTangent, Sym2, Sym4};
 use moreau_mesh::{Element, Entry, Hypothesis, Integration, Mesh};
 use nalgebra::{Matrix3, SMatrix};
 use pulp::{Arch, Simd, WithSimd};
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// Largest number of quadrature points of a cell.
 pub(crate) const MAX_POINTS: usize = 27;
@@ -17,6 +18,11 @@ pub trait Cells<const D: usize>: Send + Sync {
 
     /// Nodes of the k-th cell.
     fn nodes(&self, k: usize) -> &[usize];
+
+    /// Whether the k-th cell was made of nodes at these positions \[mm\], in its order: another mesh may have the same numbers.
+    fn is_at(&self, _k: usize, _nodes: &[[f64; D]]) -> bool {
+        true
+    }
 
     /// Quadrature points of a cell, at most 27.
     fn points_per_cell(&self) -> usize;
@@ -53,10 +59,21 @@ pub trait Cells<const D: usize>: Send + Sync {
     fn averages_dilatation(&self) -> bool;
 }
 
+/// A number that is another one for other positions.
+fn place<const D: usize>(nodes: &[[f64; D]]) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    // −0 is where 0 is.
+    let numbers = nodes.iter().flatten().map(|x| (x + 0.0).to_bits());
+    numbers.for_each(|bits| bits.hash(&mut hasher));
+    hasher.finish()
+}
+
 /// Cells of an element of N nodes: of this crate's or of any other. What strains them is kept field by field with the nodes next to
 /// each other, which all do the same.
 pub struct ElementCells<const D: usize, const N: usize> {
     nodes: Vec<[usize; N]>,
+    /// Of where the nodes of every cell are.
+    places: Vec<u64>,
     points_per_cell: usize,
     positions: Vec<[f64; D]>,
     weights: Vec<f64>,
@@ -100,6 +117,7 @@ impl<const D: usize, const N: usize> ElementCells<D, N> {
         }
         let mut new = Self {
             nodes: Vec::with_capacity(cells.len()),
+            places: Vec::with_capacity(cells.len()),
             points_per_cell: rule.points.len(),
             positions: Vec::new(),
             weights: Vec::new(),
@@ -125,6 +143,7 @@ impl<const D: usize, const N: usize> ElementCells<D, N> {
                 new.positions.push(at.x);
             }
             new.nodes.push(nodes);
+            new.places.push(place(&positions));
         }
         if integration == Integration::BBar {
             new.dilatation = (0..new.nodes.len())
@@ -457,6 +476,10 @@ impl<const D: usize, const N: usize> Cells<D> for ElementCells<D, N> {
 
     fn nodes(&self, k: usize) -> &[usize] {
         &self.nodes[k]
+    }
+
+    fn is_at(&self, k: usize, nodes: &[[f64; D]]) -> bool {
+        self.places[k] == place(nodes)
     }
 
     fn points_per_cell(&self) -> usize {

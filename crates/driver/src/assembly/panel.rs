@@ -372,6 +372,14 @@ impl<const D: usize> Block<D> for PanelBlock<D> {
         self.cells.nodes(k)
     }
 
+    fn count(&self) -> usize {
+        self.cells.count()
+    }
+
+    fn is_at(&self, k: usize, nodes: &[[f64; D]]) -> bool {
+        self.cells.is_at(k, nodes)
+    }
+
     fn evaluate(
         &mut self,
         motion: Motion<'_>,

@@ -112,6 +112,29 @@ pub(crate) enum Condition<const D: usize> {
 }
 
 impl<const D: usize> Condition<D> {
+    /// What it is in words, and the first of its numbers that is not finite.
+    fn not_finite(&self) -> Option<(String, f64)> {
+        let (what, on, numbers): (_, _, &[f64]) = match self {
+            Self::Displace { on, value, .. } | Self::DisplaceAlong { on, value, .. } => {
+                ("displacement of", on, std::slice::from_ref(value))
+            }
+            Self::Force { on, force } => ("force on", on, force),
+            Self::Pressure { on, pressure } => ("pressure on", on, std::slice::from_ref(pressure)),
+            Self::Traction { on, traction } => ("traction on", on, traction),
+            Self::BodyForce { on, density } => ("force per volume on", on, density),
+            // Told where it is taken, by its cell.
+            Self::Temperature { on, .. } => ("temperature of", on, &[]),
+            Self::Tool { name, displacement } => ("motion of tool", name, displacement),
+            Self::Turn { name, angle, .. } => ("turn of tool", name, std::slice::from_ref(angle)),
+            Self::Push { name, force, .. } => ("force on tool", name, std::slice::from_ref(force)),
+            Self::Moment { name, moment, .. } => {
+                ("moment on tool", name, std::slice::from_ref(moment))
+            }
+        };
+        let value = numbers.iter().find(|value| !value.is_finite())?;
+        Some((format!("{what} {on:?}"), *value))
+    }
+
     /// The condition with a share of its value.
     fn scaled(&self, share: f64) -> Self {
         let mut scaled = self.clone();
@@ -348,7 +371,8 @@ impl<const D: usize> Step<D> {
         ]
     }
 
-    /// Whether all amplitudes are such, of conditions that there are, and no tool is told twice where to go.
+    /// Whether all values are numbers and all amplitudes such, of conditions that there are, and no tool is told twice where
+    /// to go.
     pub(crate) fn check(&self) -> Result<(), ModelError> {
         if let Some(last) = self.missing {
             return Err(ModelError::OutOfRange {
@@ -358,6 +382,13 @@ impl<const D: usize> Step<D> {
                 ),
                 value: last as f64,
                 expected: "at most those before it",
+            });
+        }
+        if let Some((what, value)) = self.conditions.iter().find_map(Condition::not_finite) {
+            return Err(ModelError::OutOfRange {
+                what: format!("{what} in step {:?}", self.name),
+                value,
+                expected: "a finite number",
             });
         }
         let mut told = BTreeSet::new();
@@ -406,7 +437,8 @@ pub struct Loading<const D: usize> {
     pub directions: Directions,
     /// Applied forces \[N\].
     pub force: SparseVector,
-    /// Pressures that follow their surface, under large strains \[MPa\]: on side s of cell c the entry 6c + s.
+    /// Pressures on sides of cells \[MPa\], which follow their surface under large strains: on side s of cell c the entry
+    /// 6c + s. Under small ones they act on the undeformed side, as forces do.
     pub pressure: SparseVector,
     /// How much warmer the cells are than when they were free of stress \[K\].
     pub temperature: Temperature,

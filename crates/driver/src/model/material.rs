@@ -188,8 +188,14 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     ///
     /// # Errors
     /// [`ModelError::TwoMaterials`], with the name of the block; [`ModelError::WrongElement`] for a cell
-    /// that the mesh has not, or that has other nodes there, or more than 27.
+    /// that the mesh has not, or that has other nodes there, or elsewhere, or more than 27; [`ModelError::OutOfRange`] of a
+    /// block that names more cells of the mesh than it has, or fewer.
     pub fn block(mut self, name: &str, block: impl Block<D> + 'static) -> Result<Self, ModelError> {
+        if block.cells().len() != block.count() {
+            let what = format!("cells of the mesh that block {name:?} names, their number");
+            let value = block.cells().len() as f64;
+            return Err(out_of_range(&what, value, "as many as it has itself"));
+        }
         for (k, &cell) in block.cells().iter().enumerate() {
             let problem = |problem: &str| ModelError::WrongElement {
                 cell,
@@ -209,6 +215,10 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
                 return Err(problem(
                     "has nodes that are not those of its cell in the mesh",
                 ));
+            }
+            let places: Vec<_> = nodes.iter().map(|&a| self.mesh.nodes()[a]).collect();
+            if !block.is_at(k, &places) {
+                return Err(problem("has its nodes elsewhere than in the mesh"));
             }
             if nodes.len() > MOST_NODES || nodes.len() != block.nodes(0).len() {
                 return Err(problem("has too many nodes, or not as many as the first"));

@@ -3,11 +3,11 @@
 use crate::steps::on_floor;
 use moreau_contact::GaussSeidel;
 use moreau_driver::{
-    Axis, ElementCells, IncrementError, Model, ModelError, Nesting, Numbers, Saved, Settings,
-    SolidBlock, Step,
+    Axis, Driver, ElementCells, IncrementError, Model, ModelError, Nesting, Numbers, Saved,
+    Settings, SolidBlock, Step,
 };
 use moreau_laws::Elastic;
-use moreau_mesh::{CellKind, Integration, PlaneStrain, Quad4, Quad8, block2};
+use moreau_mesh::{Axisymmetric, CellKind, Integration, PlaneStrain, Quad4, Quad8, block2};
 use std::ops::ControlFlow;
 
 #[test]
@@ -50,7 +50,17 @@ fn a_factor_larger_than_the_memory_is_refused_with_both_sizes() {
         .fix("block.left", &[Axis::X])
         .displace("punch", Axis::Y, -0.1);
     let mut driver = on_floor([8, 4], 0.0, 0.1, settings(4096));
-    match driver.run(&step, 1, |_, _| {}) {
+    let found = driver.run(&step, 1, |_, _| {});
+    let told = found
+        .as_ref()
+        .err()
+        .map(ToString::to_string)
+        .unwrap_or_default();
+    assert!(
+        told.contains("there is room for 4.096 kB;") && told.contains(" kB, and"),
+        "{told}"
+    );
+    match found {
         Err(IncrementError::Model(ModelError::TooLarge {
             unknowns,
             needed,
@@ -203,4 +213,179 @@ fn blocks_that_do_not_fit_the_mesh_are_refused() {
             .block("mine", block(&[0, 1, 2, 3], &[0, 1, 2, 3]))
             .is_ok()
     );
+    // As many as it has itself.
+    for (members, of) in [(&[0, 1, 2, 3][..], &[0, 1][..]), (&[0][..], &[0, 1][..])] {
+        let told = refused(members, of);
+        assert!(
+            told.contains("cells of the mesh that block \"mine\" names"),
+            "{told}"
+        );
+    }
+    // The same numbers elsewhere, by as little as can be.
+    let stretched = [0.0, 1.0, 2.0_f64.next_up()];
+    let other = block2("b", CellKind::Quad8, &stretched, &line).expect("valid");
+    let cells = ElementCells::new::<Quad8, _>(&other, &[0, 1, 2, 3], &plane, rule).expect("valid");
+    let law = Elastic::new(1.0, 0.3).expect("valid");
+    let elsewhere = SolidBlock::new(vec![0, 1, 2, 3], Box::new(cells), law);
+    let told = model()
+        .block("mine", elsewhere)
+        .err()
+        .expect("refused")
+        .to_string();
+    assert!(
+        told.contains("cell 1 of block \"mine\" has its nodes elsewhere"),
+        "{told}"
+    );
+}
+
+/// No increment meets a tolerance that is none, or is found without iterations.
+#[test]
+fn settings_that_no_increment_meets_are_refused() {
+    let outside = |tolerance, iterations| Settings {
+        nesting: Nesting::Outside {
+            tolerance,
+            iterations,
+            extrapolated: true,
+        },
+        ..Settings::default()
+    };
+    let inside = |tolerance, iterations| Settings {
+        tolerance,
+        iterations,
+        ..Settings::default()
+    };
+    let mesh = || block2("b", CellKind::Quad8, &[0.0, 1.0], &[0.0, 1.0]).expect("valid");
+    let driver = |settings: Settings<2>| {
+        let law = Elastic::new(1.0, 0.3).expect("valid");
+        let model =
+            Model::new(mesh(), PlaneStrain::default()).material("b", law, Integration::Full);
+        Driver::new(model.expect("valid"), settings).map(|_| ())
+    };
+    assert_eq!(driver(inside(1e-10, 1)), Ok(()));
+    assert_eq!(driver(outside(1e-8, 1)), Ok(()));
+    let cases = [0.0, -1.0, f64::NAN, f64::INFINITY].map(|t| (t, 10));
+    for (tolerance, iterations) in cases.into_iter().chain([(1e-8, 0)]) {
+        for settings in [
+            inside(tolerance, iterations),
+            outside(tolerance, iterations),
+        ] {
+            let error = driver(settings).err();
+            assert!(
+                matches!(error, Some(ModelError::OutOfRange { .. })),
+                "{tolerance} {iterations}: {error:?}"
+            );
+        }
+    }
+}
+
+/// Around an axis nothing is on its other side.
+#[test]
+fn a_negative_radius_is_refused() {
+    let driver = |from: f64| {
+        let mesh = block2("b", CellKind::Quad8, &[from, 1.0], &[0.0, 1.0]).expect("valid");
+        let law = Elastic::new(1.0, 0.3).expect("valid");
+        let model = Model::new(mesh, Axisymmetric).material("b", law, Integration::Full);
+        Driver::new(model.expect("valid"), Settings::default()).map(|_| ())
+    };
+    assert_eq!(driver(0.0), Ok(()));
+    match driver(-1.0) {
+        Err(ModelError::OutOfRange { what, value, .. }) => {
+            assert!(
+                what.contains("radius of node 0") && value == -1.0,
+                "{what} {value}"
+            );
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+/// A state whose displacements are no numbers, or whose counts are none that could have been counted, is none to go on from.
+#[test]
+fn a_saved_state_of_no_numbers_is_refused() {
+    let driver = || on_floor([4, 2], 0.0, 0.1, Settings::default());
+    let mut numbers = Vec::new();
+    driver().write(&mut numbers);
+    assert!(driver().read(&mut Numbers::Read(&numbers)).is_ok());
+    // The increments, the farthest, the largest force, a flag, and after their number the displacements.
+    for (at, value) in [(0, 1e300), (5, f64::NAN), (6, f64::INFINITY), (1, f64::NAN)] {
+        let mut other = numbers.clone();
+        other[at] = value;
+        let error = driver().read(&mut Numbers::Read(&other)).err();
+        assert!(
+            matches!(error, Some(ModelError::OutOfRange { .. })),
+            "{at}: {error:?}"
+        );
+    }
+}
+
+/// An index that is none is told as such.
+#[test]
+fn a_node_or_contact_that_there_is_not_is_named() {
+    let driver = on_floor([4, 2], 0.0, 0.1, Settings::default());
+    let told = |call: &dyn Fn(&Driver<2>)| -> String {
+        let call = std::panic::AssertUnwindSafe(|| call(&driver));
+        let panic = std::panic::catch_unwind(call).expect_err("an index beyond");
+        panic.downcast_ref::<String>().cloned().unwrap_or_default()
+    };
+    let nodes: [&dyn Fn(&Driver<2>); 3] = [
+        &|d| drop(d.displacement(9999).norm().to_string()),
+        &|d| drop(d.nodal_reaction(9999).norm().to_string()),
+        &|d| drop(d.nodal_contact_force(9999).norm().to_string()),
+    ];
+    for call in nodes {
+        assert_eq!(told(call), "node 9999 is none of the mesh");
+    }
+    assert_eq!(
+        told(&|d| drop(d.contact_name(9).0.to_owned())),
+        "contact 9 is none of the model"
+    );
+}
+
+/// A value that is no number is told by the condition that has it, not by what became of it.
+#[test]
+fn a_condition_that_is_no_number_is_told() {
+    let driver = on_floor([4, 2], 0.0, 0.1, Settings::default());
+    let (nan, step) = (f64::NAN, || {
+        Step::new("press").fix("block.left", &[Axis::X])
+    });
+    for (step, expected) in [
+        (step().pressure("punch", nan), "pressure on \"punch\""),
+        (
+            step().traction("punch", [0.0, f64::INFINITY]),
+            "traction on \"punch\"",
+        ),
+        (step().force("punch", [nan, 0.0]), "force on \"punch\""),
+        (
+            step().body_force("block", [nan, 0.0]),
+            "force per volume on \"block\"",
+        ),
+        (
+            step().displace("punch", Axis::Y, nan),
+            "displacement of \"punch\"",
+        ),
+        (
+            step().displace_along("punch", [0.0, 1.0], nan),
+            "displacement of \"punch\"",
+        ),
+        (step().tool("floor", [0.0, nan]), "motion of tool \"floor\""),
+        (
+            step().turn("floor", [0.0, 0.0, 1.0], nan),
+            "turn of tool \"floor\"",
+        ),
+        (
+            step().push("floor", Axis::Y, nan),
+            "force on tool \"floor\"",
+        ),
+        (
+            step().moment("floor", [0.0, 0.0, 1.0], nan),
+            "moment on tool \"floor\"",
+        ),
+    ] {
+        match driver.loading(&step) {
+            Err(ModelError::OutOfRange { what, .. }) => {
+                assert_eq!(what, format!("{expected} in step \"press\""));
+            }
+            other => panic!("{expected}: {other:?}"),
+        }
+    }
 }
