@@ -200,7 +200,7 @@ const COUNTED: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
 
 /// A number that is a count.
 fn counted(value: f64) -> Result<usize, ModelError> {
-    let is_count = value >= 0.0 && value <= COUNTED && value.fract() == 0.0;
+    let is_count = (0.0..=COUNTED).contains(&value) && value.fract() == 0.0;
     is_count
         .then_some(value as usize)
         .ok_or(ModelError::OutOfRange {
