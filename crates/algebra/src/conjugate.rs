@@ -86,7 +86,7 @@ pub struct ConjugateGradients<'a> {
 }
 
 impl ConjugateGradients<'_> {
-    /// Brings u nearer to the solution; returns the number of iterations.
+    /// Brings u nearer to the solution; returns the number of iterations: none, and u as it was, where an entry is no number.
     ///
     /// # Errors
     /// [`EngineError`]: matrix, space, engine and vectors of other sizes, or nothing factorised.

@@ -52,8 +52,12 @@ impl Matrix {
     }
 
     /// Adds to the last diagonals, so many.
+    ///
+    /// # Panics
+    /// If there are fewer.
     pub fn shift(&mut self, last: usize, by: f64) {
         let size = self.pattern.size();
+        assert!(last <= size, "{last} diagonals of {size}");
         for row in size - last..size {
             self.values[self.pattern.diagonal(row)] += by;
         }
@@ -67,6 +71,9 @@ impl Matrix {
     }
 
     /// b − A x.
+    ///
+    /// # Panics
+    /// If x or b is not as long as there are rows.
     pub fn residual(&self, x: &[f64], b: &[f64]) -> Vec<f64> {
         let mut r = b.to_vec();
         self.subtract_product(x, &mut r);
@@ -74,7 +81,11 @@ impl Matrix {
     }
 
     /// r ← r − A x.
+    ///
+    /// # Panics
+    /// If x or r is not as long as there are rows.
     pub fn subtract_product(&self, x: &[f64], r: &mut [f64]) {
+        assert_eq!([x.len(), r.len()], [self.pattern.size(); 2], "a number a row");
         for j in 0..x.len() {
             let (diagonal, below, values) = self.column(j);
             let mut sum = diagonal * x[j];

@@ -5,6 +5,7 @@ use crate::driver::Driver;
 use crate::model::points::turned;
 use moreau_mesh::Facet;
 use nalgebra::SVector;
+use std::collections::BTreeMap;
 
 /// How far a tool has gone over a surface in an increment.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +42,12 @@ impl<const D: usize> Driver<D> {
 
     fn longest_stride(&self, contact: usize, d_u: &[f64]) -> Option<Stride<D>> {
         let rounding = self.settings.tolerance * self.state.largest_force;
-        let facets = self.surfaces(contact).0;
+        let mut around: BTreeMap<usize, Vec<Facet>> = BTreeMap::new();
+        for &facet in self.surfaces(contact).0 {
+            for a in self.mesh.facet_nodes(facet) {
+                around.entry(a).or_default().push(facet);
+            }
+        }
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
         let (mut touched, mut longest) = (false, None::<Stride<D>>);
         for (i, (p, record)) in self.points.iter().zip(&self.state.contacts).enumerate() {
@@ -58,11 +64,10 @@ impl<const D: usize> Driver<D> {
             let now = self.seen(p, row);
             let (before, n) = (now - way, obstacle.normal(&now));
             let along = way - n * n.dot(&way);
-            let facet = self.facet_along(
-                facets,
-                p.node,
-                &turned(along, &self.state.loading.turn_of(tool)),
-            );
+            let along_surface = turned(along, &self.state.loading.turn_of(tool));
+            let facet = around
+                .get(&p.node)
+                .map_or(0.0, |around| self.longest_along(around, &along_surface));
             touched |= obstacle.distance(&before) - p.offset < TOUCHES * facet;
             let bent = obstacle.normal(&before).angle(&n);
             let parts = along.norm() / facet;
@@ -81,24 +86,21 @@ impl<const D: usize> Driver<D> {
         longest.filter(|_| touched)
     }
 
-    /// Length of the facets around a node along a way \[mm\]: of the longest of them.
-    fn facet_along(&self, facets: &[Facet], node: usize, way: &SVector<f64, D>) -> f64 {
+    /// Length of the longest of some facets along a way \[mm\].
+    fn longest_along(&self, facets: &[Facet], way: &SVector<f64, D>) -> f64 {
         let Some(way) = way.try_normalize(0.0) else {
             return 0.0;
         };
-        let around = facets
-            .iter()
-            .filter(|f| self.mesh.facet_nodes(**f).any(|a| a == node));
-        let length = |facet: &Facet| {
+        let length = |&facet: &Facet| {
             let places = self
                 .mesh
-                .facet_nodes(*facet)
+                .facet_nodes(facet)
                 .map(|a| self.position(a).dot(&way));
             let (low, high) = places.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| {
                 (l.min(x), h.max(x))
             });
             high - low
         };
-        around.map(length).fold(0.0, f64::max)
+        facets.iter().map(length).fold(0.0, f64::max)
     }
 }

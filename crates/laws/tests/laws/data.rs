@@ -85,7 +85,7 @@ fn tables_and_terms() -> Result<(), LawError> {
         ),
         (
             &[[0.0, 300.0], [0.1, 290.0]],
-            "row 2 of the hardening table softens: its stress is below the one before",
+            "row 2 of the hardening table softens: its stress is below the one before, or the yield stress",
         ),
         (
             &[[0.0, 300.0], [0.1, f64::NAN]],
