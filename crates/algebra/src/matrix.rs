@@ -85,7 +85,11 @@ impl Matrix {
     /// # Panics
     /// If x or r is not as long as there are rows.
     pub fn subtract_product(&self, x: &[f64], r: &mut [f64]) {
-        assert_eq!([x.len(), r.len()], [self.pattern.size(); 2], "a number a row");
+        assert_eq!(
+            [x.len(), r.len()],
+            [self.pattern.size(); 2],
+            "a number a row"
+        );
         for j in 0..x.len() {
             let (diagonal, below, values) = self.column(j);
             let mut sum = diagonal * x[j];

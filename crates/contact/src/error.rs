@@ -133,7 +133,7 @@ pub(crate) fn expect_sizes(
 }
 
 /// Entries across the diagonal, over the largest entry, that differ by more than rounding.
-pub(crate) const UNLIKE: f64 = 1e-9;
+const UNLIKE: f64 = 1e-9;
 
 /// Whether a square matrix is symmetric, beyond rounding.
 ///
@@ -146,30 +146,6 @@ pub(crate) fn expect_symmetric(what: &'static str, a: &DMatrix<f64>) -> Result<(
     let pairs = below.map(|[i, j]| ([i, j], [a[(i, j)], a[(j, i)]]));
     match { pairs }.find(|(_, [v, across])| (v - across).abs() > most) {
         Some((at, values)) => Err(ContactError::Unsymmetric { what, at, values }),
-        None => Ok(()),
-    }
-}
-
-/// Whether a symmetric matrix may be positive semi-definite beyond rounding, seen on its entries two by two: none of it is
-/// factorised.
-///
-/// # Errors
-/// [`ContactError::Indefinite`] with a component that cannot be of such a matrix.
-pub(crate) fn expect_semidefinite(
-    what: &'static str,
-    diagonal: &[f64],
-    entries: impl IntoIterator<Item = (usize, usize, f64)>,
-) -> Result<(), ContactError> {
-    let most = UNLIKE
-        * diagonal
-            .iter()
-            .fold(0.0_f64, |most, own| most.max(own.abs()));
-    let negative = diagonal.iter().position(|own| *own < -most);
-    let root = |i: usize| diagonal[i].max(0.0).sqrt();
-    let mut entries = entries.into_iter();
-    let larger = || entries.find(|&(i, j, v)| i != j && v.abs() > root(i) * root(j) + most);
-    match negative.or_else(|| { larger }().map(|(i, j, _)| i.max(j))) {
-        Some(component) => Err(ContactError::Indefinite { what, component }),
         None => Ok(()),
     }
 }

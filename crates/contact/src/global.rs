@@ -57,9 +57,8 @@ impl<const D: usize> GlobalProblem<D> {
     ///
     /// # Errors
     /// [`ContactError::Dimension`] for entries beyond the unknowns or contacts,
-    /// [`ContactError::NotFinite`], [`ContactError::Unsymmetric`] if M is not symmetric up to rounding,
-    /// [`ContactError::Indefinite`] if it is singular or two of its unknowns tell that it is not positive definite, and
-    /// those of [`LocalProblem::new`].
+    /// [`ContactError::NotFinite`], [`ContactError::Indefinite`] if M is singular, and those of
+    /// [`LocalProblem::new`].
     pub fn new(
         stiffness: Vec<Entry>,
         directions: Vec<Entry>,
@@ -85,8 +84,6 @@ impl<const D: usize> GlobalProblem<D> {
         }
         expect_finite("load", &load)?;
         expect_sizes([("free displacements", free.len(), contacts)])?;
-        BlockMatrix::<1>::from_entries(n, stiffness.iter().copied())
-            .expect_compliance("matrix M")?;
         let mut bodies = bodies(n, &stiffness)?;
         let operator = delassus(contacts, &mut bodies, &directions)?;
         let at_rest = solve(&mut bodies, &load)?;
@@ -95,7 +92,7 @@ impl<const D: usize> GlobalProblem<D> {
             q[j / D][j % D] += h * at_rest[i];
         }
         Ok(Self {
-            local: LocalProblem::of_inverse(operator, q, laws)?,
+            local: LocalProblem::new(operator, q, laws)?,
             stiffness,
             directions,
             load,

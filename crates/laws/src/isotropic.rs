@@ -122,7 +122,10 @@ impl Isotropic {
                 );
             }
             if stress < last.stress {
-                return refused(k + 1, "softens: its stress is below the one before, or the yield stress");
+                return refused(
+                    k + 1,
+                    "softens: its stress is below the one before, or the yield stress",
+                );
             }
             last.slope = (stress - last.stress) / (p - last.p);
             let energy = last.energy + 0.5 * (stress + last.stress) * (p - last.p);

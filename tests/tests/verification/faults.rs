@@ -292,13 +292,13 @@ fn numbers_that_are_not_finite_are_refused() -> Fallible {
     )?;
     for bad in [f64::NAN, f64::INFINITY] {
         let steps = [
-            (Step::new("p").pressure("block.top", bad), "force"),
-            (Step::new("t").traction("block.top", [bad, 0.0]), "force"),
+            (Step::new("p").pressure("block.top", bad), "pressure"),
+            (Step::new("t").traction("block.top", [bad, 0.0]), "traction"),
             (Step::new("f").force("block.top", [0.0, bad]), "force"),
             (Step::new("b").body_force("block", [0.0, bad]), "force"),
             (
                 Step::new("d").displace("block.top", Axis::Y, bad),
-                "prescribed",
+                "displacement",
             ),
             (Step::new("k").tool("floor", [bad, 0.0]), "tool"),
         ];

@@ -3,7 +3,7 @@
 
 use super::{split, stack};
 use crate::ContactError;
-use crate::error::{UNLIKE, expect_finite, expect_semidefinite, expect_sizes};
+use crate::error::expect_sizes;
 use moreau_algebra::Lu;
 use moreau_algebra::{Rows, SparseLu};
 use moreau_laws::Local;
@@ -116,44 +116,6 @@ impl<const D: usize> BlockMatrix<D> {
     pub fn diagonal(&self, i: usize) -> SMatrix<f64, D, D> {
         let own = self.row(i).find(|(j, _)| *j == i);
         own.map_or_else(SMatrix::zeros, |(_, block)| *block)
-    }
-
-    /// Whether it is symmetric, beyond rounding, and no two of its components tell that it is not positive semi-definite.
-    ///
-    /// # Errors
-    /// [`ContactError::NotFinite`], [`ContactError::Unsymmetric`], [`ContactError::Indefinite`].
-    pub(crate) fn expect_compliance(&self, what: &'static str) -> Result<(), ContactError> {
-        expect_finite(what, self.entries())?;
-        let most = UNLIKE * self.entries().fold(0.0_f64, |most, v| most.max(v.abs()));
-        let unlike = |&(i, j, v): &(usize, usize, f64)| (v - self.entry(j, i)).abs() > most;
-        if let Some((i, j, v)) = self.places().find(unlike) {
-            return Err(ContactError::Unsymmetric {
-                what,
-                at: [i, j],
-                values: [v, self.entry(j, i)],
-            });
-        }
-        let diagonal: Vec<f64> = (0..D * self.contacts()).map(|k| self.entry(k, k)).collect();
-        expect_semidefinite(what, &diagonal, self.places())
-    }
-
-    /// An entry; zero where none is stored.
-    fn entry(&self, i: usize, j: usize) -> f64 {
-        let range = self.starts[i / D]..self.starts[i / D + 1];
-        match self.columns[range.clone()].binary_search(&(j / D)) {
-            Ok(at) => self.blocks[range.start + at][(i % D, j % D)],
-            Err(_) => 0.0,
-        }
-    }
-
-    /// The stored entries: row, column, value.
-    fn places(&self) -> impl Iterator<Item = (usize, usize, f64)> {
-        (0..self.contacts()).flat_map(move |i| {
-            self.row(i).flat_map(move |(j, block)| {
-                let own = (0..D).flat_map(|k| (0..D).map(move |l| (k, l)));
-                own.map(move |(k, l)| (D * i + k, D * j + l, block[(k, l)]))
-            })
-        })
     }
 
     /// Adds to the diagonal of a stored diagonal block.

@@ -16,9 +16,6 @@ const SWEPT: f64 = 1e-9;
 /// Least α of a contact, over that of the stiffest: it sees displacements where the contact has no stiffness of its own.
 const SEEN: f64 = 1e-6;
 
-/// Part of a gap to which a contact is closed at least, however soft the structure is.
-const CLOSED: f64 = 1e-9;
-
 /// The largest proximal term that is looked for, over the stiffest diagonal, and how near the least that makes S stable is
 /// found.
 const MOST: f64 = 1e3;
@@ -96,16 +93,14 @@ impl<const D: usize> CondensedProblem<D> {
     /// closes the gaps.
     fn least_alpha(&self) -> f64 {
         let own = (0..self.contacts()).map(|i| self.mean_stiffness(i));
-        let (stiffest, closing) = (own.fold(0.0, f64::max), self.closing());
-        // Beyond any rounding of gaps.
-        match stiffest > f64::EPSILON.powi(2) * closing {
-            true => SEEN * stiffest,
-            false => closing,
+        match own.fold(0.0, f64::max) {
+            0.0 => self.closing(),
+            stiffest => SEEN * stiffest,
         }
     }
 
     /// Stiffness with which the load closes the gaps \[N/mm\]; 1 where there is no load or no gap, and so nothing to weigh.
-    pub(crate) fn closing(&self) -> f64 {
+    fn closing(&self) -> f64 {
         let load = self.load.amax();
         let gap = self.origin.iter().map(|g| g.amax()).fold(0.0, f64::max);
         Some(load / gap).filter(|c| c.is_normal()).unwrap_or(1.0)
@@ -156,7 +151,7 @@ impl<const D: usize> CondensedProblem<D> {
 
     /// Tells by which stiffness \[N/mm\] displacements weigh at least where a solution is judged. In plastic flow S is softer
     /// than the bodies, and what is within a tolerance when weighed by S need not be when weighed by them. Newton's method
-    /// on S, whose last step leaves rounding only, heeds it where S is next to nothing beside it.
+    /// on S, whose last step leaves rounding only, does without.
     pub fn weigh(&mut self, stiffness: f64) {
         self.weight = stiffness;
     }
@@ -250,7 +245,7 @@ impl<const D: usize> CondensedProblem<D> {
             .map_err(|component| ContactError::Floating { component })?;
         let free = split::<D>(&(&operator * &self.load));
         let free = free.iter().zip(&self.origin).map(|(w, g)| w + g).collect();
-        LocalProblem::of_inverse(BlockMatrix::from_dense(&operator)?, free, self.laws.clone())
+        LocalProblem::new(BlockMatrix::from_dense(&operator)?, free, self.laws.clone())
     }
 
     /// Parameter α of \[90′\] for contact i \[N/mm\]: the mean stiffness of its own components, so
@@ -288,39 +283,6 @@ impl<const D: usize> CondensedProblem<D> {
     /// [`Self::residual`] with displacements weighed as [`Self::weigh`] tells \[N\]: no smaller, since the map grows with α.
     pub(crate) fn judged_residual(&self, u: &[Local<D>], t: &[Local<D>]) -> f64 {
         self.residual_by(self.weight, u, t)
-    }
-
-    /// The weight of displacements in the residual of a solution of this relative tolerance \[N/mm\], zero where none is asked
-    /// for beside α, as where its last step is Newton's, which leaves rounding. Of a structure so soft that its forces do not
-    /// see the gaps it is such that what is within the tolerance has closed them.
-    pub(crate) fn weight_of_gaps(&self, relative: f64) -> f64 {
-        let unseen = match self.is_blind() {
-            true => self.closing() * relative / CLOSED,
-            false => 0.0,
-        };
-        let told = match self.least < SEEN * SEEN * self.weight {
-            true => self.weight,
-            false => 0.0,
-        };
-        told.max(unseen)
-    }
-
-    /// [`Self::residual`] with this weight, the rounding of positions x = u − g taken off \[N\].
-    pub(crate) fn residual_of_gaps(
-        &self,
-        weight: f64,
-        (x, u): (&[Local<D>], &[Local<D>]),
-        t: &[Local<D>],
-    ) -> f64 {
-        let reach = x.iter().chain(&self.origin).map(|x| x.amax());
-        let rounding = 4.0 * f64::EPSILON * reach.fold(0.0, f64::max);
-        self.residual_by(weight, u, t) - weight * rounding
-    }
-
-    /// Whether the stiffest contact with all its gap makes a force that is next to none beside the load. Where the load is
-    /// told to be rounding in part, such a gap is rounding, too.
-    fn is_blind(&self) -> bool {
-        self.load_rounding == 0.0 && self.least < SEEN * CLOSED * self.closing()
     }
 
     /// The largest norm of the natural map, with α of this size at least \[N\].

@@ -75,24 +75,8 @@ impl<const D: usize> LocalProblem<D> {
     ///
     /// # Errors
     /// [`ContactError::Dimension`] if sizes disagree, [`ContactError::NotFinite`] for NaN or ∞,
-    /// [`ContactError::Unsymmetric`] if W is not symmetric up to rounding, [`ContactError::Rigid`] where a diagonal block
-    /// of W has no normal compliance, [`ContactError::Indefinite`] where two components of W tell that it is not positive
-    /// semi-definite: all together are not looked at.
+    /// [`ContactError::Rigid`] where a diagonal block of W has no normal compliance.
     pub fn new(
-        operator: BlockMatrix<D>,
-        free: Vec<Local<D>>,
-        laws: Vec<impl Into<Friction>>,
-    ) -> Result<Self, ContactError> {
-        let expected = operator.expect_compliance("Delassus operator");
-        let problem = Self::of_inverse(operator, free, laws)?;
-        expected.map(|()| problem)
-    }
-
-    /// A problem whose W was found as the inverse of a symmetric matrix, and is symmetric as far as that was regular.
-    ///
-    /// # Errors
-    /// As [`Self::new`], but what W is as a whole.
-    pub(crate) fn of_inverse(
         operator: BlockMatrix<D>,
         free: Vec<Local<D>>,
         laws: Vec<impl Into<Friction>>,

@@ -52,7 +52,6 @@ impl<const D: usize> ContactSolver<D> for SemismoothNewton {
             problem,
             springs: &springs,
             part: PARTS[0],
-            least: 0.0,
         };
         let here = vec![Local::zeros(); problem.contacts()];
         let now = newton.iterate(here.clone());
@@ -137,7 +136,6 @@ pub(super) fn newton<const D: usize>(
             problem,
             springs: &springs,
             part: PARTS[part % PARTS.len()],
-            least: 0.0,
         };
         let mut now = newton.iterate(start.clone());
         if !now.residual.is_finite() {
@@ -147,21 +145,9 @@ pub(super) fn newton<const D: usize>(
             // The residual grows with α, at most in proportion: this bounds it for the common α.
             let target = newton.part * tolerance.relative * problem.force_scale(&now.t);
             let target = target.max(problem.rounding(&now.x) + newton.rounding_of_sums(&now));
-            let bound = target.max(newton.part * enough);
-            if is_within(now.residual, bound) {
+            if is_within(now.residual, target.max(newton.part * enough)) {
                 let exact = now.residual <= target;
-                // Displacements may weigh more where a solution is judged than in the map.
-                let asked = (target / newton.part).max(enough);
-                let nearer = (iterations < tolerance.iterations)
-                    .then(|| newton.nearer(&now, tolerance, asked))
-                    .flatten()
-                    .filter(|next| is_within(next.residual, bound));
-                let Some(next) = nearer else {
-                    return Ok(newton.solution(now, iterations, exact));
-                };
-                iterations += 1;
-                now = next;
-                continue;
+                return Ok(newton.solution(now, iterations, exact));
             }
             if iterations >= tolerance.iterations {
                 return Err(newton.stalled(now, iterations, tolerance));
@@ -212,14 +198,12 @@ struct Newton<'a, const D: usize> {
     problem: &'a CondensedProblem<D>,
     springs: &'a [Springs<D>],
     part: f64,
-    /// The least α of the structure \[N/mm\].
-    least: f64,
 }
 
 impl<const D: usize> Newton<'_, D> {
     /// α of \[90′\]: the stiffness of the structure and of the penalty spring in series.
     fn alpha(&self, i: usize) -> f64 {
-        let alpha = (self.part * self.problem.alpha(i)).max(self.least);
+        let alpha = self.part * self.problem.alpha(i);
         let compliance = self.springs[i].compliance.mean();
         alpha / (1.0 + alpha * compliance)
     }
@@ -308,26 +292,6 @@ impl<const D: usize> Newton<'_, D> {
             s *= 0.5;
         }
         None
-    }
-
-    /// The iterate after a step of a map in which displacements weigh as where solutions are judged, if a residual of
-    /// `asked` is not met so; `None` if it is, or if no step comes nearer.
-    fn nearer(&self, now: &Iterate<D>, tolerance: Tolerance, asked: f64) -> Option<Iterate<D>> {
-        let weight = self.problem.weight_of_gaps(tolerance.relative);
-        let left = || {
-            let (positions, forces) = ((&*now.x, &*now.irreversible), Self::projected(now));
-            self.problem.residual_of_gaps(weight, positions, &forces)
-        };
-        if weight == 0.0 || left() <= asked {
-            return None;
-        }
-        // What presses must not seem to open by its gap.
-        let judging = Self {
-            least: weight.min(PARTS[0] * self.problem.closing()),
-            ..*self
-        };
-        let next = judging.advance(&judging.at(now.x.clone(), now.t.clone()))?;
-        Some(self.at(next.x, next.t))
     }
 
     /// Newton step of the map; `None` if its matrix is singular.
@@ -468,7 +432,6 @@ mod tests {
                 problem: &problem,
                 springs: &springs,
                 part: PARTS[0],
-                least: 0.0,
             };
             let u = newton.sweep(&[Local::zeros(); 4]).expect("solvable");
             let at = newton.iterate(problem.relative(&u));

@@ -362,7 +362,7 @@ fn the_reduction_of_the_global_form_is_that_of_dense_algebra() {
     let mut m = DMatrix::<f64>::identity(n, n) * 3.0;
     for (i, j) in [(0, 1), (1, 2), (4, 5)] {
         m[(i, j)] = -1.0;
-        m[(j, i)] = -1.0;
+        m[(j, i)] = -0.9;
     }
     let h = DMatrix::from_fn(n, 4, |i, j| {
         if i == 3 && j < 2 {
