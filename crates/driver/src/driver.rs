@@ -94,7 +94,8 @@ impl<const D: usize> Driver<D> {
     /// The virgin state of a model.
     ///
     /// # Errors
-    /// [`ModelError::MissingMaterial`]; [`ModelError::OutOfRange`] of settings that no increment could meet, and of a negative radius around an axis.
+    /// [`ModelError::MissingMaterial`]; [`ModelError::OutOfRange`] of settings that no increment could meet, and of a negative
+    /// radius around an axis.
     pub fn new<H: Analysis<D>>(
         mut model: Model<D, H>,
         settings: Settings<D>,
@@ -319,10 +320,7 @@ impl<const D: usize> Driver<D> {
     pub fn contact_name(&self, contact: usize) -> (&str, &str) {
         let Contact {
             surface, opposite, ..
-        } = match self.contacts.get(contact) {
-            Some(contact) => contact,
-            None => panic!("contact {contact} is none of the model"),
-        };
+        } = &self.contacts[contact];
         (surface, opposite)
     }
 

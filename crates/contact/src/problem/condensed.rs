@@ -5,7 +5,7 @@ use crate::ContactError;
 use crate::error::{expect_finite, expect_sizes, expect_symmetric};
 use moreau_algebra::DenseCholesky;
 use moreau_laws::{Friction, Local, Status};
-use nalgebra::{Cholesky, DMatrix, DVector, Matrix2, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 /// Eigenvalue of S, over its largest diagonal, below which it is rounding.
 const FAINT: f64 = 1e-9;
@@ -362,29 +362,25 @@ impl<const D: usize> CondensedProblem<D> {
     }
 }
 
-/// Inverse of a symmetric positive definite matrix, or the first component at which it is not: that of the first pivot of
-/// Cholesky's factorisation at rounding level, a rigid motion and not a stiffness, or below.
-fn inverse(mut a: DMatrix<f64>) -> Result<DMatrix<f64>, usize> {
+/// Inverse of a symmetric positive definite matrix, or the first component at which it is not.
+fn inverse(a: DMatrix<f64>) -> Result<DMatrix<f64>, usize> {
     if a.is_empty() {
         return Ok(a); // Nothing touches.
     }
+    // A pivot at rounding level is a rigid motion, not a stiffness.
     let least = 1e-13 * a.diagonal().amax();
-    for j in 0..a.ncols() {
-        for k in 0..j {
-            let across = -a[(j, k)];
-            let (mut own, before) = a.columns_range_pair_mut(j, k);
-            own.rows_range_mut(j..)
-                .axpy(across, &before.rows_range(j..), 1.0);
-        }
-        let root = a[(j, j)].sqrt();
-        // A negative pivot has no root.
-        if root.is_nan() || root.powi(2) <= least {
-            return Err(j);
-        }
-        a[(j, j)] = root;
-        a.view_range_mut(j + 1.., j).unscale_mut(root);
-    }
-    Ok(Cholesky::pack_dirty(a).inverse())
+    let regular = |a: DMatrix<f64>| {
+        let factor = a.cholesky();
+        factor.filter(|factor| factor.l_dirty().diagonal().amin().powi(2) > least)
+    };
+    regular(a.clone())
+        .map(|factor| factor.inverse())
+        .ok_or_else(|| {
+            // The leading parts of a regular one are regular.
+            let sizes: Vec<usize> = (1..=a.nrows()).collect();
+            let leading = |size: usize| a.view((0, 0), (size, size)).into_owned();
+            sizes.partition_point(|&size| regular(leading(size)).is_some())
+        })
 }
 
 #[cfg(test)]

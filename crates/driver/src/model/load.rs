@@ -437,8 +437,8 @@ pub struct Loading<const D: usize> {
     pub directions: Directions,
     /// Applied forces \[N\].
     pub force: SparseVector,
-    /// Pressures on sides of cells \[MPa\], which follow their surface under large strains: on side s of cell c the entry
-    /// 6c + s. Under small ones they act on the undeformed side, as forces do.
+    /// Pressures that follow their surface \[MPa\]: on side s of cell c the entry 6c + s. Those of a step are here under large
+    /// strains, and under small ones among the forces, on the undeformed surface.
     pub pressure: SparseVector,
     /// How much warmer the cells are than when they were free of stress \[K\].
     pub temperature: Temperature,
