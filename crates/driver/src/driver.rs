@@ -318,10 +318,10 @@ impl<const D: usize> Driver<D> {
     /// # Panics
     /// If there is no such contact.
     pub fn contact_name(&self, contact: usize) -> (&str, &str) {
-        let Contact {
-            surface, opposite, ..
-        } = &self.contacts[contact];
-        (surface, opposite)
+        let Some(named) = self.contacts.get(contact) else {
+            panic!("contact {contact} is none of the model");
+        };
+        (&named.surface, &named.opposite)
     }
 
     /// Contact points, as indices of [`Driver::contacts`], that displacement conditions left no
