@@ -1,10 +1,11 @@
 //! L Lᵀ = A of sparse positive definite matrices, supernode by supernode; not the order of the unknowns.
 
-use faer::Par;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltError;
-use faer::sparse::SparseColMatRef;
-use faer::sparse::linalg::cholesky::supernodal;
+mod branches;
+mod numeric;
+mod sweep;
+#[cfg(test)]
+mod tests;
+
 use nalgebra::DMatrix;
 use pulp::Arch;
 use std::fmt;
@@ -13,8 +14,10 @@ use crate::dense::square;
 use crate::engine::{Cost, Engine, EngineError, Inertia, TooLarge, check_columns, check_values};
 use crate::panel::SIDES;
 use crate::pattern::Pattern;
-use crate::sweep::{Factor, Sweeps};
 use crate::symbolic::Symbolic;
+use branches::Branches;
+use numeric::{Numeric, Updates};
+use sweep::{Factor, Sweeps};
 
 /// L Lᵀ = A, in the order in which A is given.
 ///
@@ -23,12 +26,12 @@ use crate::symbolic::Symbolic;
 /// that of A + σE less σE.
 pub struct Cholesky {
     symbolic: Symbolic,
+    updates: Updates,
+    branches: Branches,
     factor: Vec<f64>,
-    memory: MemBuffer,
     sweeps: Sweeps,
     least_pivot: f64,
     factorised: bool,
-    par: Par,
     /// Instructions that the processor has.
     arch: Arch,
 }
@@ -44,39 +47,6 @@ impl fmt::Debug for Cholesky {
 }
 
 impl Cholesky {
-    /// On threads of another number than the operations ask for, if one is given.
-    pub(crate) fn analyse_for(
-        pattern: &Pattern,
-        memory: Option<u64>,
-        threads: Option<Par>,
-    ) -> Result<Self, TooLarge> {
-        let symbolic = Symbolic::new(pattern, memory)?;
-        let par = threads.unwrap_or_else(|| symbolic.par());
-        let too_large = TooLarge {
-            entries: symbolic.cost.entries,
-            room: symbolic.room,
-        };
-        let request = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, f64>(
-            &symbolic.supernodes,
-            par,
-            Default::default(),
-        );
-        let mut factor = Vec::new();
-        let entries = symbolic.supernodes.len_val();
-        factor.try_reserve_exact(entries).map_err(|_| too_large)?;
-        factor.resize(entries, 0.0);
-        Ok(Self {
-            factor,
-            memory: MemBuffer::try_new(request).map_err(|_| too_large)?,
-            sweeps: Sweeps::new(&symbolic),
-            least_pivot: f64::INFINITY,
-            factorised: false,
-            par,
-            arch: Arch::new(),
-            symbolic,
-        })
-    }
-
     /// The least pivot over what the diagonal of the matrix was there.
     fn least(&self, values: &[f64]) -> f64 {
         let mut least = f64::INFINITY;
@@ -127,7 +97,26 @@ impl Cholesky {
 
 impl Engine for Cholesky {
     fn analyse(pattern: &Pattern, memory: Option<u64>) -> Result<Self, TooLarge> {
-        Self::analyse_for(pattern, memory, None)
+        let symbolic = Symbolic::new(pattern, memory)?;
+        let too_large = TooLarge {
+            entries: symbolic.cost.entries,
+            room: symbolic.room,
+        };
+        let mut factor = Vec::new();
+        let entries = symbolic.supernodes.len_val();
+        factor.try_reserve_exact(entries).map_err(|_| too_large)?;
+        factor.resize(entries, 0.0);
+        let branches = Branches::new(&symbolic);
+        Ok(Self {
+            factor,
+            updates: Updates::new(&symbolic),
+            sweeps: Sweeps::new(&symbolic, &branches),
+            branches,
+            least_pivot: f64::INFINITY,
+            factorised: false,
+            arch: Arch::new(),
+            symbolic,
+        })
     }
 
     fn size(&self) -> usize {
@@ -146,20 +135,14 @@ impl Engine for Cholesky {
         self.factorised = false;
         let pattern = &self.symbolic.pattern;
         check_values(values, pattern)?;
-        // Threads share out the entries of the dense updates, not their sums: the factor is the same
-        // to the bit wherever it runs.
-        supernodal::factorize_supernodal_numeric_llt(
-            &mut self.factor,
-            SparseColMatRef::new(pattern.lower.as_ref().as_ref(), values),
-            Default::default(),
-            &self.symbolic.supernodes,
-            self.par,
-            MemStack::new(&mut self.memory),
-            Default::default(),
-        )
-        .map_err(|LltError::NonPositivePivot { index }| {
-            EngineError::NotPositiveDefinite { row: index }
-        })?;
+        let numeric = Numeric {
+            symbolic: &self.symbolic,
+            updates: &self.updates,
+            values,
+        };
+        numeric
+            .factorise(&self.branches, &mut self.factor)
+            .map_err(|row| EngineError::NotPositiveDefinite { row })?;
         self.least_pivot = self.least(values);
         self.factorised = true;
         Ok(Inertia {

@@ -302,11 +302,7 @@ fn add(child: &Left, front: &mut Front, place: &[u32]) {
 fn tree(symbolic: &Symbolic) -> (Vec<u32>, Vec<u32>) {
     let count = symbolic.count();
     let first_kept = symbolic.pattern.size() - symbolic.pattern.kept();
-    let mut of = vec![0u32; symbolic.pattern.size()];
-    for s in 0..count {
-        let node = symbolic.supernode(s);
-        of[node.start..node.start + node.width].fill(s as u32);
-    }
+    let of = symbolic.supernode_of_columns();
     let inner = |s: usize| symbolic.supernode(s).start < first_kept;
     let parent = |s: usize| {
         let below = symbolic.supernode(s).rows.first();

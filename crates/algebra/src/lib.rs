@@ -60,7 +60,6 @@ mod ordering;
 mod panel;
 mod pattern;
 mod sparse_lu;
-mod sweep;
 mod symbolic;
 mod team;
 

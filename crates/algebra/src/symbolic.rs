@@ -156,6 +156,16 @@ impl Symbolic {
         }
     }
 
+    /// Of every column the supernode that it is in.
+    pub(crate) fn supernode_of_columns(&self) -> Vec<u32> {
+        let mut of = vec![0; self.pattern.size()];
+        for s in 0..self.count() {
+            let node = self.supernode(s);
+            of[node.start..node.start + node.width].fill(s as u32);
+        }
+        of
+    }
+
     pub(crate) fn count(&self) -> usize {
         self.supernodes.n_supernodes()
     }

@@ -8,14 +8,9 @@
 use pulp::Arch;
 use std::ops::Range;
 
+use super::branches::{Branches, at_once};
 use crate::panel::{Backward, Forward, Panel, Product, TransposedProduct};
 use crate::symbolic::{Supernode, Symbolic};
-
-/// Entries of a factor from which on its branches are swept at once: a millisecond.
-const LARGE: f64 = 1e6;
-
-/// Part of the factor that a branch may have.
-const PART: f64 = 1.0 / 16.0;
 
 /// Columns of a supernode of the trunk that are swept together, and those of them that one thread reads.
 const WIDE: usize = 256;
@@ -26,11 +21,11 @@ const PARALLEL: usize = 1 << 16;
 
 /// A factor that is swept through: its first columns, so many, of all.
 #[derive(Clone, Copy)]
-pub(crate) struct Factor<'a> {
-    pub(crate) symbolic: &'a Symbolic,
-    pub(crate) values: &'a [f64],
-    pub(crate) columns: usize,
-    pub(crate) arch: Arch,
+pub(super) struct Factor<'a> {
+    pub(super) symbolic: &'a Symbolic,
+    pub(super) values: &'a [f64],
+    pub(super) columns: usize,
+    pub(super) arch: Arch,
 }
 
 impl Factor<'_> {
@@ -53,7 +48,7 @@ impl Factor<'_> {
     }
 }
 
-/// A subtree of the elimination tree: supernodes, of which the last is the root, and their columns.
+/// What the sweeps through a branch need: its supernodes, of which the last is the root, and their columns.
 #[derive(Debug)]
 struct Branch {
     supernodes: Range<usize>,
@@ -66,7 +61,7 @@ struct Branch {
 
 /// How a factor is swept through.
 #[derive(Debug)]
-pub(crate) struct Sweeps {
+pub(super) struct Sweeps {
     branches: Vec<Branch>,
     /// Supernodes that are in no branch.
     trunk: Vec<usize>,
@@ -78,17 +73,11 @@ pub(crate) struct Sweeps {
 }
 
 impl Sweeps {
-    pub(crate) fn new(symbolic: &Symbolic) -> Self {
-        let large = symbolic.cost.entries >= LARGE;
-        let roots = if large { roots(symbolic) } else { Vec::new() };
-        let mut trunk = Vec::new();
+    pub(super) fn new(symbolic: &Symbolic, all: &Branches) -> Self {
         let mut outer = Vec::new();
-        let mut branches = Vec::with_capacity(roots.len());
-        let mut next = 0;
-        for supernodes in roots {
-            trunk.extend(next..supernodes.start);
-            next = supernodes.end;
-            let root = symbolic.supernode(next - 1);
+        let mut branches = Vec::with_capacity(all.ranges.len());
+        for supernodes in &all.ranges {
+            let root = symbolic.supernode(supernodes.end - 1);
             let columns = symbolic.supernode(supernodes.start).start..root.start + root.width;
             outer.resize(symbolic.rows_before(supernodes.start), 0);
             for s in supernodes.clone() {
@@ -97,17 +86,16 @@ impl Sweeps {
                 outer.extend(rows.map(position));
             }
             branches.push(Branch {
-                supernodes,
+                supernodes: supernodes.clone(),
                 columns,
                 own: Vec::new(),
                 below: Vec::new(),
                 outer: Vec::new(),
             });
         }
-        trunk.extend(next..symbolic.count());
         Self {
             branches,
-            trunk,
+            trunk: all.trunk.clone(),
             outer,
             own: Vec::new(),
             below: Vec::new(),
@@ -116,7 +104,7 @@ impl Sweeps {
     }
 
     /// x ← L⁻¹ x of some right-hand sides; what is below the columns is condensed.
-    pub(crate) fn forward(&mut self, factor: Factor<'_>, x: &mut [f64]) {
+    pub(super) fn forward(&mut self, factor: Factor<'_>, x: &mut [f64]) {
         let n = factor.size();
         let outer = &self.outer;
         let work = pieces(&mut self.branches, x, n);
@@ -146,7 +134,7 @@ impl Sweeps {
     }
 
     /// x ← L⁻ᵀ x, where the unknowns after the columns are known.
-    pub(crate) fn backward(&mut self, factor: Factor<'_>, x: &mut [f64]) {
+    pub(super) fn backward(&mut self, factor: Factor<'_>, x: &mut [f64]) {
         let n = factor.size();
         for k in (0..self.trunk.len()).rev() {
             let node = factor.symbolic.supernode(self.trunk[k]);
@@ -349,52 +337,6 @@ impl Branch {
     }
 }
 
-/// Subtrees that are swept at once, in order: of the largest, those of its children, until none is large. Who has
-/// kept unknowns, and whose descendants do not stand together before it, belongs to the trunk.
-fn roots(symbolic: &Symbolic) -> Vec<Range<usize>> {
-    let count = symbolic.count();
-    let size = symbolic.pattern.size();
-    let first_kept = size - symbolic.pattern.kept();
-    let mut supernode_of = vec![0; size];
-    for s in 0..count {
-        let node = symbolic.supernode(s);
-        supernode_of[node.start..node.start + node.width].fill(s);
-    }
-    // Of a subtree: its entries, its supernodes, the first of them, and the children of its root.
-    let mut entries: Vec<f64> = Vec::with_capacity(count);
-    let mut members = vec![1; count];
-    let mut first: Vec<usize> = (0..count).collect();
-    let mut children = vec![Vec::new(); count];
-    let mut waiting = Vec::new();
-    for s in 0..count {
-        entries.push(symbolic.supernode(s).values.len() as f64);
-    }
-    for s in 0..count {
-        match symbolic.supernode(s).rows.first() {
-            Some(&row) => {
-                let parent = supernode_of[row as usize];
-                entries[parent] += entries[s];
-                members[parent] += members[s];
-                first[parent] = first[parent].min(first[s]);
-                children[parent].push(s);
-            }
-            None => waiting.push(s),
-        }
-    }
-    let large = PART * symbolic.cost.entries;
-    let mut found = Vec::new();
-    while let Some(s) = waiting.pop() {
-        let node = symbolic.supernode(s);
-        let is_whole = members[s] == s + 1 - first[s] && node.start + node.width <= first_kept;
-        match is_whole && entries[s] <= large {
-            true => found.push(first[s]..s + 1),
-            false => waiting.extend(&children[s]),
-        }
-    }
-    found.sort_unstable_by_key(|range| range.start);
-    found
-}
-
 /// The branches with their parts of every right-hand side.
 fn pieces<'a>(
     branches: &'a mut [Branch],
@@ -430,118 +372,5 @@ fn gather(x: &[f64], size: usize, rows: impl Iterator<Item = usize> + Clone, to:
     to.clear();
     for x in x.chunks_exact(size) {
         to.extend(rows.clone().map(|i| x[i]));
-    }
-}
-
-/// Does the work, on all threads where there are threads.
-fn at_once<T: Send>(work: Vec<T>, each: impl Fn(T) + Sync + Send) {
-    #[cfg(feature = "parallel")]
-    {
-        use rayon::prelude::*;
-        work.into_par_iter().with_max_len(1).for_each(each);
-    }
-    #[cfg(not(feature = "parallel"))]
-    work.into_iter().for_each(each);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::common::laplacian;
-    use crate::{Cholesky, Engine, Pattern};
-    use faer::Par;
-
-    /// A x of the lower triangle of A.
-    fn product(pattern: &Pattern, values: &[f64], x: &[f64]) -> Vec<f64> {
-        let mut b = vec![0.0; x.len()];
-        for j in 0..x.len() {
-            let range = pattern.range(j);
-            for (&i, v) in pattern.rows()[range.clone()].iter().zip(&values[range]) {
-                b[i as usize] += v * x[j];
-                if i as usize != j {
-                    b[j] += v * x[i as usize];
-                }
-            }
-        }
-        b
-    }
-
-    fn largest(a: &[f64], b: &[f64]) -> f64 {
-        let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
-        differences.fold(0.0, f64::max)
-    }
-
-    /// A Laplacian of which the last unknowns are coupled to each other, all of them: a large supernode of the trunk.
-    fn with_dense_end(n: usize, dense: usize) -> (Pattern, Vec<f64>) {
-        let (sparse, weights) = laplacian(n, 0.2);
-        let size = sparse.size();
-        let (mut start, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
-        for j in 0..size {
-            let range = sparse.range(j);
-            let own = sparse.rows()[range.clone()].iter().zip(&weights[range]);
-            let mut column: std::collections::BTreeMap<u32, f64> =
-                own.map(|(&i, &v)| (i, v)).collect();
-            if j >= size - dense {
-                for i in j..size {
-                    let own = if i == j { 1.0 } else { -0.5 / dense as f64 };
-                    *column.entry(i as u32).or_default() += own;
-                }
-            }
-            rows.extend(column.keys());
-            values.extend(column.values());
-            start.push(rows.len() as u32);
-        }
-        (Pattern::new(start, rows).expect("ascending"), values)
-    }
-
-    #[test]
-    fn branches_and_trunk_are_all_supernodes_once() {
-        let (pattern, _) = laplacian(22, 0.2);
-        let symbolic = Symbolic::new(&pattern.keeping(10).expect("so many"), None).expect("small");
-        let sweeps = Sweeps::new(&symbolic);
-        assert!(sweeps.branches.len() > 8, "{}", sweeps.branches.len());
-        let branches = sweeps.branches.iter().flat_map(|b| b.supernodes.clone());
-        let mut all: Vec<usize> = branches.chain(sweeps.trunk.iter().copied()).collect();
-        all.sort_unstable();
-        assert!(all.iter().copied().eq(0..symbolic.count()));
-        let first_kept = symbolic.pattern.size() - 10;
-        for branch in &sweeps.branches {
-            assert!(branch.columns.end <= first_kept);
-            let entries = branch.supernodes.clone();
-            let entries = entries
-                .map(|s| symbolic.supernode(s).values.len())
-                .sum::<usize>();
-            assert!(entries as f64 <= PART * symbolic.cost.entries);
-        }
-    }
-
-    /// A solution solves, whatever else is solved with it, in one go or condensed and expanded.
-    #[test]
-    fn a_large_factor_solves_for_any_number_of_sides() {
-        for (pattern, values) in [laplacian(22, 0.2), with_dense_end(20, 700)] {
-            let n = pattern.size();
-            let pattern = pattern.keeping(10).expect("so many");
-            let mut engine = Cholesky::analyse_for(&pattern, None, Some(Par::Seq)).expect("small");
-            assert!(engine.cost().entries > LARGE);
-            engine.factorise(&values).expect("definite");
-            let known: Vec<f64> = (0..9 * n).map(|i| (i as f64).sin()).collect();
-            let b: Vec<f64> = known
-                .chunks(n)
-                .flat_map(|x| product(&pattern, &values, x))
-                .collect();
-            let mut together = b.clone();
-            engine.solve(&mut together).expect("factorised");
-            assert!(largest(&together, &known) < 1e-11);
-            for (k, together) in together.chunks(n).enumerate() {
-                let mut alone = b[k * n..][..n].to_vec();
-                engine.solve(&mut alone).expect("factorised");
-                assert!(alone == together, "side {k}");
-                let mut parted = b[k * n..][..n].to_vec();
-                engine.condense(&mut parted).expect("factorised");
-                parted[n - 10..].copy_from_slice(&known[k * n..][n - 10..n]);
-                engine.expand(&mut parted).expect("factorised");
-                assert!(largest(&parted, &known[k * n..][..n]) < 1e-11);
-            }
-        }
     }
 }
