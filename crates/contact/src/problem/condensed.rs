@@ -5,7 +5,8 @@ use crate::ContactError;
 use crate::error::{expect_finite, expect_sizes, expect_symmetric};
 use moreau_algebra::DenseCholesky;
 use moreau_laws::{Friction, Local, Status};
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix2, Vector2};
+use std::cmp::Ordering;
 
 /// Eigenvalue of S, over its largest diagonal, below which it is rounding.
 const FAINT: f64 = 1e-9;
@@ -369,18 +370,29 @@ fn inverse(a: DMatrix<f64>) -> Result<DMatrix<f64>, usize> {
     }
     // A pivot at rounding level is a rigid motion, not a stiffness.
     let least = 1e-13 * a.diagonal().amax();
-    let regular = |a: DMatrix<f64>| {
-        let factor = a.cholesky();
-        factor.filter(|factor| factor.l_dirty().diagonal().amin().powi(2) > least)
-    };
-    regular(a.clone())
-        .map(|factor| factor.inverse())
-        .ok_or_else(|| {
-            // The leading parts of a regular one are regular.
-            let sizes: Vec<usize> = (1..=a.nrows()).collect();
-            let leading = |size: usize| a.view((0, 0), (size, size)).into_owned();
-            sizes.partition_point(|&size| regular(leading(size)).is_some())
-        })
+    factor(a, least).map(|factor| factor.inverse())
+}
+
+/// Cholesky's factor of a symmetric matrix, of which the lower triangle is read, or the first component whose pivot is not
+/// above `least`: the leading part before it is regular.
+fn factor(mut a: DMatrix<f64>, least: f64) -> Result<Cholesky<f64, Dyn>, usize> {
+    for j in 0..a.ncols() {
+        for k in 0..j {
+            let part = -a[(j, k)];
+            let (mut own, before) = a.columns_range_pair_mut(j, k);
+            own.rows_range_mut(j..)
+                .axpy(part, &before.rows_range(j..), 1.0);
+        }
+        let pivot = a[(j, j)];
+        // What is no number is no pivot either.
+        if pivot.partial_cmp(&least) != Some(Ordering::Greater) {
+            return Err(j);
+        }
+        a[(j, j)] = pivot.sqrt();
+        let mut below = a.view_range_mut(j + 1.., j);
+        below /= pivot.sqrt();
+    }
+    Ok(Cholesky::pack_dirty(a))
 }
 
 #[cfg(test)]

@@ -130,7 +130,8 @@ pub(super) fn newton<const D: usize>(
     // A body that only contact holds has no stiffness against contacts that are open at the start: then start again with
     // all of them closed, and where that leads nowhere with the nearest held.
     let begun = start.clone();
-    let (mut may_close, mut may_hold) = (true, true);
+    let (mut may_close, mut floats) = (true, false);
+    let mut is_stable = false;
     loop {
         let newton = Newton {
             problem,
@@ -158,18 +159,20 @@ pub(super) fn newton<const D: usize>(
             };
             now = next;
         }
-        if newton.step(&now).is_none() && std::mem::take(&mut may_close) {
+        if may_close && newton.step(&now).is_none() {
+            may_close = false;
             start = all_closed(problem, &begun);
             continue;
         }
         // There may be no solution, and if there is another α hardly finds it.
-        if problem.is_unstable() {
+        is_stable = is_stable || !problem.is_unstable();
+        if !is_stable {
             return Err(ContactError::Singular);
         }
         part += 1;
         // When all have stalled, sweeps find the statuses; where no inverse exists, or only a huge one, there are none.
         if part % PARTS.len() == 0 {
-            if problem.is_faintly_held() {
+            if floats || problem.is_faintly_held() {
                 return Err(ContactError::Singular);
             }
             start = loop {
@@ -183,9 +186,8 @@ pub(super) fn newton<const D: usize>(
                 match swept {
                     Ok(u) => break problem.relative(&u),
                     Err(ContactError::Floating { .. }) => {
-                        let held =
-                            std::mem::take(&mut may_hold).then(|| nearest_held(problem, &begun));
-                        break held.flatten().ok_or(ContactError::Singular)?;
+                        floats = true;
+                        break nearest_held(problem, &begun).ok_or(ContactError::Singular)?;
                     }
                     Err(_) => {}
                 }
