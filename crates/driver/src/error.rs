@@ -585,8 +585,9 @@ pub enum IncrementError {
     /// library of kernels is at fault, or a stiffness that is all but singular.
     #[error(
         "the factorised stiffness leaves {found:.3e} N of a linear solve, expected at most \
-         {expected:.3e} N: the factor is corrupt. Where something holds every body that is no fault of the \
-         model: run it again, or on another machine"
+         {expected:.3e} N. Where contacts or ties alone hold a body it is all but singular: take a penalty nearer to the \
+         stiffness of the bodies, or the exact law, or hold what may move freely. Where displacements hold every \
+         body memory or the machine is at fault: run it again, or on another one"
     )]
     Inaccurate {
         /// Largest residual \[N\].
