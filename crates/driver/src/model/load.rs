@@ -270,7 +270,8 @@ impl<const D: usize> Step<D> {
         })
     }
 
-    /// Moves a tool by a total translation from its first position \[mm\], once in a step.
+    /// Moves a tool by a total translation from its first position \[mm\], once in a step; under axial symmetry along the
+    /// axis alone.
     pub fn tool(self, name: &str, displacement: [f64; D]) -> Self {
         self.with(Condition::Tool {
             name: name.into(),

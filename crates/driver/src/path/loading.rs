@@ -137,7 +137,12 @@ impl<const D: usize> Driver<D> {
         for condition in &step.conditions {
             if let Condition::Tool { name, displacement } = condition {
                 let node = self.tool_node(tool_index(&self.tools, name)?);
-                moved.extend((0..D).map(|i| (D * node + i, displacement[i])));
+                for (i, &u) in displacement.iter().enumerate() {
+                    if u != 0.0 {
+                        self.check_way(("motion", name), i, u)?;
+                    }
+                    moved.insert(D * node + i, u);
+                }
             }
         }
         Ok(())
@@ -196,16 +201,29 @@ impl<const D: usize> Driver<D> {
     /// The degree of freedom along which a force drives a tool.
     fn pushed(&self, name: &str, axis: Axis, force: f64) -> Result<usize, ModelError> {
         let node = self.tool_node(tool_index(&self.tools, name)?);
-        let translations = self.measure.rigid_modes(&[0.0; D]);
-        let along = |m: &[f64; D]| m.get(axis.index()) == Some(&1.0);
-        if !translations.iter().any(along) {
-            return Err(ModelError::OutOfRange {
-                what: format!("force along {} on tool {name:?}", axis_letter(axis.index())),
-                value: force,
-                expected: "none: the analysis lets no tool move along it",
-            });
-        }
+        self.check_way(("force", name), axis.index(), force)?;
         Ok(D * node + axis.index())
+    }
+
+    /// Whether the analysis lets a tool move along an axis.
+    ///
+    /// # Errors
+    /// [`ModelError::OutOfRange`] of the motion or force that is told, which makes a tool of revolution grow.
+    fn check_way(
+        &self,
+        (what, tool): (&str, &str),
+        axis: usize,
+        value: f64,
+    ) -> Result<(), ModelError> {
+        let translations = self.measure.rigid_modes(&[0.0; D]);
+        if translations.iter().any(|m| m.get(axis) == Some(&1.0)) {
+            return Ok(());
+        }
+        Err(ModelError::OutOfRange {
+            what: format!("{what} along {} of tool {tool:?}", axis_letter(axis)),
+            value,
+            expected: "none: the analysis lets no tool move along it, as one of revolution would grow",
+        })
     }
 
     /// The unit vector along an axis of any length, about which a tool is to turn as is told.

@@ -18,7 +18,7 @@ mod ties;
 mod unjoined;
 
 use super::Given;
-use super::entries::{Action, Analysis, Deck, Method, Shape};
+use super::entries::{Action, Analysis, Deck, Method};
 use super::finding::{Class, Findings};
 use crate::contact::{ContactSolver, GaussSeidel, Penalty, SemismoothNewton, Uzawa};
 use crate::driver::{
@@ -353,31 +353,6 @@ fn in_plane_stress(deck: &Deck, given: &Given, findings: &mut Findings) {
     }
 }
 
-/// A ball in an axisymmetric analysis is one on the axis only.
-fn balls_off_axis(deck: &Deck, findings: &mut Findings) {
-    if deck.analysis != Analysis::Axisymmetric {
-        return;
-    }
-    let is_ball = |name: &String| {
-        let own = deck.tools.iter().find(|t| t.name.value == *name);
-        own.is_some_and(|t| matches!(t.shape.value, Shape::Ball(.., "sphere")))
-    };
-    for condition in deck.steps.iter().flat_map(|s| &s.conditions) {
-        let (Action::Tool(Some(motion), _) | Action::Push(_, Some(motion))) = &condition.action
-        else {
-            continue;
-        };
-        if motion[0] != 0.0 && is_ball(&condition.on.value) {
-            findings.error_with(
-                &condition.span,
-                "a sphere that leaves the axis of symmetry is a torus",
-                "moved along x",
-                "move it along y, or give a `cylinder`, whose section this is",
-            );
-        }
-    }
-}
-
 /// A limit load is that of loads alone.
 fn heated_collapse(deck: &Deck, findings: &mut Findings) {
     if !deck.steps.iter().any(|s| s.until_collapse) {
@@ -411,7 +386,6 @@ fn heated_collapse(deck: &Deck, findings: &mut Findings) {
 fn unfinished(deck: &Deck, given: &Given, findings: &mut Findings) {
     in_plane_stress(deck, given, findings);
     heated_collapse(deck, findings);
-    balls_off_axis(deck, findings);
     let Some(finite) = &deck.finite else { return };
     let mut refuse = |problem: &str, remedy: &str| {
         findings.error_with(

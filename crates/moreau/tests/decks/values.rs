@@ -510,7 +510,15 @@ step = [{{ name = "s", increments = 1, fix = [{{ on = "b.bottom", u = ["y"] }}],
         ("move = [0, -0.1], moment = 0", "moment on tool \"p\" is 0,"),
         (
             "force = [-5000, 0]",
-            "force along x on tool \"p\" is -5000,",
+            "force along x of tool \"p\" is -5000,",
+        ),
+        (
+            "move = [0.2, -0.1]",
+            "motion along x of tool \"p\" is 0.2, expected none",
+        ),
+        (
+            "force = [0, -100], move = [0.2, 0]",
+            "motion along x of tool \"p\" is 0.2, expected none",
         ),
     ] {
         let text = text(what);

@@ -343,10 +343,13 @@ fn forces_that_nothing_stands_up_to_are_refused_by_name() {
         0.2,
     );
     let radial = supports().push("ball", Axis::X, 10.0);
-    assert!(matches!(
-        refused(&mut round, &radial),
-        ModelError::OutOfRange { .. }
-    ));
+    let grows = supports().tool("ball", [0.1, -0.1]);
+    for (step, at) in [(radial, 10.0), (grows, 0.1)] {
+        match refused(&mut round, &step) {
+            ModelError::OutOfRange { value, .. } => assert_eq!(value, at),
+            other => panic!("{other:?}"),
+        }
+    }
     assert_eq!(round.increments(), 0);
 }
 

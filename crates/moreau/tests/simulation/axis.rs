@@ -93,7 +93,7 @@ fn nothing_crosses_the_axis() {
         moved.is_none()
             && findings
                 .render("deck", &ball(1.0), false)
-                .contains("is a torus")
+                .contains("motion along x of tool \"cone\" is 1, expected none")
     );
     finish(simulation(&ball(0.0)));
     // A force along the axis is one of points.
