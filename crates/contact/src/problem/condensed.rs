@@ -6,7 +6,6 @@ use crate::error::{expect_finite, expect_sizes, expect_symmetric};
 use moreau_algebra::DenseCholesky;
 use moreau_laws::{Friction, Local, Status};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix2, Vector2};
-use std::cmp::Ordering;
 
 /// Eigenvalue of S, over its largest diagonal, below which it is rounding.
 const FAINT: f64 = 1e-9;
@@ -123,11 +122,10 @@ impl<const D: usize> CondensedProblem<D> {
             ("Delassus operator's columns", operator.ncols(), size),
         ])?;
         expect_symmetric("Delassus operator", &operator)?;
-        let singular = |component| ContactError::Indefinite {
+        let stiffness = inverse(&operator).ok_or_else(|| ContactError::Indefinite {
             what: "Delassus operator",
-            component,
-        };
-        let stiffness = inverse(operator).map_err(singular)?;
+            component: breakdown(&operator),
+        })?;
         let zero = vec![Local::zeros(); laws.len()];
         Self::new(stiffness, DVector::zeros(size), free.to_vec(), laws, zero)
     }
@@ -242,8 +240,20 @@ impl<const D: usize> CondensedProblem<D> {
     /// # Errors
     /// [`ContactError::Floating`] if S is singular: the bodies are held by contact alone.
     pub fn delassus(&self) -> Result<LocalProblem<D>, ContactError> {
-        let operator = inverse(self.stiffness.clone())
-            .map_err(|component| ContactError::Floating { component })?;
+        self.local().map_err(|error| match error {
+            ContactError::Singular => ContactError::Floating {
+                component: breakdown(&self.stiffness),
+            },
+            other => other,
+        })
+    }
+
+    /// [`Self::delassus`], without where S breaks down.
+    ///
+    /// # Errors
+    /// [`ContactError::Singular`] if S is.
+    pub(crate) fn local(&self) -> Result<LocalProblem<D>, ContactError> {
+        let operator = inverse(&self.stiffness).ok_or(ContactError::Singular)?;
         let free = split::<D>(&(&operator * &self.load));
         let free = free.iter().zip(&self.origin).map(|(w, g)| w + g).collect();
         LocalProblem::new(BlockMatrix::from_dense(&operator)?, free, self.laws.clone())
@@ -363,36 +373,31 @@ impl<const D: usize> CondensedProblem<D> {
     }
 }
 
-/// Inverse of a symmetric positive definite matrix, or the first component at which it is not.
-fn inverse(a: DMatrix<f64>) -> Result<DMatrix<f64>, usize> {
+/// Inverse of a symmetric matrix; `None` if it is not positive definite.
+fn inverse(a: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     if a.is_empty() {
-        return Ok(a); // Nothing touches.
+        return Some(a.clone()); // Nothing touches.
     }
-    // A pivot at rounding level is a rigid motion, not a stiffness.
-    let least = 1e-13 * a.diagonal().amax();
-    factor(a, least).map(|factor| factor.inverse())
+    regular(a.clone(), least_pivot(a)).map(|factor| factor.inverse())
 }
 
-/// Cholesky's factor of a symmetric matrix, of which the lower triangle is read, or the first component whose pivot is not
-/// above `least`: the leading part before it is regular.
-fn factor(mut a: DMatrix<f64>, least: f64) -> Result<Cholesky<f64, Dyn>, usize> {
-    for j in 0..a.ncols() {
-        for k in 0..j {
-            let part = -a[(j, k)];
-            let (mut own, before) = a.columns_range_pair_mut(j, k);
-            own.rows_range_mut(j..)
-                .axpy(part, &before.rows_range(j..), 1.0);
-        }
-        let pivot = a[(j, j)];
-        // What is no number is no pivot either.
-        if pivot.partial_cmp(&least) != Some(Ordering::Greater) {
-            return Err(j);
-        }
-        a[(j, j)] = pivot.sqrt();
-        let mut below = a.view_range_mut(j + 1.., j);
-        below /= pivot.sqrt();
-    }
-    Ok(Cholesky::pack_dirty(a))
+/// A pivot at rounding level is a rigid motion, not a stiffness.
+fn least_pivot(a: &DMatrix<f64>) -> f64 {
+    1e-13 * a.diagonal().amax()
+}
+
+/// The factor of a matrix, if all of its pivots are above the least.
+fn regular(a: DMatrix<f64>, least: f64) -> Option<Cholesky<f64, Dyn>> {
+    let factor = a.cholesky();
+    factor.filter(|factor| factor.l_dirty().diagonal().amin().powi(2) > least)
+}
+
+/// The first component at which a matrix is not positive definite.
+fn breakdown(a: &DMatrix<f64>) -> usize {
+    // The leading parts of a regular one are regular.
+    let sizes: Vec<usize> = (1..=a.nrows()).collect();
+    let leading = |size: usize| a.view((0, 0), (size, size)).into_owned();
+    sizes.partition_point(|&size| regular(leading(size), least_pivot(a)).is_some())
 }
 
 #[cfg(test)]

@@ -185,7 +185,7 @@ pub(super) fn newton<const D: usize>(
                 };
                 match swept {
                     Ok(u) => break problem.relative(&u),
-                    Err(ContactError::Floating { .. }) => {
+                    Err(ContactError::Singular) => {
                         floats = true;
                         break nearest_held(problem, &begun).ok_or(ContactError::Singular)?;
                     }
@@ -244,7 +244,7 @@ impl<const D: usize> Newton<'_, D> {
     /// Displacements after sweeps of another method, with the springs in series with the structure.
     fn sweep(&self, t: &[Local<D>]) -> Result<Vec<Local<D>>, ContactError> {
         let p = self.problem;
-        let form = p.delassus()?.in_series(|i| self.springs[i]);
+        let form = p.local()?.in_series(|i| self.springs[i]);
         // A sweep costs 2 n² operations and a step up to ⅔ n³: no more of them than the attempts
         // with all parts may have taken, or a problem that neither solves takes a hundred times as
         // long as to cut the increment. What takes a tenth of a second is never too much.
