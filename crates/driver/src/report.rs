@@ -122,8 +122,8 @@ pub struct IncrementReport {
     /// with negative eigenvalues the eigenvector of that nearest to zero, and at a limit of the load the direction of the
     /// path. `None` in all others.
     pub mode: Option<Vec<f64>>,
-    /// The load factor at a limit that has been passed in this increment, along the path of equilibria: loads that
-    /// rose fall.
+    /// The load factor before this increment, if a limit has been passed in it along the path of equilibria: loads that rose
+    /// until then fall. It is the largest that was in balance; where the increments are long, the limit is above it.
     pub limit: Option<f64>,
     /// The node that moves most, and how far \[mm\], where tools or supports move the body and it comes to rest far from
     /// where it was, in as short an increment as there may be: between the two is no path of equilibria that was found.

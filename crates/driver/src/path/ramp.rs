@@ -66,15 +66,9 @@ impl Yielded {
         })
     }
 
-    /// λ at a limit that two increments in a row have passed, after the first of which it was `between`: the peak of a
-    /// parabola over the work. `None` unless λ rose and falls.
-    fn peak(first: Self, last: Self, between: f64) -> Option<f64> {
-        let passed = first.stiffness > 0.0 && last.stiffness < 0.0;
-        passed.then(|| {
-            let bend = (last.stiffness - first.stiffness) / (0.5 * (first.work + last.work));
-            let slope = first.stiffness + 0.5 * bend * first.work;
-            between - 0.5 * slope * slope / bend
-        })
+    /// Whether λ rose in the first of two increments and fell in the last.
+    fn passes_limit(first: Self, last: Self) -> bool {
+        first.stiffness > 0.0 && last.stiffness < 0.0
     }
 
     /// Where two increments in a row tend to if λ = λ∞ − A/(w + w₀) over the work w: the square root of
@@ -530,11 +524,10 @@ impl<const D: usize> Driver<D> {
                     ramp.converged(&report, before, work);
                     if self.has_large_strains()
                         && let [Some(last), Some(first)] = ramp.yielded
+                        && Yielded::passes_limit(first, last)
                     {
-                        report.limit = Yielded::peak(first, last, before);
-                        if report.limit.is_some() {
-                            report.mode = self.path_mode();
-                        }
+                        report.limit = Some(before);
+                        report.mode = self.path_mode();
                     }
                     path.last = report.fraction - before;
                     path.peak = path.peak.max(report.fraction);
@@ -628,19 +621,6 @@ impl<const D: usize> Driver<D> {
 mod tests {
     use super::*;
 
-    /// λ = 0.9 − (w − 1)²: of a parabola the peak is exact.
-    #[test]
-    fn a_load_that_rises_and_falls_has_a_peak() {
-        let load = |w: f64| 0.9 - (w - 1.0) * (w - 1.0);
-        let of = |before: f64, after: f64| {
-            Yielded::between(load(before), load(after), after - before).expect("work is done")
-        };
-        for [a, b, c] in [[0.5, 0.9, 1.2], [0.7, 1.1, 1.5]] {
-            let peak = Yielded::peak(of(a, b), of(b, c), load(b)).expect("passed");
-            assert!((peak - 0.9).abs() < 1e-14, "{peak}");
-        }
-    }
-
     /// λ = 1 − A/(w + w₀) in three steps of λ, whose ends and not whose means would be a hundredth off.
     #[test]
     fn two_increments_of_a_hyperbola_tend_to_its_limit() {
@@ -651,7 +631,7 @@ mod tests {
         };
         let limit = Yielded::limit(of(0.70, 0.72), of(0.72, 0.74)).expect("it yields");
         assert!((limit - 1.0).abs() < 1e-3, "{limit}");
-        assert_eq!(Yielded::peak(of(0.70, 0.72), of(0.72, 0.74), 0.72), None);
+        assert!(!Yielded::passes_limit(of(0.70, 0.72), of(0.72, 0.74)));
         assert_eq!(Yielded::between(0.2, 0.4, 0.0), None);
         let elastic = Yielded::between(0.0, 0.2, 3.0).expect("work is done");
         assert_eq!(Yielded::limit(elastic, elastic), None);

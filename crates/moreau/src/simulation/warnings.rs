@@ -486,7 +486,8 @@ impl Worst {
                 self.giving_way(&at)
             ),
             Kind::Limit => format!(
-                "the load passes its limit in increment {when}, at {} of the step: what follows is the path of \
+                "the load passes its limit in increment {when}, after {} of the step, the largest load that was in \
+                 balance: what follows is the path of \
                  equilibria under loads that fall and rise again, which a body under its full load leaves at once, \
                  snapping to where that load is balanced again{}",
                 shown(self.number(0), 6),
@@ -700,8 +701,8 @@ impl Worst {
             ),
         };
         format!(
-            "buckling, which small displacements do not see: it begins, if not earlier by plastic flow, \
-             at {} times the stresses at the end of step \"{step}\", with node {index} at {at} moving \
+            "buckling, which small displacements do not see: it begins, if not earlier by plastic flow or by pressures \
+             and tools that turn with the surface, at {} times the stresses at the end of step \"{step}\", with node {index} at {at} moving \
              most, along {direction}; {what}: load less, or hold it against that motion",
             shown(factor, 3)
         )

@@ -90,3 +90,50 @@ fn a_stress_at_the_start_is_let_go_before_a_limit_load() {
         "{collapse}"
     );
 }
+
+/// A bar that does not harden, pulled: the force σ_y a shrinks with its section from where it begins to flow, at
+/// exp(−σ_y/E) σ_y A. Told is what was in balance, and no more.
+#[test]
+fn a_limit_that_is_told_was_carried() {
+    for increments in [3, 7, 10] {
+        let mut pulled = simulation(&format!(
+            r#"units = "mm-N-MPa"
+analysis = "axisymmetric"
+strain = "finite"
+[[mesh.block]]
+name = "bar"
+element = "quad8"
+x = [0, 2]
+y = [0, 10]
+cells = [1, 2]
+[[material]]
+on = "bar"
+young = 200000
+poisson = 0.3
+yield-stress = 300
+[[step]]
+name = "pull"
+increments = {increments}
+fix = [{{ on = "bar.bottom", u = ["y"] }}]
+load = [{{ on = "bar.top", traction = [0, 600] }}]
+"#
+        ));
+        for _ in 0..increments + 2 {
+            advance(&mut pulled);
+        }
+        let exact = 0.5 * (-300.0f64 / 200e3).exp();
+        let warnings = pulled.outcome().warnings;
+        let told = warnings.iter().find(|w| w.contains("passes its limit"));
+        let told = told.unwrap_or_else(|| panic!("{increments}: {warnings:?}"));
+        let (_, after) = told.split_once("after ").expect("a load factor");
+        let factor: f64 = after
+            .split(' ')
+            .next()
+            .and_then(|f| f.parse().ok())
+            .expect("a number");
+        assert!(
+            factor <= exact * (1.0 + 1e-6) && factor > 0.99 * exact,
+            "{increments}: {told}"
+        );
+    }
+}
