@@ -16,9 +16,10 @@ use std::ops::Range;
 use super::branches::{Branches, at_once};
 use crate::symbolic::{Supernode, Symbolic};
 
-/// Parts of a supernode of the trunk of which each thread makes some, and the least columns of one: products with
-/// fewer spend their time on getting ready.
+/// Parts of a supernode of the trunk of which each thread makes some.
 const PARTS: usize = 16;
+
+/// Columns that a product has, if there are so many, and a part has at least: with fewer it spends its time on getting ready.
 const NARROW: usize = 96;
 
 /// Rows below a triangle that are solved for at once.
@@ -87,28 +88,33 @@ impl Numeric<'_> {
     /// # Errors
     /// The row of a pivot that is not positive.
     pub(super) fn factorise(self, branches: &Branches, numbers: &mut [f64]) -> Result<(), usize> {
+        if branches.ranges.is_empty() {
+            return self.branch(0..self.symbolic.count(), 0, numbers);
+        }
         self.branches(branches, numbers)?;
-        let mut room = Room::new(self.widest(branches.trunk.iter().copied()));
+        let part = |width: usize| width.min(width.div_ceil(PARTS).max(NARROW));
+        let mut room = Room::new(part(self.widest(branches.trunk.iter().copied())));
         let mut place = vec![0; self.symbolic.pattern.size()];
-        let mut products = Vec::new();
         for &s in &branches.trunk {
             let node = self.symbolic.supernode(s);
+            let part = part(node.width);
             let (before, own) = numbers[..node.values.end].split_at_mut(node.values.start);
             let before = Before {
                 from: 0,
                 numbers: before,
             };
             node.number(&mut place);
-            let part = match branches.ranges.is_empty() {
-                true => node.width,
-                false => node.width.div_ceil(PARTS).max(NARROW),
-            };
             let height = node.width + node.rows.len();
-            products.resize_with(node.width.div_ceil(part).max(products.len()), Vec::new);
-            let parts = own.chunks_mut(part * height).zip(&mut products);
-            at_once(parts.enumerate().collect(), |(k, (own, products))| {
-                let columns = k * part..node.width.min((k + 1) * part);
-                self.put_together((s, &node), columns, before, &place, own, products);
+            let parts = own.chunks_mut(part * height).enumerate();
+            at_once(parts.collect(), |(k, own): (usize, &mut [f64])| {
+                let first = node.start + k * part;
+                let columns = Columns {
+                    range: first..first + own.len() / height,
+                    height,
+                    place: &place,
+                    own,
+                };
+                self.put_together(s, columns, before, &mut Vec::new());
             });
             room.factorise(&node, part, own)?;
         }
@@ -159,74 +165,75 @@ impl Numeric<'_> {
                 numbers: before,
             };
             node.number(&mut place);
-            self.put_together(
-                (s, &node),
-                0..node.width,
-                before,
-                &place,
+            let columns = Columns {
+                range: node.start..node.start + node.width,
+                height: node.width + node.rows.len(),
+                place: &place,
                 own,
-                &mut products,
-            );
+            };
+            self.put_together(s, columns, before, &mut products);
             room.factorise(&node, node.width, own)?;
         }
         Ok(())
     }
 
     /// Some columns of a supernode: those of the matrix, less what the supernodes before it take from them.
-    fn put_together(
-        self,
-        (s, node): (usize, &Supernode<'_>),
-        columns: Range<usize>,
-        before: Before<'_>,
-        place: &[u32],
-        own: &mut [f64],
-        products: &mut Vec<f64>,
-    ) {
-        let height = node.width + node.rows.len();
-        let first = node.start + columns.start;
+    fn put_together(self, s: usize, mut to: Columns<'_>, before: Before<'_>, room: &mut Vec<f64>) {
         let pattern = &self.symbolic.pattern;
-        own.fill(0.0);
-        for (j, own) in own.chunks_exact_mut(height).enumerate() {
-            let range = pattern.range(first + j);
-            for (&i, v) in pattern.rows()[range.clone()]
-                .iter()
-                .zip(&self.values[range])
-            {
-                own[place[i as usize] as usize] = *v;
+        to.own.fill(0.0);
+        for (j, own) in to.range.clone().zip(to.own.chunks_exact_mut(to.height)) {
+            let rows = &pattern.rows()[pattern.range(j)];
+            for (&i, v) in rows.iter().zip(&self.values[pattern.range(j)]) {
+                own[to.place[i as usize] as usize] = *v;
             }
         }
         for &d in self.updates.of(s) {
             let other = self.symbolic.supernode(d as usize);
-            let from = other.rows.partition_point(|&i| (i as usize) < first);
-            let rows = &other.rows[from..];
-            let wide = rows.partition_point(|&i| (i as usize) < node.start + columns.end);
-            if wide == 0 {
-                continue;
-            }
-            let stored = other.width + other.rows.len();
-            let l =
-                &before.numbers[other.values.start - before.from..other.values.end - before.from];
-            let l = MatRef::from_column_major_slice(l, stored, other.width);
+            let values = other.values.start - before.from..other.values.end - before.from;
+            to.subtract(&other, &before.numbers[values], room);
+        }
+    }
+}
+
+/// Columns of a supernode that are put together.
+struct Columns<'a> {
+    range: Range<usize>,
+    /// Number of rows, and where they are.
+    height: usize,
+    place: &'a [u32],
+    own: &'a mut [f64],
+}
+
+impl Columns<'_> {
+    /// Less what another supernode takes from them: the product of its rows, and those of them that are among the columns.
+    fn subtract(&mut self, other: &Supernode<'_>, values: &[f64], room: &mut Vec<f64>) {
+        let l =
+            MatRef::from_column_major_slice(values, other.width + other.rows.len(), other.width);
+        let before = |column: usize| other.rows.partition_point(|&i| (i as usize) < column);
+        let (start, end) = (before(self.range.start), before(self.range.end));
+        for from in (start..end).step_by(NARROW) {
+            let (rows, wide) = (&other.rows[from..], NARROW.min(end - from));
             let below = l.subrows(other.width + from, rows.len());
             let beside = below.subrows(0, wide).transpose();
-            let places = [rows[0], rows[rows.len() - 1]].map(|i| place[i as usize] as usize);
-            if places[1] - places[0] + 1 == rows.len() {
+            let column = |k: usize| rows[k] as usize - self.range.start;
+            let row = |k: usize| self.place[rows[k] as usize] as usize;
+            if row(rows.len() - 1) - row(0) + 1 == rows.len() {
                 // They follow each other here, too. What comes to lie above the diagonal is not read.
-                let own = MatMut::from_column_major_slice_mut(own, height, columns.len());
-                let own = own.submatrix_mut(places[0], rows[0] as usize - first, rows.len(), wide);
+                let (height, width) = (self.height, self.range.len());
+                let (at, first) = (row(0), column(0));
+                let own = MatMut::from_column_major_slice_mut(self.own, height, width);
+                let own = own.submatrix_mut(at, first, rows.len(), wide);
                 matmul(own, Accum::Add, below, beside, -1.0, Par::Seq);
                 continue;
             }
             let size = rows.len() * wide;
-            products.resize(size.max(products.len()), 0.0);
-            let products = &mut products[..size];
-            let product = MatMut::from_column_major_slice_mut(products, rows.len(), wide);
+            room.resize(size.max(room.len()), 0.0);
+            let product = MatMut::from_column_major_slice_mut(&mut room[..size], rows.len(), wide);
             matmul(product, Accum::Replace, below, beside, 1.0, Par::Seq);
-            for (k, products) in products.chunks_exact(rows.len()).enumerate() {
-                let column = rows[k] as usize - first;
-                let own = &mut own[column * height..][..height];
-                for (&i, product) in rows[k..].iter().zip(&products[k..]) {
-                    own[place[i as usize] as usize] -= product;
+            for (k, product) in room[..size].chunks_exact(rows.len()).enumerate() {
+                let own = &mut self.own[column(k) * self.height..][..self.height];
+                for (&i, product) in rows[k..].iter().zip(&product[k..]) {
+                    own[self.place[i as usize] as usize] -= product;
                 }
             }
         }
