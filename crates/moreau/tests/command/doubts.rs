@@ -148,7 +148,7 @@ tools = [{ name = "t", move = [0, -0.8] }]
         ]],
     );
     let after = warnings[0]
-        .split("plastic flow, at ")
+        .split("with the surface, at ")
         .nth(1)
         .expect("a factor");
     let factor: f64 = after
