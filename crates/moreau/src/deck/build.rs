@@ -3,6 +3,7 @@
 
 mod amplitudes;
 mod axes;
+mod collapse;
 mod conditions;
 mod flat;
 mod groups;
@@ -210,6 +211,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     conditions::driven::<D>(deck, findings);
     conditions::heat(deck, &groups, findings);
     amplitudes::check(deck, &groups, findings);
+    collapse::check((deck, &groups), &driver, &stages, findings);
     conditions::inner_surfaces(deck, &groups, findings);
     slips::warn(deck, &groups, surface, findings);
     flat::warn(deck, &groups, findings);
@@ -353,39 +355,9 @@ fn in_plane_stress(deck: &Deck, given: &Given, findings: &mut Findings) {
     }
 }
 
-/// A limit load is that of loads alone.
-fn heated_collapse(deck: &Deck, findings: &mut Findings) {
-    if !deck.steps.iter().any(|s| s.until_collapse) {
-        return;
-    }
-    let mut all = deck.steps.iter().flat_map(|s| &s.conditions);
-    if let Some(c) = all.find(|c| matches!(c.action, Action::Temperature(_))) {
-        findings.error_with(
-            &c.span,
-            "until = \"collapse\" with a temperature: what it strains changes no limit load",
-            "not with this",
-            "leave out the temperature",
-        );
-    }
-    let first = deck.steps.first().filter(|step| step.until_collapse);
-    let stressed = deck
-        .initial
-        .iter()
-        .find(|i| i.stress.iter().any(Option::is_some));
-    if let (Some(_), Some(initial)) = (first, stressed) {
-        findings.error_with(
-            &initial.span,
-            "until = \"collapse\" in the first step with a stress at the start, which what holds it would falsify",
-            "is held until the end of the first step",
-            "begin with a step that lets it go, of the same `fix` and without loads, or with those that balance it",
-        );
-    }
-}
-
 /// What large strains do not go with.
 fn unfinished(deck: &Deck, given: &Given, findings: &mut Findings) {
     in_plane_stress(deck, given, findings);
-    heated_collapse(deck, findings);
     let Some(finite) = &deck.finite else { return };
     let mut refuse = |problem: &str, remedy: &str| {
         findings.error_with(

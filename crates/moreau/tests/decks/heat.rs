@@ -85,11 +85,53 @@ fn what_is_wrong_with_temperatures_is_told() {
     let (_, _, findings) = open(&twice);
     let out = super::flat(&findings.render("deck.toml", &twice, false));
     assert!(out.contains("a parameter is called \"x\""), "{out}");
-    let collapse = load("on = \"block\", temperature = 10")
-        .replace("increments = 20", "increments = 20\nuntil = \"collapse\"");
-    let (_, _, findings) = open(&collapse);
-    let out = super::flat(&findings.render("deck.toml", &collapse, false));
-    assert!(out.contains("changes no limit load"), "{out}");
+}
+
+/// A load factor is that of loads alone: what heats beside them is refused, and what stays as warm as it was is not.
+#[test]
+fn a_step_to_collapse_holds_the_temperature() {
+    let until =
+        |text: &str| text.replace("increments = 20", "increments = 20\nuntil = \"collapse\"");
+    let said = |text: &str| {
+        let (_, _, findings) = open(text);
+        super::flat(&findings.render("deck.toml", text, false))
+    };
+    let at_once = said(&until(&load("on = \"block\", temperature = 10")));
+    for word in [
+        "the temperature of \"block\" changes from 0 to 10 K in a step with until",
+        "a step before this one that brings it there",
+    ] {
+        assert!(at_once.contains(word), "{word} in {at_once}");
+    }
+    let after = |first: &str, last: &str| {
+        let fix =
+            "fix = [{ on = \"block.bottom\", u = [\"y\"] }, { on = \"block.left\", u = [\"x\"] }]";
+        let (head, _) = DECK.split_once("[[step]]").expect("steps");
+        let head = head.replace(YIELD, "yield-stress = 300.0\nexpansion = 1.2e-5");
+        let step = |name: &str, load: &str, more: &str| {
+            format!("[[step]]\nname = \"{name}\"\nincrements = 2\n{more}\n{fix}\nload = [{load}]\n")
+        };
+        let push = "{ on = \"block.top\", pressure = 1000.0 }";
+        let last = format!("{push}{last}");
+        let mut text = format!("{head}{}", step("warm", first, ""));
+        text += &step("press", &last, "until = \"collapse\"");
+        said(&text)
+    };
+    let warm = "{ on = \"block\", temperature = \"= 2 * x\" }";
+    let held = after(warm, &format!(", {warm}"));
+    assert!(!held.contains("until"), "{held}");
+    let other = after(warm, ", { on = \"block\", temperature = \"= 2.1 * x\" }");
+    assert!(
+        other.contains("the temperature of \"block\" changes from"),
+        "{other}"
+    );
+    let released = after(warm, "");
+    for word in [
+        "takes \"block\" back to where it was free of stress",
+        "or a step before this one",
+    ] {
+        assert!(released.contains(word), "{word} in {released}");
+    }
 }
 
 #[test]

@@ -9,6 +9,7 @@ mod cornered;
 mod driven;
 mod flat;
 mod freed;
+mod heated;
 mod interrupted;
 mod joints;
 mod keys;
