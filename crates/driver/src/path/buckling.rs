@@ -47,7 +47,7 @@ type Compliance<'a> = dyn FnMut(&mut System, Vec<f64>) -> Option<Vec<f64>> + 'a;
 
 impl<const D: usize> Driver<D> {
     /// The nearest elastic instability under the stresses of now. `None` where these have none, before
-    /// the first increment, where contacts leave a body free to slide, and where conjugate
+    /// the first increment, where contacts leave a body free to move, as one that slides or topples, and where conjugate
     /// gradients stand for the factor.
     ///
     /// K is that of the elastic bodies: flow lowers it, and makes the structure buckle earlier.
@@ -60,7 +60,8 @@ impl<const D: usize> Driver<D> {
     }
 
     fn instability_under(&mut self, loading: &Loading<D>) -> Option<Buckling<D>> {
-        if self.state.increment == 0 {
+        // What nothing resists has no stiffness that stresses could take away.
+        if self.state.increment == 0 || !self.free_motions().is_empty() {
             return None;
         }
         // Where contact points stand is that of now, also in a run that was just resumed.

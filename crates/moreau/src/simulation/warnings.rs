@@ -196,24 +196,8 @@ impl Warnings {
         if driver.has_large_strains() {
             self.distorted(driver, report.increment);
         }
-        if let Some(Between {
-            contact,
-            node,
-            depth,
-            facet,
-            position,
-            pressed,
-        }) = driver.between_nodes()
-        {
-            let mut numbers = vec![depth, facet, pressed];
-            numbers.extend(node.map(|node| node as f64));
-            let at = (contact, position.to_vec());
-            self.note(Kind::Between, numbers, at, report.increment);
-        }
-        if let Some(beside) = driver.beside_contacts() {
-            let numbers = vec![beside.depth, beside.count as f64, beside.contact as f64];
-            let at = (beside.node, beside.position.to_vec());
-            self.note(Kind::Beside, numbers, at, report.increment);
+        if !to_collapse {
+            self.within_tools(driver, report.increment);
         }
         if let Some(ahead) = driver.bears_ahead() {
             let numbers = vec![ahead.distance, ahead.pressed, ahead.contact as f64];
@@ -231,6 +215,29 @@ impl Warnings {
         }
         self.done = report.fraction;
         self.undecided(driver, report);
+    }
+
+    /// Takes note of what tools reach behind the surfaces that touch them.
+    fn within_tools<const D: usize>(&mut self, driver: &Driver<D>, when: usize) {
+        if let Some(Between {
+            contact,
+            node,
+            depth,
+            facet,
+            position,
+            pressed,
+        }) = driver.between_nodes()
+        {
+            let mut numbers = vec![depth, facet, pressed];
+            numbers.extend(node.map(|node| node as f64));
+            let at = (contact, position.to_vec());
+            self.note(Kind::Between, numbers, at, when);
+        }
+        if let Some(beside) = driver.beside_contacts() {
+            let numbers = vec![beside.depth, beside.count as f64, beside.contact as f64];
+            let at = (beside.node, beside.position.to_vec());
+            self.note(Kind::Beside, numbers, at, when);
+        }
     }
 
     /// Takes note of what is too much for one increment in which the body yields, with how many of its step would do.

@@ -17,6 +17,7 @@ mod laws;
 mod leaps;
 mod let_go;
 mod limits;
+mod mechanisms;
 mod methods;
 mod narrow;
 mod nearby;
