@@ -2,6 +2,7 @@
 
 use super::{INPUT_ERROR, NOT_CONVERGED, run, say, tell};
 use crate::deck::{Deck, Given, Grid};
+use crate::driver::Collapse;
 use crate::numbers::shown;
 use crate::simulation::{Outcome, RunStatus, Simulation};
 use std::ops::ControlFlow;
@@ -161,20 +162,47 @@ fn outcome(deck: &Deck, what: &str) -> Option<Outcome> {
     }
 }
 
-/// The results of interest: those of which something is expected, or all.
-fn table(deck: &Deck, own: &Outcome, all: &[(Finer, [Outcome; 3])]) {
-    let expected = deck.expectations.iter().map(|e| e.column.value.as_str());
-    let mut names: Vec<&str> = expected.collect();
+/// The limit load of a run that ends in collapse, with its name.
+fn limit(outcome: &Outcome) -> Option<(String, f64)> {
+    let (step, collapse) = outcome.collapse.as_ref()?;
+    let name = format!("load factor of step \"{step}\"");
+    Some((name, collapse.load_factor))
+}
+
+/// The results of interest by name: the limit load, and those of which something is expected, or all. Displacements of a
+/// mechanism have no size, and tend to nothing.
+fn names(deck: &Deck, own: &Outcome) -> Vec<String> {
+    let expected = deck.expectations.iter().map(|e| &e.column.value);
+    let mut names: Vec<String> = expected.cloned().collect();
     if names.is_empty() {
-        names = own.values.iter().map(|v| v.0.as_str()).collect();
+        names = own.values.iter().map(|v| v.0.clone()).collect();
     }
-    let value = |outcome: &Outcome, name: &str| {
-        let verdict = outcome.verdicts.iter().find(|v| v.column == name);
-        let listed = outcome.values.iter().find(|v| v.0 == name);
-        verdict.map(|v| v.found).or(listed.map(|v| v.1))
-    };
+    if let Some((name, _)) = limit(own) {
+        names.retain(|name| !name.starts_with("u."));
+        names.insert(0, name);
+    }
+    names
+}
+
+/// A result of a run by its name.
+fn value(outcome: &Outcome, name: &str) -> Option<f64> {
+    let limit = limit(outcome).filter(|limit| limit.0 == name);
+    let verdict = outcome.verdicts.iter().find(|v| v.column == name);
+    let listed = outcome.values.iter().find(|v| v.0 == name);
+    let told = verdict.map(|v| v.found).or(listed.map(|v| v.1));
+    limit.map(|limit| limit.1).or(told)
+}
+
+/// The results of interest, and what they tend to.
+fn table(deck: &Deck, own: &Outcome, all: &[(Finer, [Outcome; 3])]) {
     let kind = |name: &str| name.split('.').next().map(str::to_owned);
-    for name in names {
+    let load_factor = limit(own).map(|limit| limit.0);
+    for name in &names(deck, own) {
+        // A plateau is followed until so much is left to be gained.
+        let rounding = match load_factor.as_ref() == Some(name) {
+            true => Collapse::FLAT,
+            false => ROUNDING,
+        };
         let alike = own.values.iter().filter(|v| kind(&v.0) == kind(name));
         let of = |outcome: &Outcome| value(outcome, name).unwrap_or(f64::NAN);
         let largest = alike.fold(of(own).abs(), |m, v| m.max(v.1.abs()));
@@ -191,7 +219,7 @@ fn table(deck: &Deck, own: &Outcome, all: &[(Finer, [Outcome; 3])]) {
         let (mut sum, mut known) = (of(own), true);
         for (finer, outcomes) in all {
             let values = outcomes.each_ref().map(of);
-            let limit = Limit::new(values, ROUNDING * largest);
+            let limit = Limit::new(values, rounding * largest);
             let (order, end) = match limit {
                 Limit::Reached => ("–".into(), shown(values[2], DIGITS)),
                 Limit::Seen { order, value } => {

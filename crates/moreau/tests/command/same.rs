@@ -179,6 +179,52 @@ fn algorithms_are_compared() {
     }
 }
 
+/// A limit load is what a deck to collapse is for, and known to what is left to be gained on its plateau; the displacements of its
+/// mechanism tend to nothing. The cylinder carries 2/√3 σ_y ln(b/a).
+#[test]
+fn a_limit_load_converges_and_its_mechanism_is_left_out() {
+    let deck = r#"units = "mm-N-MPa"
+analysis = "axisymmetric"
+mesh.block = [{ name = "b", element = "quad8", x = [100, 200], y = [0, 20], cells = [6, 1] }]
+material = [{ on = "b", young = 210e3, poisson = 0.3, yield-stress = 240.0 }]
+[[step]]
+name = "press"
+increments = 5
+until = "collapse"
+fix = [{ on = "b", u = ["y"] }]
+load = [{ on = "b.left", pressure = 300.0 }]
+"#;
+    let file = directory("limit").join("deck.toml");
+    fs::write(&file, deck).expect("a deck");
+    let output = moreau(&["converge", file.to_str().expect("a path")]);
+    let told = text(&output.stdout);
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{told}{}",
+        text(&output.stderr)
+    );
+    let tables: Vec<&str> = told.split("\n\n").skip(1).collect();
+    let headings = tables.iter().filter_map(|table| table.lines().next());
+    let headings: Vec<&str> = headings.collect();
+    assert_eq!(headings[0], "load factor of step \"press\"", "{told}");
+    assert!(
+        headings.contains(&"force.b.y") && !told.contains("\nu."),
+        "{told}"
+    );
+    assert!(!tables[0].contains("not seen"), "{told}");
+    let exact = 240.0 * 2.0 / 3f64.sqrt() * 2f64.ln() / 300.0;
+    for of in ["cells", "increments"] {
+        let row = tables[0]
+            .lines()
+            .find(|line| line.trim_start().starts_with(of));
+        let values = row.expect("a row").split_whitespace().skip(1).take(3);
+        for value in values.map(|value| value.parse::<f64>().expect("a number")) {
+            assert!((value / exact - 1.0).abs() < 1e-5, "{told}");
+        }
+    }
+}
+
 /// Springs by the penetration that is wanted: no node goes deeper, and the load is nearly exact.
 #[test]
 fn a_penetration_is_kept() {
