@@ -83,12 +83,15 @@ fn forces(results: &[(String, Outcome)]) {
     let Some((_, first)) = results.first() else {
         return;
     };
-    say!("\nforces at the end [{}]", first.units.force());
     let largest = first.values.iter().map(|v| v.1.abs()).fold(0.0, f64::max);
-    for (column, value) in first.values.iter().filter(|v| v.0.starts_with("force.")) {
-        if value.abs() <= 1e-9 * largest {
-            continue;
-        }
+    let acts = |v: &&(String, f64)| v.0.starts_with("force.") && v.1.abs() > 1e-9 * largest;
+    let acting: Vec<_> = first.values.iter().filter(acts).collect();
+    if acting.is_empty() {
+        say!("\nno forces at the end");
+        return;
+    }
+    say!("\nforces at the end [{}]", first.units.force());
+    for (column, value) in acting {
         say!("{column}");
         for (name, outcome) in results.iter().filter(|r| r.1.status == RunStatus::Done) {
             let found = outcome.values.iter().find(|v| v.0 == *column);

@@ -179,6 +179,26 @@ fn algorithms_are_compared() {
     }
 }
 
+/// Where nothing presses there is no table of forces to head.
+#[test]
+fn algorithms_without_forces_say_so() {
+    let deck = punched()
+        .replace("increments = 20", "increments = 1")
+        .replace("y = -0.2", "y = 0.0");
+    let deck = deck.split("[expect]").next().expect("a deck");
+    let at = directory("bench-free");
+    let file = at.join("deck.toml");
+    fs::write(&file, deck).expect("a deck");
+    let (file, out) = (file.to_str().expect("a path"), at.join("out"));
+    let output = moreau(&["bench", file, "--out", out.to_str().expect("a path")]);
+    let told = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    assert!(
+        told.contains("\nno forces at the end\n") && !told.contains("forces at the end ["),
+        "{told}"
+    );
+}
+
 /// A limit load is what a deck to collapse is for, and known to what is left to be gained on its plateau; the displacements of its
 /// mechanism tend to nothing. The cylinder carries 2/√3 σ_y ln(b/a).
 #[test]

@@ -225,6 +225,27 @@ fn a_table_on_what_the_step_before_held_or_left_free_is_refused() {
             );
         }
     }
+    // A step between that says nothing of the tool holds it, at a place that is no better known.
+    let rest = |first: &str| {
+        format!(
+            "{first}\n[[step]]\nname = \"rest\"\nincrements = 1\nfix = [{{ on = \"b\", u = [\"x\", \"y\"] }}]"
+        )
+    };
+    for (first, second, words) in [
+        (
+            &pushed,
+            "move = [0, -0.1]",
+            "the step before holds it along y where a force had left it, at a place that is known",
+        ),
+        (
+            &tool("moment = 5"),
+            "turn = 0.1",
+            "the step before holds it where a moment had turned it, at an angle that is known",
+        ),
+    ] {
+        let said = steps(&rest(first), &tool(&varied(second)));
+        assert!(said.contains(words) && !said.contains("free"), "{said}");
+    }
     // With a wrong beginning it is not told that it jumps from nothing.
     let wrong = steps(
         &moved,

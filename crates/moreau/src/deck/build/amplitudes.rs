@@ -119,16 +119,32 @@ fn tool_freed(deck: &Deck, before: &[StepEntry], condition: &ConditionEntry) -> 
     let all = before.iter().rev().flat_map(|step| of_group(step, on));
     let mut actions = all.map(|c| &c.action);
     let driven = |u: &[f64]| (0..u.len()).find(|&i| drives(deck, on, i));
+    // A step that says nothing of a tool holds it where it is.
+    let is_of_last = || {
+        before
+            .last()
+            .is_some_and(|step| of_group(step, on).next().is_some())
+    };
     match &condition.action {
         Action::Tool(Some(u), _) => {
             let last = actions.find(|a| matches!(a, Action::Push(..) | Action::Tool(Some(_), _)));
             let axis = driven(u).filter(|_| matches!(last, Some(Action::Push(..))))?;
-            Some(format!("leaves it free along {} at a place", AXES[axis]))
+            Some(match is_of_last() {
+                true => format!("leaves it free along {} at a place", AXES[axis]),
+                false => format!(
+                    "holds it along {} where a force had left it, at a place",
+                    AXES[axis]
+                ),
+            })
         }
         Action::Tool(None, Some(_)) => {
             let last = actions.find(|a| matches!(a, Action::Moment(_) | Action::Tool(_, Some(_))));
             let freed = matches!(last, Some(Action::Moment(_)));
-            freed.then(|| "leaves it free to turn at an angle".to_owned())
+            let why = match is_of_last() {
+                true => "leaves it free to turn at an angle",
+                false => "holds it where a moment had turned it, at an angle",
+            };
+            freed.then(|| why.to_owned())
         }
         _ => None,
     }
