@@ -1,3 +1,5 @@
+//! Cholesky factors of a size that several threads make, and solves with them; small ones are in tests of all engines.
+
 use super::branches::{Branches, LARGE, PART};
 use crate::common::laplacian;
 use crate::symbolic::Symbolic;
