@@ -9,7 +9,7 @@ use faer::sparse::linalg::cholesky::{simplicial, supernodal};
 use crate::engine::{Cost, TooLarge};
 use crate::pattern::Pattern;
 
-/// Operations from which on a factorisation runs on all threads: some seconds, for threads have to
+/// Operations from which on L D Lᵀ is made on all threads: some seconds, for in each dense product threads have to
 /// wait for each other, and on a busy machine long.
 const PARALLEL: f64 = 1e11;
 
@@ -148,7 +148,7 @@ impl Symbolic {
         })
     }
 
-    /// Threads for a numeric factorisation.
+    /// Threads for L D Lᵀ.
     pub(crate) fn par(&self) -> Par {
         match self.cost.operations > PARALLEL {
             true => all(),
