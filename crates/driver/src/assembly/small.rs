@@ -7,6 +7,24 @@ use moreau_laws::{BulkLaw, FlowPower};
 use moreau_mandel::{Sym2, Sym4};
 use nalgebra::Matrix3;
 
+/// What the points of a cell hand from the law to the forces and the stiffness. Of 27 points it is 10 kB: cleared for
+/// every cell, it would cost as much as the elastic law.
+pub struct Points {
+    strains: [Sym2; MAX_POINTS],
+    stresses: [Sym2; MAX_POINTS],
+    tangents: [Sym4; MAX_POINTS],
+}
+
+impl Default for Points {
+    fn default() -> Self {
+        Self {
+            strains: [Sym2::zeros(); MAX_POINTS],
+            stresses: [Sym2::zeros(); MAX_POINTS],
+            tangents: [Sym4::zeros(); MAX_POINTS],
+        }
+    }
+}
+
 /// A law under small strains and rotations.
 #[derive(Debug, Clone)]
 pub struct Small<L>(pub L);
@@ -14,7 +32,7 @@ pub struct Small<L>(pub L);
 impl<L: BulkLaw, const D: usize> CellLaw<D> for Small<L> {
     type Law = L;
     type State = L::State;
-    type Room = ();
+    type Room = Points;
 
     fn law(&self) -> &L {
         &self.0
@@ -35,31 +53,30 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Small<L> {
         motion: Motion<'_>,
         kind: Stiffness,
         out: CellOutput<'_, L::State>,
-        (): &mut (),
+        room: &mut Points,
     ) -> bool {
         let (law, count) = (&self.0, old.len());
         let elastic = law.elastic_tangent();
-        let mut d_eps = [Sym2::zeros(); MAX_POINTS];
-        let mut stress = [Sym2::zeros(); MAX_POINTS];
-        let mut tangent = [Sym4::zeros(); MAX_POINTS];
-        cells.strain(k, motion.by, &mut d_eps[..count]);
-        motion.relieve((cells, k), &mut d_eps[..count]);
+        let strains = &mut room.strains[..count];
+        let (stresses, tangents) = (&mut room.stresses[..count], &mut room.tangents[..count]);
+        cells.strain(k, motion.by, strains);
+        motion.relieve((cells, k), strains);
         let mut flows = false;
         for g in 0..count {
-            let response = law.respond(&old[g], &d_eps[g]);
+            let response = law.respond(&old[g], &strains[g]);
             flows |= response.flows;
             out.new[g] = response.state;
-            stress[g] = response.stress;
-            tangent[g] = match kind {
+            stresses[g] = response.stress;
+            tangents[g] = match kind {
                 Stiffness::None => continue,
                 Stiffness::Total(0.0) => elastic,
                 Stiffness::Total(part) => elastic + (response.tangent - elastic) * part,
                 Stiffness::Plastic(part) => (response.tangent - elastic) * part,
             };
         }
-        cells.force(k, &stress[..count], out.force);
+        cells.force(k, stresses, out.force);
         if kind.is_given(flows) {
-            cells.stiffness(k, &tangent[..count], out.stiffness);
+            cells.stiffness(k, tangents, out.stiffness);
         }
         flows
     }
