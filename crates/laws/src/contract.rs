@@ -85,6 +85,12 @@ impl Report {
             });
         }
         let worst = if allowed > 0.0 { found / allowed } else { 0.0 };
+        self.note(property, worst);
+        Ok(())
+    }
+
+    /// Notes a sample on which a property holds, and which part of what is allowed it took.
+    fn note(&mut self, property: &'static str, worst: f64) {
         match self.checks.iter_mut().find(|c| c.property == property) {
             Some(check) => {
                 check.count += 1;
@@ -96,7 +102,6 @@ impl Report {
                 worst: worst.max(0.0),
             }),
         }
-        Ok(())
     }
 
     /// Notes that a statement is true.

@@ -24,9 +24,17 @@ pub(crate) struct Samples<X> {
 }
 
 /// Runs a property on samples.
-pub(crate) fn for_all<S: Strategy>(
+pub(crate) fn for_all<S: Strategy + Clone + 'static>(
     samples: &S,
     property: impl Fn(S::Value) -> Result<(), TestCaseError>,
+) {
+    run(&samples.clone().boxed(), &property);
+}
+
+/// Compiled once for each type of value, and not for each property.
+fn run<V: std::fmt::Debug>(
+    samples: &BoxedStrategy<V>,
+    property: &dyn Fn(V) -> Result<(), TestCaseError>,
 ) {
     let config = Config {
         cases: 512,

@@ -44,9 +44,11 @@ fn directory(name: &str) -> PathBuf {
     path
 }
 
+/// On one thread where it is not told otherwise: as many programs as there are threads run side by side.
 fn moreau(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_moreau"))
         .args(arguments)
+        .env("RAYON_NUM_THREADS", "1")
         .output()
         .expect("the command starts")
 }
@@ -55,7 +57,6 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// Runs a deck, given as text, into a directory; status, stdout and stderr.
 /// What is told but for the doubts of a run.
 fn errors(told: &[u8]) -> String {
     let told = text(told);
@@ -63,6 +64,7 @@ fn errors(told: &[u8]) -> String {
     lines.map(|line| format!("{line}\n")).collect()
 }
 
+/// Runs a deck, given as text, into a directory; status, stdout and stderr.
 fn run(name: &str, deck: &str, more: &[&str]) -> (i32, String, String, PathBuf) {
     let at = directory(name);
     let file = at.join("deck.toml");

@@ -7,7 +7,8 @@ use moreau::mesh::Solid;
 use CellKind::{Hex8, Hex20, Quad4, Quad8, Tri6};
 
 const CLOSED: f64 = 0.6;
-const TURNS: usize = 6;
+/// Increments of the right angle, in the plane and in space.
+const TURNS: [usize; 2] = [6, 3];
 
 /// Steel with hardening.
 fn pressed<H: Blocks<D>, const D: usize>(stack: Stack<H, D>) -> Stack<H, D> {
@@ -76,8 +77,9 @@ fn turned<H: Blocks<D>, const D: usize>(stack: &Stack<H, D>) -> Fallible {
     ends.extend(driver.mesh().node_group("upper.top")?);
     let mut end = driver.applied().clone();
     end.displacement.clear();
-    for k in 1..=TURNS {
-        let turn = rotation::<D>(k as f64 / TURNS as f64);
+    let turns = TURNS[D - 2];
+    for k in 1..=turns {
+        let turn = rotation::<D>(k as f64 / turns as f64);
         for &a in &ends {
             let displacement = turn * straight[a] - SVector::from(nodes[a]);
             (0..D).for_each(|i| _ = end.displacement.insert(D * a + i, displacement[i]));
