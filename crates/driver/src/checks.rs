@@ -11,5 +11,6 @@ pub(crate) mod rigid;
 pub(crate) mod smallness;
 pub(crate) mod strides;
 pub(crate) mod supports;
+pub(crate) mod swings;
 pub(crate) mod unjoined;
 pub(crate) mod untied;

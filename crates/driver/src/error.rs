@@ -512,6 +512,17 @@ pub enum IncrementError {
         /// How deep it was in the tool \[mm\].
         depth: f64,
     },
+    /// A tool turned by more than a quarter turn: the increment is too large.
+    #[error(
+        "in one increment tool {tool:?} turned by {:.1}°: the increment is too large for contact to follow, which is found \
+         up to a quarter turn", angle.to_degrees()
+    )]
+    Turn {
+        /// The tool.
+        tool: String,
+        /// By how much \[rad\].
+        angle: f64,
+    },
     /// A body went into another one where no contact was found: the increment is too large.
     #[error(
         "in one increment {surface:?} and {opposite:?} went {depth:.3e} mm into each other at node {node} at \
@@ -732,6 +743,7 @@ fn collapse_hint(
     if matches!(
         cause,
         IncrementError::Passage { .. }
+            | IncrementError::Turn { .. }
             | IncrementError::Within { .. }
             | IncrementError::NotFinite { .. }
             | IncrementError::Law(_)

@@ -59,6 +59,7 @@ pub use checks::rigid::Stopper;
 pub use checks::smallness::{Deformation, Extent};
 pub use checks::strides::Stride;
 pub use checks::supports::{RigidMotion, Support};
+pub use checks::swings::Swing;
 pub use driver::Driver;
 pub use error::{Imbalance, IncrementError, LawFault, ModelError, Place, ToolOutOfContact};
 pub use model::Model;

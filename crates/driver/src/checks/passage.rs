@@ -14,6 +14,9 @@ const CHORD: f64 = 0.2;
 /// And over the size of the mesh: what is thinner does not matter.
 const THIN: f64 = 1e-3;
 
+/// How far a tool may turn: what goes round it farther is nearer on its other side. By rounding more than a quarter turn.
+const QUARTER: f64 = (1.0 + 1e-9) * std::f64::consts::FRAC_PI_2;
+
 /// Pieces of the way that are looked at, at least; farther from the tool they are longer.
 const PIECES: f64 = 4096.0;
 
@@ -25,10 +28,11 @@ const MOST_LOOKS: f64 = 16.0;
 
 impl<const D: usize> Driver<D> {
     /// Every contact point that comes to its tool must have come from outside of it, not through it: the
-    /// straight way of the displacement increments `d_u` may cut the surface as a chord does.
+    /// straight way of the displacement increments `d_u` may cut the surface as a chord does. No tool must turn by more than
+    /// a quarter turn.
     ///
     /// # Errors
-    /// [`IncrementError::Passage`].
+    /// [`IncrementError::Turn`] and [`IncrementError::Passage`].
     pub(crate) fn check_passage(
         &self,
         d_u: &[f64],
@@ -36,6 +40,15 @@ impl<const D: usize> Driver<D> {
     ) -> Result<(), IncrementError> {
         let size = self.mesh.size();
         let moved = |a: usize| SVector::<f64, D>::from_column_slice(&d_u[D * a..D * a + D]);
+        for (k, tool) in self.tools.iter().enumerate() {
+            let turn = self.turned_by(k, end, d_u).norm();
+            if turn > QUARTER {
+                return Err(IncrementError::Turn {
+                    tool: tool.name.clone(),
+                    angle: turn,
+                });
+            }
+        }
         for (p, motion_row) in self.points.iter().zip(&self.footing.rows) {
             let Some(tool) = p.tool else { continue };
             let (start, turn) = (self.seen(p, motion_row), self.turn_at(tool, end, d_u));

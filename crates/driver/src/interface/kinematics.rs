@@ -36,9 +36,14 @@ impl<const D: usize> Driver<D> {
         self.state.loading.turn_of(tool) + axle * angle
     }
 
-    /// Whether slips are ways along tools, and not displacements beside them.
+    /// Whether slips are ways along tools, and not displacements beside them: those of tools that are turned, at the start
+    /// of an increment or at its end.
     fn follows(&self, turn: &Turn, end: &Loading<D>, tool: usize) -> bool {
-        self.has_large_strains() || turn.norm() > 0.0 || end.axle_of(tool).is_some()
+        let is_turned = |turn: &Turn| turn.norm() > 0.0;
+        self.has_large_strains()
+            || is_turned(turn)
+            || is_turned(&self.state.loading.turn_of(tool))
+            || end.axle_of(tool).is_some()
     }
 
     /// The degree of freedom of the turn of a tool that a moment turns, and how a point of it moves with that: a place

@@ -304,7 +304,7 @@ impl<const D: usize> Driver<D> {
     }
 
     /// By how much a tool has turned in the increment, about the axis of that turn.
-    fn turned_by(&self, tool: usize, end: &Loading<D>, d_u: &[f64]) -> Turn {
+    pub(crate) fn turned_by(&self, tool: usize, end: &Loading<D>, d_u: &[f64]) -> Turn {
         turn_between(
             &self.state.loading.turn_of(tool),
             &self.turn_at(tool, end, d_u),

@@ -11,6 +11,9 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Sine of the angle between two axes that is rounding.
 const TILTED: f64 = 1e-9;
 
+/// Turn that is rounding, of a tool that has been turned back \[rad\].
+const TURNED_BACK: f64 = 1e-12;
+
 impl<const D: usize> Driver<D> {
     /// The loading at the end of a step.
     ///
@@ -179,7 +182,7 @@ impl<const D: usize> Driver<D> {
             let axle = self.axle(name, axis, ("moment on", *moment))?;
             let axle = axle * axle[axle.iamax()].signum();
             let turned = self.state.loading.turn_of(tool);
-            if axle.cross(&turned).norm() > TILTED * turned.norm() {
+            if axle.cross(&turned).norm() > (TILTED * turned.norm()).max(TURNED_BACK) {
                 return Err(ModelError::TiltedAxle {
                     tool: name.clone(),
                     axis: axis.to_vec(),

@@ -377,7 +377,9 @@ impl<const D: usize> Driver<D> {
                     // How far contact can follow is known, and shorter increments get there.
                     let follows = matches!(
                         cause,
-                        IncrementError::Passage { .. } | IncrementError::Within { .. }
+                        IncrementError::Passage { .. }
+                            | IncrementError::Turn { .. }
+                            | IncrementError::Within { .. }
                     );
                     let cuts = if follows {
                         MOST_CUTS

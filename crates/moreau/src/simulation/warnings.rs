@@ -47,9 +47,11 @@ enum Kind {
     Stride,
     /// Strains too large for one increment.
     Strained,
+    /// Slips that change their direction within an increment.
+    Swing,
 }
 
-const KINDS: [Kind; 19] = [
+const KINDS: [Kind; 20] = [
     Kind::Strain,
     Kind::Rotation,
     Kind::Inverted,
@@ -69,6 +71,7 @@ const KINDS: [Kind; 19] = [
     Kind::Shearless,
     Kind::Stride,
     Kind::Strained,
+    Kind::Swing,
 ];
 
 /// Quality below which a cell is distorted: that of a rectangle 1 : 20, or of a square sheared by 4.2.
@@ -83,6 +86,10 @@ const STRAINED: f64 = 0.2;
 
 /// Part of a facet that a tool may go in an increment where its force is to be right to a few percent.
 const PART_OF_A_FACET: f64 = 0.25;
+
+/// Angle by which a slip may be beside what it is at the end of its increment, and with it the friction against it: a sixth of
+/// that acts across \[rad\].
+const SWUNG: f64 = 10.0 * std::f64::consts::PI / 180.0;
 
 /// Where a doubt is worst.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -210,7 +217,7 @@ impl Warnings {
             let at = (narrow.node, narrow.position.to_vec());
             self.note(Kind::Narrow, numbers, at, report.increment);
         }
-        if !to_collapse && report.plastic_fraction > 0.0 {
+        if !to_collapse {
             self.coarse(driver, report);
         }
         self.done = report.fraction;
@@ -240,13 +247,22 @@ impl Warnings {
         }
     }
 
-    /// Takes note of what is too much for one increment in which the body yields, with how many of its step would do.
+    /// Takes note of what is too much for one increment, with how many of its step would do.
     fn coarse<const D: usize>(&mut self, driver: &Driver<D>, report: &IncrementReport) {
         let when = report.increment;
         // Along a path on which loads fall no number of increments decides how long they are.
         let length = report.fraction - self.done;
         let is_known = length > 0.0 && self.worst[Kind::Limit as usize].is_none();
         let enough = |parts: f64| f64::from(u8::from(is_known)) * (parts / length).ceil();
+        if let Some(swing) = driver.swings().filter(|swing| swing.angle > SWUNG) {
+            let enough = enough(2.0 * swing.angle / SWUNG);
+            let numbers = vec![enough, swing.angle, swing.turn, swing.contact as f64];
+            let at = (swing.node, swing.position.to_vec());
+            self.note(Kind::Swing, numbers, at, when);
+        }
+        if report.plastic_fraction == 0.0 {
+            return;
+        }
         if let Some(stride) = driver.strides() {
             let enough = enough(stride.way / (PART_OF_A_FACET * stride.facet));
             let numbers = vec![enough, stride.way, stride.facet, stride.contact as f64];
@@ -474,6 +490,7 @@ impl Worst {
             Kind::Corner => self.corner(driver),
             Kind::Shearless => self.shearless(driver, deck),
             Kind::Stride => self.stride(driver, deck),
+            Kind::Swing => self.swing(driver),
             Kind::Strained => format!(
                 "strains are large for one increment: in increment {when} a tenth of the body is strained by {} or more, and its \
                  law goes straight from one state to the other, which makes forces wrong by percents; use {} \
@@ -661,6 +678,19 @@ impl Worst {
              not press in, which makes forces too small; use {} in that step, of a quarter of a facet each",
             shown(self.number(1), 3),
             shown(self.number(2), 3),
+            self.more_increments()
+        )
+    }
+
+    fn swing<const D: usize>(&self, driver: &Driver<D>) -> String {
+        let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
+        let (surface, tool) = driver.contact_name(self.number(3) as usize);
+        format!(
+            "\"{tool}\" turns by {}° in increment {when}, and \"{surface}\" slips along it, at node {index} at {at}, in directions \
+             that change within the increment: friction acts against what they add up to, {}° beside the slip at the end; use \
+             {} in that step",
+            shown(self.number(2).to_degrees(), 3),
+            shown(self.number(1).to_degrees(), 3),
             self.more_increments()
         )
     }

@@ -30,6 +30,7 @@ mod sheared;
 mod shears;
 mod spins;
 mod surfaces;
+mod turned;
 mod unjoined;
 
 use moreau::deck::{Given, Meshes};
