@@ -53,15 +53,18 @@ pub(crate) fn spring(stiffness: f64, steepness: f64) -> f64 {
 }
 
 /// How steeply a contact answers an elongation of the spring, which vanishes as fast as the spring is stiffer than that: as
-/// the stiffness 1/C of a penalty of compliance C in series with it, and as g / ‖u_t‖, by which friction turns with a known
-/// slip \[N/mm\].
+/// the stiffness 1/C of a penalty of compliance C in series with it, and as g / ‖u_t‖, by which friction turns with a slip
+/// that is known, or in space with that of a point that slips \[N/mm\].
 pub(crate) fn steepness<const D: usize>(
     kinematics: &Kinematics<D>,
     force: &Local<D>,
     compliance: f64,
 ) -> f64 {
-    let known = kinematics.known_slip.filter(|&slip| slip > 0.0);
-    let turns = known.map_or(0.0, |slip| kinematics.law.bound(force[0].max(0.0)) / slip);
+    let bound = kinematics.law.bound(force[0].max(0.0));
+    let slips = D > 2 && force.rows(1, D - 1).norm() >= (1.0 - AT_LIMIT) * bound;
+    let own = slips.then(|| kinematics.u.rows(1, D - 1).norm());
+    let slip = kinematics.known_slip.or(own).filter(|&slip| slip > 0.0);
+    let turns = slip.map_or(0.0, |slip| bound / slip);
     match compliance > 0.0 {
         true => turns.max(compliance.recip()),
         false => turns,
