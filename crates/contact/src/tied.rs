@@ -103,6 +103,9 @@ pub struct TiedProblem<'a, const D: usize> {
     pub load: f64,
     /// By how much that load may be rounding \[N\], as [`CondensedProblem::rounds`](crate::CondensedProblem::rounds) tells.
     pub rounding: f64,
+    /// By which stiffness displacements weigh at least where a solution is judged \[N/mm\], as
+    /// [`CondensedProblem::weigh`](crate::CondensedProblem::weigh) tells; zero for that of the contacts.
+    pub weight: f64,
     /// Contact forces t₀ at the start of the step \[N\].
     pub previous: Vec<Local<D>>,
 }

@@ -101,7 +101,13 @@ impl<const D: usize> Driver<D> {
         let tolerance = self.law_tolerance(system, solution, scale);
         let holds = |i: usize| {
             let left = self.law_residual_at(i, system, &kinematics[i], solution);
-            left <= tolerance + self.inherited_residual(i, system)
+            // In the law the gap is widened by the slip times the coefficient, and so is its rounding.
+            let pressure = solution.force[i][0];
+            let widened = match pressure > 0.0 {
+                true => kinematics[i].law.bound(pressure) / pressure * self.law_rounding(system),
+                false => 0.0,
+            };
+            left <= tolerance + widened + self.inherited_residual(i, system)
         };
         solution.exact && (0..kinematics.len()).all(holds)
     }

@@ -140,6 +140,7 @@ impl<const D: usize> Driver<D> {
                 springs: springs.clone(),
                 load: largest_load,
                 rounding,
+                weight: linearised.weight,
                 previous: previous.clone(),
             };
             solve_tied(&mut problem, guess, (tolerance, enough), factor)

@@ -7,6 +7,7 @@ mod beyond;
 mod coarse;
 mod cornered;
 mod driven;
+mod edges;
 mod flat;
 mod freed;
 mod heated;

@@ -53,6 +53,11 @@ impl<const D: usize> Tied<'_, '_, D> {
             let irreversible = u + springs.elongation(&t);
             let map = p.friction[i].natural_map(&irreversible, &t, self.alpha(i));
             at.residual = at.residual.max(size_of_map(&map, &irreversible, &t));
+            let weight = PARTS[0] * p.weight;
+            if weight > self.alpha(i) {
+                let map = p.friction[i].natural_map(&irreversible, &t, weight);
+                at.residual = at.residual.max(size_of_map(&map, &irreversible, &t));
+            }
             at.merit += map.norm_squared() / self.alpha(i);
             at.u.push(u);
             at.t.push(t);

@@ -122,6 +122,7 @@ fn tied<const D: usize>(
         springs: vec![Springs::default(); contacts],
         load,
         rounding: 0.0,
+        weight: 0.0,
         previous: problem.previous().to_vec(),
     };
     let asked = (SemismoothNewton::default().tolerance, 0.0);
@@ -219,6 +220,7 @@ fn springs_are_those_of_the_penalty() {
         springs: vec![springs; 6],
         load,
         rounding: 0.0,
+        weight: 0.0,
         previous: problem.previous().to_vec(),
     };
     let (found, _) = solve_tied(
@@ -235,6 +237,39 @@ fn springs_are_those_of_the_penalty() {
     for (a, b) in found.irreversible.iter().zip(&expected.irreversible) {
         assert!((a - b).norm() < 1e-9, "{a} {b}");
     }
+}
+
+/// Weighed by a stiffness above that of the contacts, gaps and slips are as small as the tolerance then asks.
+#[test]
+fn displacements_weigh_by_the_stiffness_that_is_told() {
+    let seed: Vec<f64> = (0..37).map(|k| f64::sin(3.0 * f64::from(k))).collect();
+    let law: Friction = Coulomb::new(0.2).expect("valid").into();
+    let off = |weight: f64, judged: f64| {
+        let (mut structure, problem) = sample::<3>(6, &seed, &[law], false);
+        let load = structure.load.amax();
+        let mut own = TiedProblem {
+            structure: &mut structure,
+            origin: problem.origin().to_vec(),
+            friction: problem.laws().to_vec(),
+            springs: vec![Springs::default(); 6],
+            load,
+            rounding: 0.0,
+            weight,
+            previous: problem.previous().to_vec(),
+        };
+        let loose = Tolerance {
+            relative: 1e-3,
+            ..SemismoothNewton::default().tolerance
+        };
+        let (found, _) =
+            solve_tied(&mut own, None, (loose, 0.0), &mut TiedFactor::default()).expect("solved");
+        let pairs = found.irreversible.iter().zip(&found.force);
+        let maps = pairs.map(|(u, t)| law.natural_map(u, t, judged).norm());
+        maps.fold(0.0, f64::max) / problem.force_scale(&found.force)
+    };
+    let weight = 1e5;
+    assert!(off(0.0, weight) > 1e-3);
+    assert!(off(weight, weight) < 1e-3);
 }
 
 /// A factor serves many directions, and many contacts take no more of either.
@@ -271,6 +306,7 @@ fn a_factor_serves_as_long_as_its_statuses_do() {
             springs: vec![Springs::default(); 8],
             load,
             rounding,
+            weight: 0.0,
             previous: problem.previous().to_vec(),
         };
         let solved = solve_tied(&mut own, guess, asked, &mut held);
@@ -334,6 +370,7 @@ fn what_lifts_off_is_not_peeled_off() {
         springs: vec![springs; contacts],
         load: 1.0,
         rounding: 0.0,
+        weight: 0.0,
         previous: vec![Local::zeros(); contacts],
     };
     let asked = (SemismoothNewton::default().tolerance, 0.0);
