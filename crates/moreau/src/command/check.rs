@@ -2,8 +2,8 @@
 
 use super::{INPUT_ERROR, folder, read, report, say, tell};
 use crate::deck::{
-    Action, Deck, FieldEntry, Given, MaterialEntry, Method, Problem, Setup, Shape, SoilEntry,
-    open_with,
+    Action, Analysis, Deck, FieldEntry, Given, MaterialEntry, Method, Problem, Setup, Shape,
+    SoilEntry, open_with,
 };
 use crate::driver::{RigidMotion, Stopper};
 use crate::numbers::{place, shown};
@@ -87,7 +87,8 @@ fn model<const D: usize>(deck: &Deck, setup: &Setup<D>) {
         material(deck, entry);
     }
     for tool in &deck.tools {
-        let shape = shape(&tool.shape.value, deck.units.length());
+        let is_revolved = deck.analysis == Analysis::Axisymmetric;
+        let shape = shape(&tool.shape.value, (deck.units.length(), is_revolved));
         say!("tool       {}: {shape}", tool.name.value);
     }
     for index in 0..deck.contacts.len() {
@@ -197,12 +198,18 @@ fn strength(material: &MaterialEntry, unit: &str) -> String {
     )
 }
 
-fn shape(shape: &Shape, length: &str) -> String {
+/// A shape in words, with the unit of length and whether it is turned about the axis.
+fn shape(shape: &Shape, (length, is_revolved): (&str, bool)) -> String {
     let inside = |hollow: bool| if hollow { ", hollow" } else { "" };
     match shape {
         Shape::Plane(point, normal) => format!("plane through {point:?}, normal {normal:?}"),
         Shape::Ball(center, radius, hollow, key) => {
             let inside = inside(*hollow);
+            let key = match center.first() {
+                Some(&0.0) if is_revolved => "ball",
+                _ if is_revolved => "ring of round section",
+                _ => key,
+            };
             format!("{key} around {center:?}, radius {radius} {length}{inside}")
         }
         Shape::Cylinder(center, axis, radius, hollow) => {

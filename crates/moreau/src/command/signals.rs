@@ -10,6 +10,8 @@ use std::time::Duration;
 
 /// How long an increment may take to end by itself once that is asked for.
 const GRACE: Duration = Duration::from_millis(500);
+/// Signals that come within are one, as those that are sent to a process and to its group.
+const TOGETHER: Duration = Duration::from_millis(200);
 /// Between two looks at whether it is.
 const LOOK: Duration = Duration::from_millis(20);
 
@@ -17,6 +19,8 @@ const LOOK: Duration = Duration::from_millis(20);
 #[derive(Clone)]
 pub(super) struct Signals {
     raised: Arc<AtomicBool>,
+    /// Whether another signal ends the process.
+    once_more: Arc<AtomicBool>,
     last: Arc<Mutex<Option<Resumable>>>,
 }
 
@@ -26,12 +30,13 @@ impl Signals {
     pub(super) fn listen() -> Self {
         let signals = Self {
             raised: Arc::default(),
+            once_more: Arc::default(),
             last: Arc::default(),
         };
         for signal in ending() {
             // Without, it ends the process, and checkpoints are there all the same.
             let status = i32::from(NOT_CONVERGED);
-            let _ = flag::register_conditional_shutdown(signal, status, signals.raised.clone());
+            let _ = flag::register_conditional_shutdown(signal, status, signals.once_more.clone());
             let _ = flag::register(signal, signals.raised.clone());
         }
         let watched = signals.clone();
@@ -55,7 +60,9 @@ impl Signals {
             std::thread::sleep(LOOK);
         }
         tell!("stopping; once more to stop now");
-        std::thread::sleep(GRACE);
+        std::thread::sleep(TOGETHER);
+        self.once_more.store(true, Ordering::SeqCst);
+        std::thread::sleep(GRACE - TOGETHER);
         // Not released again: the run that comes for it waits for the end.
         let last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         match last.as_ref().map(|state| (state, state.write())) {

@@ -356,16 +356,21 @@ impl Warnings {
         }
     }
 
-    /// Takes note of the worst cell if it is distorted, and of the increment in which one first was.
+    /// Takes note of the worst cell if it is distorted, and of the increments in which one first was, and first was turned
+    /// inside out at a corner: at its points of integration none is.
     fn distorted<const D: usize>(&mut self, driver: &Driver<D>, when: usize) {
         let (quality, cell, position) = driver.worst_quality();
         let virgin = || driver.mesh().worst_quality(driver.mesh().nodes()).0;
-        let first = match &self.worst[Kind::Distorted as usize] {
-            Some(worst) => worst.number(1),
-            None => when as f64,
+        let (first, first_inverted) = match &self.worst[Kind::Distorted as usize] {
+            Some(worst) => (worst.number(1), worst.number(2)),
+            None => (when as f64, 0.0),
         };
         if quality < DISTORTED && quality < HALF * virgin() {
-            let numbers = vec![1.0 - quality, first];
+            let inverted = match quality < 0.0 && first_inverted == 0.0 {
+                true => when as f64,
+                false => first_inverted,
+            };
+            let numbers = vec![1.0 - quality, first, inverted];
             self.note(Kind::Distorted, numbers, (cell, position.to_vec()), when);
         }
     }
@@ -516,6 +521,14 @@ impl Worst {
                  snapping to where that load is balanced again{}",
                 shown(self.number(0), 6),
                 self.giving_way(&at)
+            ),
+            Kind::Distorted if self.number(2) > 0.0 => format!(
+                "cells are turned inside out: cell {index} at {at} has a quality of {} in increment {when}, where 1 is best and one \
+                 that is flat has none, and one first was below none in increment {}; from there on the result means nothing around \
+                 it; a new mesh was due from increment {} on, or cells that are smaller where the body folds",
+                shown(1.0 - self.number(0), 2),
+                shown(self.number(2), 9),
+                shown(self.number(1), 9)
             ),
             Kind::Distorted => format!(
                 "cells are distorted: cell {index} at {at} has a quality of {} in increment {when}, where 1 is \

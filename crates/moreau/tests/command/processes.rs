@@ -197,6 +197,8 @@ mod unix {
             std::thread::sleep(Duration::from_millis(1));
         }
         std::thread::sleep(Duration::from_millis(100));
+        // As `timeout` sends it, to the process and to its group.
+        signal(&child, "-TERM");
         signal(&child, "-TERM");
         let clock = Instant::now();
         let ended = child.wait_with_output().expect("it ends");

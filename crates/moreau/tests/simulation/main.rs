@@ -12,6 +12,7 @@ mod flat;
 mod freed;
 mod heated;
 mod interrupted;
+mod inverted;
 mod joints;
 mod keys;
 mod laws;
