@@ -157,28 +157,105 @@ impl<'a, const D: usize> Sheet<'a, D> {
         -gaps.fold(0.0, f64::min)
     }
 
-    /// The point behind which the tool reaches deepest, and how deep.
+    /// The point behind which the tool reaches deepest, and how deep, if that is more than what counts.
     fn deepest(&self) -> (SVector<f64, D>, f64) {
         let corners = self.kind.places();
-        let whole = corners[..self.kind.corner_count()].to_vec();
-        let mut open = vec![(whole, 0)];
+        let corners = &corners[..self.kind.corner_count()];
         let mut best = (SVector::zeros(), 0.0);
-        while let Some((piece, level)) = open.pop() {
-            let mean = |i: usize| piece.iter().map(|xi| xi[i]).sum::<f64>() / piece.len() as f64;
-            let (x, offset) = self.at([mean(0), mean(1)]);
-            let depth = self.depth(&x, offset);
+        let middle = self.at(middle_of(corners));
+        let far = corners.iter().map(|&xi| (self.at(xi).0 - middle.0).norm());
+        // Half a facet farther than its corners no facet is curved.
+        let near = self.limit + far.fold(0.5 * self.size, f64::max);
+        if self.counts() >= self.limit || self.tool.distance(&middle.0) - middle.1 >= near {
+            return best;
+        }
+        let mut open = vec![self.piece(corners, DIVISIONS[D - 2])];
+        while let Some(piece) = open.pop() {
+            let (points, offset) = piece.points(&self.inwards);
+            if self.is_clear(&piece.middle, offset, &points) {
+                continue;
+            }
+            // Long ways to look behind one point are for those alone that are not clear of the tool by themselves.
+            let is_clear = self.is_clear(&piece.middle, piece.offset, &[(0.0, 0.0)]);
+            let depth = match is_clear {
+                true => 0.0,
+                false => self.depth(&piece.middle, piece.offset),
+            };
             if depth > best.1 {
-                best = (x, depth);
+                best = (piece.middle, depth);
             }
-            let far = piece.iter().map(|&xi| (self.at(xi).0 - x).norm());
-            // Half a facet farther than its corners no facet is curved.
-            let near = self.limit + far.fold(0.5 * self.size, f64::max);
-            if level < DIVISIONS[D - 2] && self.tool.distance(&x) - offset < near {
-                open.extend(quarters(&piece).into_iter().map(|p| (p, level + 1)));
-            }
+            open.extend(piece.parts);
         }
         best
     }
+
+    /// Depth that counts \[mm\].
+    fn counts(&self) -> f64 {
+        Between::<D>::DEEP * self.size
+    }
+
+    /// A piece, divided so many times.
+    fn piece(&self, corners: &[[f64; 2]], divisions: usize) -> Piece<D> {
+        let (middle, offset) = self.at(middle_of(corners));
+        let parts: Vec<Piece<D>> = match divisions {
+            0 => Vec::new(),
+            _ => (quarters(corners).iter())
+                .map(|corners| self.piece(corners, divisions - 1))
+                .collect(),
+        };
+        Piece {
+            middle,
+            offset,
+            parts,
+        }
+    }
+
+    /// Whether the tool reaches by what counts behind none of some points that must keep a gap: given are how far each is from x
+    /// across the facet, squared, and how far ahead or behind. A ball that is as large as the tool is far from its middle is
+    /// free of it: one after the other, from within the cell to the facet, balls above x are to cover what is behind the points.
+    /// A way that is free from a depth on has the tool no deeper than that.
+    fn is_clear(&self, x: &SVector<f64, D>, offset: f64, points: &[(f64, f64)]) -> bool {
+        let mut deep = self.limit;
+        while deep > self.counts() {
+            let gap = self.tool.distance(&(x + self.inwards * deep)) - offset;
+            let free = |(aside, ahead): &(f64, f64)| (gap * gap - aside).max(0.0).sqrt() - ahead;
+            let free = points.iter().map(free).fold(gap, f64::min);
+            if free < FINE * self.size {
+                return false;
+            }
+            deep -= free;
+        }
+        true
+    }
+}
+
+/// A piece of a facet: its middle, the gap that this must keep, and the pieces that it is divided into.
+struct Piece<const D: usize> {
+    middle: SVector<f64, D>,
+    offset: f64,
+    parts: Vec<Piece<D>>,
+}
+
+impl<const D: usize> Piece<D> {
+    /// Where its middle and those of all of its parts are beside its own, as [`Sheet::is_clear`] has them with this direction
+    /// ahead, and the largest gap that they must keep.
+    fn points(&self, ahead: &SVector<f64, D>) -> (Vec<(f64, f64)>, f64) {
+        let (mut points, mut offset) = (Vec::new(), self.offset);
+        let mut open = vec![self];
+        while let Some(part) = open.pop() {
+            let way = part.middle - self.middle;
+            let along = way.dot(ahead);
+            points.push((way.norm_squared() - along * along, along.abs()));
+            offset = offset.max(part.offset);
+            open.extend(&part.parts);
+        }
+        (points, offset)
+    }
+}
+
+/// The middle of a piece, given by its corners.
+fn middle_of(corners: &[[f64; 2]]) -> [f64; 2] {
+    [0, 1].map(|i| corners.iter().map(|xi| xi[i]).sum::<f64>() / corners.len() as f64)
 }
 
 /// The pieces of a piece, by their corners: halves of an edge, quarters of a face.
@@ -255,9 +332,12 @@ impl<const D: usize> Driver<D> {
             let sheet = Sheet::new(kind, (places, offsets), middle, obstacle.as_ref())
                 .between(others, middle);
             let (x, depth) = sheet.deepest();
+            if depth <= sheet.counts() {
+                return None;
+            }
             // Nodes that are held within the tool are another matter.
             let depth = depth - sheet.held_within();
-            (depth > Between::<D>::DEEP * sheet.size).then_some((x, depth, sheet.size))
+            (depth > sheet.counts()).then_some((x, depth, sheet.size))
         };
         let all = facets.iter().filter_map(deepest);
         let (x, depth, facet) = all.max_by(|a, b| (a.1 / a.2).total_cmp(&(b.1 / b.2)))?;
@@ -329,8 +409,103 @@ impl<const D: usize> Driver<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use moreau_contact::Ball;
-    use nalgebra::Vector2;
+    use moreau_contact::{Ball, Plane};
+    use nalgebra::{Vector2, Vector3};
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// A tool that counts how often its distance is asked for.
+    struct Counted<T>(T, AtomicUsize);
+
+    impl<T: Obstacle<3>> Obstacle<3> for Counted<T> {
+        fn distance(&self, x: &Vector3<f64>) -> f64 {
+            self.1.fetch_add(1, Ordering::Relaxed);
+            self.0.distance(x)
+        }
+
+        fn normal(&self, x: &Vector3<f64>) -> Vector3<f64> {
+            self.0.normal(x)
+        }
+    }
+
+    /// The top of a cell as high as told, a unit square that bows upwards, with gaps that its first node and the others must keep.
+    fn top(
+        (kind, bow, height): (FacetKind, f64, f64),
+        gaps: [f64; 2],
+        tool: &dyn Obstacle<3>,
+    ) -> Sheet<'_, 3> {
+        let at = |xi: &[f64; 2]| {
+            let [x, y] = xi.map(|xi| 0.5 * (1.0 + xi));
+            let up = 4.0 * bow * (x * (1.0 - x) + y * (1.0 - y));
+            Vector3::new(x, y, up)
+        };
+        let nodes: Vec<Vector3<f64>> = kind.places().iter().map(at).collect();
+        let offsets = (0..nodes.len()).map(|k| gaps[k.min(1)]).collect();
+        let middle = Vector3::new(0.5, 0.5, -0.5 * height);
+        Sheet::new(kind, (nodes, offsets), middle, tool)
+    }
+
+    /// The deepest of all points that are looked behind.
+    fn of_all<const D: usize>(sheet: &Sheet<'_, D>) -> (SVector<f64, D>, f64) {
+        let corners = &sheet.kind.places()[..sheet.kind.corner_count()];
+        let mut open = vec![sheet.piece(corners, DIVISIONS[D - 2])];
+        let mut best = (SVector::zeros(), 0.0);
+        while let Some(piece) = open.pop() {
+            let depth = sheet.depth(&piece.middle, piece.offset);
+            if depth > best.1 {
+                best = (piece.middle, depth);
+            }
+            open.extend(piece.parts);
+        }
+        best
+    }
+
+    /// What is left out is not what counts: of balls of all sizes everywhere around a facet.
+    #[test]
+    fn what_is_deepest_is_the_deepest_of_all() {
+        let kinds = [FacetKind::Quad4, FacetKind::Quad8, FacetKind::Quad9];
+        let parts = |k: usize, by: f64| (k as f64 * by).fract();
+        let (mut found, mut none) = (0, 0);
+        for k in 0..600 {
+            let radius = 0.03 * 100.0_f64.powf(parts(k, 0.618_034));
+            let aside = [0.754_878, 0.569_84].map(|by| 2.0 * parts(k, by) - 0.5);
+            let up = radius + 0.4 * parts(k, 0.819_173) - 0.3;
+            let ball = Ball::new([aside[0], aside[1], up], radius).expect("a ball");
+            let kind = kinds[k % 3];
+            let bow = if k % 3 == 0 {
+                0.0
+            } else {
+                0.1 * parts(k, 0.324_718)
+            };
+            let height = [0.1, 0.4, 1.0, 3.0][k % 4];
+            let gaps = [0.0, if k % 5 == 0 { 0.1 } else { 0.0 }];
+            let sheet = top((kind, bow, height), gaps, &ball);
+            let (all, deepest) = (of_all(&sheet), sheet.deepest());
+            if all.1 > sheet.counts() {
+                assert_eq!(deepest, all, "{k}");
+                found += 1;
+            } else {
+                assert!(deepest.1 <= sheet.counts(), "{k}: {deepest:?}");
+                none += 1;
+            }
+        }
+        assert!(found > 100 && none > 100, "{found} {none}");
+    }
+
+    /// Distances to a surface of many triangles take long: of what lies flat on a facet, or away from it, few are asked for.
+    #[test]
+    fn few_distances_tell_that_nothing_is_between_nodes() {
+        let asked = |gap: f64, height: f64| {
+            let plane = Plane::new([0.0, 0.0, gap], [0.0, 0.0, -1.0]).expect("a plane");
+            let tool = Counted(plane, AtomicUsize::new(0));
+            let sheet = top((FacetKind::Quad4, 0.0, height), [0.0; 2], &tool);
+            assert!(sheet.deepest().1 <= sheet.counts());
+            tool.1.load(Ordering::Relaxed)
+        };
+        assert_eq!(asked(5.0, 1.0), 1);
+        assert!(asked(0.0, 1.0) <= 12, "{}", asked(0.0, 1.0));
+        assert!(asked(0.3, 1.0) <= 4, "{}", asked(0.3, 1.0));
+        assert!(asked(0.0, 0.2) <= 100, "{}", asked(0.0, 0.2));
+    }
 
     /// A facet drawn over a disc has its bow behind it, however the cell below is sheared.
     #[test]
