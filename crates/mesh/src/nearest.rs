@@ -1,17 +1,19 @@
 //! The name nearest to a misspelt one; not a fuzzy search.
 
 /// The candidate at the least edit distance from `name`, for a "did you mean", of those that have it as one of their
-/// words if there are any: `yield` is for `yield-stress`, not for `hill`. The first of equals, `None` if there is no
-/// candidate.
+/// words if there are any: `yield` is for `yield-stress`, not for `hill`. Letters in another case are the same, but where
+/// candidates differ in nothing else. The first of equals, `None` if there is no candidate.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let is_word_of = |candidate: &str| {
-        candidate
-            .split(['-', '_', '.', ' '])
-            .any(|word| word == name)
-    };
-    candidates
-        .into_iter()
-        .min_by_key(|candidate| (!is_word_of(candidate), edit_distance(name, candidate)))
+    let lower = name.to_lowercase();
+    candidates.into_iter().min_by_key(|candidate| {
+        let other = candidate.to_lowercase();
+        let has_as_word = other.split(['-', '_', '.', ' ']).any(|word| word == lower);
+        let distances = (
+            edit_distance(&lower, &other),
+            edit_distance(name, candidate),
+        );
+        (!has_as_word, distances)
+    })
 }
 
 /// Levenshtein distance: least number of insertions, deletions and substitutions of characters.
@@ -47,6 +49,14 @@ mod tests {
     fn the_first_of_equally_near_names_wins() {
         assert_eq!(nearest("tap", ["top", "tip", "bottom"]), Some("top"));
         assert_eq!(nearest("tap", []), None);
+    }
+
+    #[test]
+    fn letters_in_another_case_are_the_same() {
+        assert_eq!(nearest("b.Z1", ["b.x1", "b.z1"]), Some("b.z1"));
+        assert_eq!(nearest("TOP", ["tip", "block.top"]), Some("block.top"));
+        assert_eq!(nearest("Top", ["top", "Top1", "TOP"]), Some("top"));
+        assert_eq!(nearest("ToP", ["top", "TOP"]), Some("TOP"));
     }
 
     #[test]
