@@ -37,10 +37,16 @@ impl<const D: usize> Driver<D> {
         ROUNDING * self.mesh.size()
     }
 
-    fn least_gap(&self, contact: usize) -> Option<LeastGap<D>> {
+    /// How many nodes of the surface of a contact are deeper than so much \[mm\] within what they are in contact with.
+    pub fn nodes_within(&self, contact: usize, depth: f64) -> usize {
+        self.gaps(contact).filter(|(gap, _)| *gap < -depth).count()
+    }
+
+    /// The gaps of a contact with their nodes; none of nodes that face nothing.
+    fn gaps(&self, contact: usize) -> impl Iterator<Item = (f64, usize)> {
         let pairs = self.points.iter().zip(&self.footing.rows);
-        let own = pairs.filter(|(p, _)| p.contact == contact && p.tied.is_none());
-        let gaps = own.filter_map(|(p, motion_row)| {
+        let own = pairs.filter(move |(p, _)| p.contact == contact && p.tied.is_none());
+        own.filter_map(|(p, motion_row)| {
             let gap = match p.tool {
                 Some(tool) => {
                     let at = self.displacement(self.tool_node(tool));
@@ -54,8 +60,11 @@ impl<const D: usize> Driver<D> {
                 None => motion_row.plane(&SVector::zeros())?.1 - p.offset,
             };
             Some((gap, p.node))
-        });
-        let gaps: Vec<(f64, usize)> = gaps.collect();
+        })
+    }
+
+    fn least_gap(&self, contact: usize) -> Option<LeastGap<D>> {
+        let gaps: Vec<(f64, usize)> = self.gaps(contact).collect();
         let least = gaps.iter().min_by(|a, b| a.0.total_cmp(&b.0));
         let within = |gap: f64| gap < -self.rounding_of_gaps();
         let inside = gaps.iter().filter(|g| within(g.0)).count();

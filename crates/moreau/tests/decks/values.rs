@@ -415,7 +415,9 @@ step = [{ name = "fit", increments = 1, fix = [{ on = "shaft.bottom", u = ["y"] 
     let overlap = fit.replace("x = [20, 40]", "x = [19.99, 40]");
     let told = said(&overlap);
     assert!(
-        told.len() == 1 && told[0].contains("overlap, by 0.03 mm"),
+        told.len() == 1
+            && told[0].contains("overlap, by 0.01 mm at node")
+            && told[0].contains("7 nodes in all"),
         "{told:?}"
     );
     let touching = r#"

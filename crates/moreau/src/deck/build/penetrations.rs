@@ -45,9 +45,18 @@ pub(super) fn warn<const D: usize>(
         let Some(entry) = deck.contacts.get(gap.contact) else {
             continue;
         };
-        let asked = entry.gap_offset.as_ref().map_or(0.0, |o| o.value);
-        if !gap.met || -gap.gap > asked + driver.rounding_of_gaps() {
-            let message = sentence(deck, driver, gap);
+        let asked = entry.gap_offset.as_ref().map_or(0.0, |o| o.value.max(0.0));
+        // Told is what is beyond that: where curved meshes do not match there is a little.
+        let beyond = match gap.met {
+            true => LeastGap {
+                gap: gap.gap + asked,
+                inside: driver.nodes_within(gap.contact, asked + driver.rounding_of_gaps()),
+                ..*gap
+            },
+            false => *gap,
+        };
+        if beyond.inside > 0 {
+            let message = sentence(deck, driver, &beyond);
             findings.warning(&entry.surface.span, message, "inside from the first");
         }
     }
