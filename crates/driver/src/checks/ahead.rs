@@ -3,6 +3,7 @@
 use crate::checks::between::Between;
 use crate::driver::Driver;
 use crate::model::points::{ContactPoint, turned};
+use nalgebra::SVector;
 
 /// Where a tool bears farthest ahead of the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,8 +24,10 @@ pub struct Ahead<const D: usize> {
 const NEAR: f64 = 1e-6;
 
 impl<const D: usize> Driver<D> {
-    /// Where a tool bears on a node between corners from farthest away, if that is more than
-    /// [`Between::BESIDE_PRESSED`] of what the nodes are pressed in: facets are too long there beside its curve.
+    /// Where a tool bears on a node between corners from farthest away, if its curve, or that of the surface in the mesh, makes
+    /// more than [`Between::BESIDE_PRESSED`] of what the nodes are pressed in of that: facets are too long there. What the
+    /// surface bends under its loads is another matter: a straight side that a plane holds down at one of its corners has the
+    /// other at five times the distance of the node between.
     pub fn bears_ahead(&self) -> Option<Ahead<D>> {
         let points = self.points.iter().enumerate();
         let all = points.filter_map(|(k, point)| self.ahead(k, point));
@@ -42,9 +45,19 @@ impl<const D: usize> Driver<D> {
         let distance = obstacle.distance(&x) - point.offset;
         let far = point.own.iter().map(|&(a, _)| (seen(a) - x).norm());
         let far = far.fold(0.0, f64::max);
-        let normal = turned(obstacle.normal(&x), &turn);
+        // What the gap of the point has beyond that of the node, were the tool a plane and the surface not moved.
+        let n = obstacle.normal(&x);
+        let normal = turned(n, &turn);
+        let virgin = |a: usize| SVector::<f64, D>::from(self.mesh.nodes()[a]);
+        let curve = |&(a, weight): &(usize, f64)| {
+            let (way, side) = (seen(a) - x, virgin(a) - virgin(point.node));
+            let beyond = obstacle.distance(&seen(a)) - obstacle.distance(&x) - n.dot(&way);
+            weight * (beyond + normal.dot(&side))
+        };
+        let curved = -point.own.iter().map(curve).sum::<f64>();
         let pressed = self.pressed(point.contact, &normal, far);
-        (distance > (Between::<D>::BESIDE_PRESSED * pressed).max(NEAR * far)).then(|| Ahead {
+        let least = (Between::<D>::BESIDE_PRESSED * pressed).max(NEAR * far);
+        (distance.min(curved) > least).then(|| Ahead {
             contact: point.contact,
             node: point.node,
             position: self.position(point.node).into(),

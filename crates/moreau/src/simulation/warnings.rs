@@ -615,7 +615,8 @@ impl Worst {
         format!(
             "\"{tool}\" bears on node {index} of \"{surface}\" at {at} in increment {when} from {} {length} away, where the \
              nodes of the surface are pressed in by {} {length}: the sides of facets with nodes between corners, which \
-             have one gap with those, are too long there beside the curve of the tool; use facets of half that length, or linear cells",
+             have one gap with those, are too long there for what their curve and that of the tool differ by; use facets of half that \
+             length, or linear cells",
             shown(self.number(0), 3),
             shown(self.number(1), 3)
         )

@@ -303,6 +303,40 @@ fn the_bow_of_a_round_tool_is_no_tool_between_nodes() {
     assert_eq!(held.between_nodes(), None);
 }
 
+/// A side of serendipity cells that bows towards a plane, in the mesh: the node at its lowest bears from h²/(12 R) away, with
+/// edges of length h and a radius R.
+#[test]
+fn a_curved_side_that_bears_on_what_it_does_not_reach_is_told() {
+    let ahead = |radius: f64| {
+        let [x, y, z] =
+            [4.0, 1.0, 2.0].map(|size| uniform(0.0, size, if size == 4.0 { 2 } else { 1 }));
+        let mesh = block3("b", CellKind::Hex20, &x, &y, &z).expect("valid");
+        let bow = |x: f64| (x - 1.0).powi(2) / (2.0 * radius);
+        let mesh = mesh.map(|[x, y, z]| [x, y + bow(x), z]).expect("valid");
+        let away = 4.0 / (12.0 * radius);
+        let floor = Plane::new([0.0, -away, 0.0], [0.0, 1.0, 0.0]).expect("valid");
+        let mut driver = driver(mesh, Solid, |m| {
+            m.tool("t", floor)
+                .and_then(|m| m.contact("b.bottom", "t", coulomb(0.2)))
+                .expect("valid")
+        });
+        let step = Step::new("press")
+            .fix("b.top", &[Axis::X, Axis::Y, Axis::Z])
+            .tool("t", [0.0, 0.001, 0.0]);
+        driver.run(&step, 1, |_, _| {}).expect("converges");
+        assert!(driver.tool_force("t").expect("a tool").norm() > 0.01);
+        (driver.bears_ahead(), away)
+    };
+    let (told, away) = ahead(6.0);
+    let told = told.expect("it bears");
+    assert!(
+        (told.distance - away).abs() < 0.0012 && (told.position[0] - 1.0).abs() < 1e-3,
+        "{told:?}"
+    );
+    let (flat, _) = ahead(1e6);
+    assert_eq!(flat, None);
+}
+
 /// A side that meets a die at less than a right angle has nothing of the die behind it, however near to the corner: what is
 /// there is behind the top, which touches.
 #[test]
@@ -391,6 +425,10 @@ fn the_least_gap_of_a_tool_is_its_distance() {
             gaps[0].met && (gaps[0].inside > 0) == (expected < 0.0),
             "{gaps:?}"
         );
+        // Of deeper ones there are fewer, the last at the least gap.
+        let inside = |depth: f64| driver.nodes_within(0, depth);
+        assert_eq!(gaps[0].inside, inside(driver.rounding_of_gaps()));
+        assert_eq!((inside(-expected - 1e-9), inside(-expected + 1e-9)), (1, 0));
     }
 }
 
