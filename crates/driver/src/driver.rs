@@ -313,6 +313,30 @@ impl<const D: usize> Driver<D> {
         &self.state.contacts
     }
 
+    /// Status of a contact point, an index of [`Driver::contacts`], as it is told: one that bears no more than the rounding of
+    /// the largest force so far is open, whatever rounding has made of its status.
+    ///
+    /// # Panics
+    /// If there is no such point.
+    pub fn status(&self, point: usize) -> Status {
+        let record = &self.state.contacts[point];
+        let rounding = self.settings.tolerance * self.state.largest_force;
+        match record.status == Status::Tied || record.t.norm() > rounding {
+            true => record.status,
+            false => Status::Open,
+        }
+    }
+
+    /// How many contact points have a status, see [`Driver::status`]; those held by a displacement condition along the
+    /// surface are not counted as sticking or slipping.
+    pub fn count(&self, status: Status) -> usize {
+        let counts = |&k: &usize| {
+            let held = self.state.contacts[k].held && status != Status::Open;
+            self.status(k) == status && !held
+        };
+        (0..self.state.contacts.len()).filter(counts).count()
+    }
+
     /// Names of the surface of a contact and of the tool or surface opposite.
     ///
     /// # Panics

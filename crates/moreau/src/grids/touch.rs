@@ -23,7 +23,7 @@ pub(crate) fn touches<const D: usize>(driver: &Driver<D>) -> Vec<Touch<D>> {
     let own = |k: &usize| Touch {
         u: records[*k].u,
         traction: records[*k].traction(),
-        status: records[*k].status,
+        status: driver.status(*k),
     };
     let mut touches: Vec<Touch<D>> = (0..records.len()).map(|k| own(&k)).collect();
     for &point in driver.redistributed() {
@@ -42,7 +42,7 @@ pub(crate) fn touches<const D: usize>(driver: &Driver<D>) -> Vec<Touch<D>> {
         touches[point] = Touch {
             u: mean(&|t| t.u),
             traction: mean(&|t| t.traction),
-            status: records[nearest].status,
+            status: driver.status(nearest),
         };
     }
     touches

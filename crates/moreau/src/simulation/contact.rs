@@ -90,7 +90,7 @@ pub(super) const COLUMNS: [Described; 23] = [
     Described::new(
         "status",
         Unit::None,
-        "`open`, `stick` or `slip`; of a tie `tied`.",
+        "`open`, `stick` or `slip`; of a tie `tied`. What bears no more than rounding is open.",
     ),
     Described::new(
         "x_now",

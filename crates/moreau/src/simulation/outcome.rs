@@ -129,12 +129,8 @@ impl Tally {
         all.penetration = all.penetration.max(one.penetration);
         all.excess_force = all.excess_force.max(one.excess_force);
         self.relative_gap = self.relative_gap.max(report.relative_gap());
-        for c in driver
-            .contacts()
-            .iter()
-            .filter(|c| c.status != Status::Open)
-        {
-            self.closed[c.contact] = true;
+        for (k, c) in driver.contacts().iter().enumerate() {
+            self.closed[c.contact] |= driver.status(k) != Status::Open;
         }
         if let Some((point, ratio)) = report.criticality
             && self.criticality.is_none_or(|most| ratio > most.1)
@@ -259,12 +255,6 @@ pub(super) fn conclude<const D: usize>(
 ) -> Outcome {
     let driver = &setup.driver;
     let last = |name: &str| history.value(name);
-    let count = |status| {
-        let points = driver.contacts().iter();
-        points
-            .filter(|c| c.status == status && (status == Status::Open || !c.held))
-            .count()
-    };
     let verdict = |e: &crate::deck::Expectation| Verdict {
         column: e.column.value.clone(),
         expected: e.value,
@@ -330,7 +320,7 @@ pub(super) fn conclude<const D: usize>(
         verdicts: deck.expectations.iter().map(verdict).collect(),
         warnings,
         deck_warnings: setup.warnings.len(),
-        contacts: [Status::Open, Status::Stick, Status::Slip].map(count),
+        contacts: [Status::Open, Status::Stick, Status::Slip].map(|s| driver.count(s)),
         energies: driver.energies(),
         collapse: tally.collapse.map(|(stage, c)| {
             let name = deck.steps.get(stage).map(|s| s.name.value.clone());

@@ -33,6 +33,7 @@ mod shears;
 mod spins;
 mod surfaces;
 mod turned;
+mod told;
 mod unjoined;
 
 use moreau::deck::{Given, Meshes};
