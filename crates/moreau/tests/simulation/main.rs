@@ -32,8 +32,8 @@ mod sheared;
 mod shears;
 mod spins;
 mod surfaces;
-mod turned;
 mod told;
+mod turned;
 mod unjoined;
 
 use moreau::deck::{Given, Meshes};
