@@ -94,8 +94,8 @@ pub struct IncrementReport {
     /// Times the increment was halved before it converged.
     pub cuts: usize,
     /// Contact points that are open, stick and slip; points held by a displacement condition
-    /// along the surface are not counted as sticking or slipping. In the solution: what bears no more than rounding may
-    /// stick or slip by that, and is open to [`Driver::count`](crate::Driver::count), which is what runs tell.
+    /// along the surface are not counted as sticking or slipping, and what bears no more than rounding is open, see
+    /// [`Driver::count`](crate::Driver::count).
     pub open: usize,
     /// See `open`.
     pub stick: usize,

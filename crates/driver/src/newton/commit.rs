@@ -230,11 +230,6 @@ impl<const D: usize> Driver<D> {
         let rounding = self.rounding_of_forces();
         let is_without = |&k: &usize| self.grips[k].is_without(&self.points[k].law);
         let presses = |k: &usize| contacts[*k].t[0] > rounding && is_without(k);
-        let of = |status: Status| {
-            let counted =
-                |c: &&ContactRecord<D>| c.status == status && (!c.held || status == Status::Open);
-            contacts.iter().filter(counted).count()
-        };
         IncrementReport {
             increment: self.state.increment,
             fraction: 1.0,
@@ -246,9 +241,9 @@ impl<const D: usize> Driver<D> {
             contact_solves: counts.contact_solves,
             shortened_steps: counts.shortened,
             cuts: 0,
-            open: of(Status::Open),
-            stick: of(Status::Stick),
-            slip: of(Status::Slip),
+            open: self.count(Status::Open),
+            stick: self.count(Status::Stick),
+            slip: self.count(Status::Slip),
             plastic_fraction,
             energies: self.state.energies,
             certificate,

@@ -10,7 +10,6 @@ use crate::driver::{
     Clock, Driver, IncrementError, IncrementReport, Iteration, ModelError, Numbers, Ramp, Saved,
 };
 use crate::grids;
-use crate::laws::Status;
 use crate::table::Table;
 use crate::vtu::Grid;
 use std::ops::ControlFlow;
@@ -161,16 +160,13 @@ impl<const D: usize> Course<D> {
     }
 
     /// Takes note of a converged increment, and of the end of its step if that is it.
-    fn converged(&mut self, mut report: IncrementReport) -> Converged {
+    fn converged(&mut self, report: IncrementReport) -> Converged {
         let (stages, stage) = (self.setup.stages.len(), &self.setup.stages[self.stage]);
         let place = Place {
             stage: self.stage + 1,
             directions: &stage.directions,
         };
         let (driver, until_collapse) = (&self.setup.driver, stage.until_collapse);
-        // What bears no more than rounding is told as open.
-        let [open, stick, slip] = [Status::Open, Status::Stick, Status::Slip];
-        [report.open, report.stick, report.slip] = [open, stick, slip].map(|s| driver.count(s));
         self.history.record(driver, &report, &place);
         self.tally.add(driver, &report, until_collapse);
         let converged = Converged {
