@@ -3,7 +3,7 @@
 
 use crate::driver::Driver;
 use crate::model::points::{Turn, in_space, turn_between, turned};
-use moreau_laws::Status;
+use moreau_laws::{Friction, Status};
 use nalgebra::{SVector, Vector3};
 
 /// How far a slip changes its direction within an increment.
@@ -22,9 +22,13 @@ pub struct Swing<const D: usize> {
 }
 
 impl<const D: usize> Driver<D> {
-    /// The slip that changed its direction most within the last increment while its tool turned: on a disc by half
-    /// of that turn, on a roll that turns about its axis not at all.
+    /// The slip that changed its direction most within the last increment while its tool turned, in space: on a disc by half
+    /// of that turn, on a roll that turns about its axis not at all. Friction that depends on the direction is passed over: it
+    /// is not against the slip.
     pub fn swings(&self) -> Option<Swing<D>> {
+        if D < 3 {
+            return None;
+        }
         let (d_u, answered) = self.state.last.as_ref()?;
         let now = &self.state.loading;
         let turn_of = |tool: usize| match now.axle_of(tool) {
@@ -42,7 +46,8 @@ impl<const D: usize> Driver<D> {
         let points = self.points.iter().zip(&self.state.contacts).enumerate();
         let swings = points.filter_map(|(i, (p, record))| {
             let (tool, turn) = p.tool.map(|tool| (tool, &turns[tool]))?;
-            let rubs = record.status == Status::Slip && record.t.rows(1, D - 1).norm() > rounding;
+            let slips = record.status == Status::Slip && !matches!(p.law, Friction::Anisotropic(_));
+            let rubs = slips && record.t.rows(1, D - 1).norm() > rounding;
             let angle = (rubs && turn.norm() > 0.0).then(|| self.swing(i, (tool, turn), d_u))?;
             Some(Swing {
                 contact: p.contact,
@@ -55,21 +60,18 @@ impl<const D: usize> Driver<D> {
         swings.max_by(|a, b| a.angle.total_cmp(&b.angle))
     }
 
-    /// Angle along the surface between what a contact point has slipped in an increment, seen from its tool, and what it slips
-    /// at the end: its own way and that of the tool are straight, the turn of the tool is not.
+    /// Angle along the surface between what a contact point has slipped in an increment, which friction is against, and what it
+    /// slips at the end: its own way and that of the tool are straight, the turn of the tool is not.
     fn swing(&self, i: usize, (tool, turn): (usize, &Turn), d_u: &[f64]) -> f64 {
         let (p, row) = (&self.points[i], &self.footing.rows[i]);
         let moved = row.relative(|a| SVector::from_column_slice(&d_u[D * a..D * a + D]));
         let arm = self.place(row) - self.tools[tool].reference;
-        let slip = arm - turned(arm - moved, turn);
-        let rate = moved - in_plane(turn.cross(&in_space(&arm)));
+        let rate = in_space(&moved) - turn.cross(&in_space(&arm));
         let normal = self.tools[tool].opposite(p).normal(&self.seen(p, row));
         let normal = turned(normal, &self.state.loading.turn_of(tool));
-        let along = |v: SVector<f64, D>| v - normal * normal.dot(&v);
-        in_space(&along(slip)).angle(&in_space(&along(rate)))
+        let normal = in_space(&normal);
+        let along = |v: Vector3<f64>| v - normal * normal.dot(&v);
+        let against = -in_space(&self.state.contacts[i].force);
+        along(against).angle(&along(rate))
     }
-}
-
-fn in_plane<const D: usize>(v: Vector3<f64>) -> SVector<f64, D> {
-    SVector::from_fn(|i, _| v[i])
 }
