@@ -523,9 +523,9 @@ impl Worst {
                 self.giving_way(&at)
             ),
             Kind::Distorted if self.number(2) > 0.0 => format!(
-                "cells are turned inside out: cell {index} at {at} has a quality of {} in increment {when}, where 1 is best and one \
-                 that is flat has none, and one first was below none in increment {}; from there on the result means nothing around \
-                 it; a new mesh was due from increment {} on, or cells that are smaller where the body folds",
+                "cells are turned inside out at their corners: the quality of cell {index} at {at} is {} in increment {when}, where 1 is \
+                 best and 0 is flat, and the first was turned so in increment {}; around them the result means nothing from there on; \
+                 a new mesh was due from increment {} on, or smaller cells where the body folds",
                 shown(1.0 - self.number(0), 2),
                 shown(self.number(2), 9),
                 shown(self.number(1), 9)

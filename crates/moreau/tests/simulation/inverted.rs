@@ -40,6 +40,6 @@ tools = [{ name = "p", move = [0, -0.7] }]
         .position(|&q| q < 0.0)
         .expect("one that folds");
     let warnings = squeezed.outcome().warnings.clone();
-    let told = format!("first was below none in increment {}", first + 1);
+    let told = format!("first was turned so in increment {};", first + 1);
     assert!(warnings.iter().any(|w| w.contains(&told)), "{warnings:?}");
 }
