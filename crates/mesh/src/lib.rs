@@ -71,7 +71,7 @@ pub use gmsh::{read_gmsh, read_gmsh_noting, read_gmsh_skin, write_gmsh};
 pub use hypothesis::{Axisymmetric, Entry, Hypothesis, PlaneStrain, PlaneStress, Solid};
 pub use mesh::{Facet, Mesh, NodeKind, PositiveShare, Pressed, Share};
 pub use nearest::nearest;
-pub use pairing::{Fold, Intrusion, MortarRow, MultiplierNodes, Pairing};
+pub use pairing::{Fold, Intrusion, MortarRow, MultiplierChoices, Pairing};
 pub use quadrature::{Integration, Point, Rule, gauss};
 pub use read::{Loss, Place, ReadError};
 pub use skin::{Skin, read_stl};

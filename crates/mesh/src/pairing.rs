@@ -21,7 +21,7 @@ use crate::mesh::{Change, Facet, Mesh, NodeKind};
 use crate::sample::facet_samples;
 use face::{Face, Values, unit};
 pub use fold::Fold;
-pub use mortar::MultiplierNodes;
+pub use mortar::MultiplierChoices;
 pub use overlap::Intrusion;
 use std::collections::BTreeMap;
 use tree::Tree;
@@ -76,7 +76,7 @@ impl<const D: usize> Mesh<D> {
         pairing: Pairing,
         hypothesis: &H,
     ) -> Vec<MortarRow<D>> {
-        let mut none = MultiplierNodes::default();
+        let mut none = MultiplierChoices::default();
         self.mortar_rows_keeping(
             positions,
             (surface, opposite),
@@ -86,15 +86,15 @@ impl<const D: usize> Mesh<D> {
         )
     }
 
-    /// The same while the surfaces slide: nodes that have a multiplier keep it as long as they are anywhere near what is
-    /// opposite. Takes note of those that have one now.
+    /// The same while the surfaces slide and turn: what was decided by a limit is kept, or has to go beyond it to be decided
+    /// otherwise. Takes note of what is decided now.
     pub fn mortar_rows_keeping<H: Hypothesis<D>>(
         &self,
         positions: &[[f64; D]],
         (surface, opposite): (&[Facet], &[Facet]),
         pairing: Pairing,
         hypothesis: &H,
-        kept: &mut MultiplierNodes,
+        choices: &mut MultiplierChoices,
     ) -> Vec<MortarRow<D>> {
         let faces = |facets: &[Facet]| -> Vec<Face<D>> {
             let face = |&f: &Facet| {
@@ -104,7 +104,12 @@ impl<const D: usize> Mesh<D> {
             facets.iter().map(face).collect()
         };
         let (mut own, other) = (faces(surface), faces(opposite));
-        part(&mut own);
+        if choices.parts.len() != own.len() {
+            choices.parts = parts(&own);
+        }
+        for (face, part) in own.iter_mut().zip(&choices.parts) {
+            face.part = *part;
+        }
         let sides = Sides {
             normals: normals(&own),
             own: &own,
@@ -114,7 +119,7 @@ impl<const D: usize> Mesh<D> {
         };
         let measure = |x: &[f64; D]| hypothesis.measure(x);
         match pairing {
-            Pairing::Mortar => sides.mortar(surface, &measure, kept),
+            Pairing::Mortar => sides.mortar(surface, &measure, choices),
             Pairing::NodeToSurface => sides.node_to_surface(&measure),
         }
     }
@@ -248,8 +253,8 @@ impl<const D: usize> Sides<'_, D> {
     }
 }
 
-/// Tells each facet which smooth part of the surface it is of: what meets at a sharp edge looks in two directions.
-fn part<const D: usize>(faces: &mut [Face<D>]) {
+/// The smooth part of the surface that each facet is of: what meets at a sharp edge looks in two directions.
+fn parts<const D: usize>(faces: &[Face<D>]) -> Vec<usize> {
     // Across a node in the plane, across an edge in space.
     let mut around: BTreeMap<Vec<usize>, Vec<(usize, [f64; D])>> = BTreeMap::new();
     for (f, face) in faces.iter().enumerate() {
@@ -286,9 +291,7 @@ fn part<const D: usize>(faces: &mut [Face<D>]) {
             }
         }
     }
-    for (face, part) in faces.iter_mut().zip(parts) {
-        face.part = part.unwrap_or(0);
-    }
+    parts.into_iter().map(Option::unwrap_or_default).collect()
 }
 
 /// Outward unit normals of the nodes, those of the facets of one part there, averaged. At a plane of symmetry the

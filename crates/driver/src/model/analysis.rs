@@ -7,7 +7,7 @@ use crate::vector::SparseVector;
 use moreau_laws::{BulkLaw, InPlaneStress};
 use moreau_mesh::{
     Axisymmetric, CellKind, Element, Facet, Hex8, Hex20, Hex27, Hypothesis, Integration, Mesh,
-    MortarRow, MultiplierNodes, Pairing, PlaneStrain, PlaneStress, PositiveShare, Pressed, Quad4,
+    MortarRow, MultiplierChoices, Pairing, PlaneStrain, PlaneStress, PositiveShare, Pressed, Quad4,
     Quad8, Quad9, Share, Solid, Tet4, Tet10, Tri3, Tri6,
 };
 
@@ -154,7 +154,7 @@ pub(crate) trait Measure<const D: usize>: Send + Sync {
         positions: &[[f64; D]],
         surfaces: (&[Facet], &[Facet]),
         pairing: Pairing,
-        kept: &mut MultiplierNodes,
+        kept: &mut MultiplierChoices,
     ) -> Vec<MortarRow<D>>;
 }
 
@@ -203,7 +203,7 @@ impl<const D: usize, H: Hypothesis<D>> Measure<D> for H {
         positions: &[[f64; D]],
         surfaces: (&[Facet], &[Facet]),
         pairing: Pairing,
-        kept: &mut MultiplierNodes,
+        kept: &mut MultiplierChoices,
     ) -> Vec<MortarRow<D>> {
         mesh.mortar_rows_keeping(positions, surfaces, pairing, self, kept)
     }

@@ -2,7 +2,7 @@
 //! paired; not how.
 
 use crate::model::motion_row::RelativeMotionRow;
-use moreau_mesh::{Fold, MultiplierNodes};
+use moreau_mesh::{Fold, MultiplierChoices};
 use nalgebra::SVector;
 use std::collections::BTreeMap;
 
@@ -38,7 +38,7 @@ pub(crate) struct Footing<const D: usize> {
     /// How often these were found anew in this increment.
     pub(crate) regrounded: u8,
     /// The nodes of each contact that had a multiplier when its surfaces were last paired in this increment.
-    pub(crate) multipliers: BTreeMap<usize, MultiplierNodes>,
+    pub(crate) multipliers: BTreeMap<usize, MultiplierChoices>,
 }
 
 impl<const D: usize> Footing<D> {

@@ -21,25 +21,25 @@ const NEAR: [f64; 2] = [0.25, 0.5];
 /// Least share of a multiplier in the overlap of a facet; and of one that is kept.
 const LEAST: [f64; 2] = [1e-3, 1e-4];
 
-/// How much less straight than another a part of a surface may look at what is opposite, in cosines.
-const ASKEW: f64 = 0.1;
+/// How much less straight than another a part of a surface may look at what is opposite, in cosines; and one that has.
+const ASKEW: [f64; 2] = [0.1, 0.2];
 
-/// How much farther than another it may be from that, over the size of a facet.
-const BEYOND: f64 = 0.1;
+/// How much farther than another it may be from that, over the size of a facet; and one that has been near.
+const BEYOND: [f64; 2] = [0.1, 0.2];
 
-/// The nodes of a surface that have a multiplier, by facet.
+/// What was decided of a surface by a limit: which nodes have a multiplier, where it has an edge, which of the parts that meet
+/// there looks at what is opposite.
 ///
-/// Where a surface ends opposite to a facet, that is decided by how far its nodes are from there. While surfaces slide
-/// within an increment, a node has to go farther to lose its multiplier than to gain it: or equilibrium would be sought
-/// between two sets of multipliers, of which each iterate has the other.
+/// While surfaces slide and turn within an increment, what was decided is kept, or has to go farther than the limit to be
+/// decided otherwise: or equilibrium would be sought between two sets of multipliers, of which each iterate has the other.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct MultiplierNodes(BTreeMap<Facet, Vec<usize>>);
-
-impl MultiplierNodes {
-    /// Local indices of the nodes of a facet.
-    fn of(&self, facet: &Facet) -> &[usize] {
-        self.0.get(facet).map_or(&[], Vec::as_slice)
-    }
+pub struct MultiplierChoices {
+    /// The smooth part of the surface that each facet is of; none before the first pairing.
+    pub(super) parts: Vec<usize>,
+    /// Local indices of the nodes with a multiplier, by facet.
+    nodes: BTreeMap<Facet, Vec<usize>>,
+    /// The parts of which a node has its multiplier.
+    facing: BTreeMap<usize, Vec<usize>>,
 }
 
 /// What the other surface covers of a facet.
@@ -91,32 +91,35 @@ impl<const D: usize> Sides<'_, D> {
         &self,
         facets: &[Facet],
         measure: &dyn Fn(&[f64; D]) -> f64,
-        kept: &mut MultiplierNodes,
+        choices: &mut MultiplierChoices,
     ) -> Vec<MortarRow<D>> {
         let mut sums: BTreeMap<(usize, usize), Sums> = BTreeMap::new();
-        let mut nodes = BTreeMap::new();
+        let before = std::mem::take(&mut choices.nodes);
         for (facet, face) in facets.iter().zip(self.own) {
-            let kept = kept.of(facet);
-            let overlap = match D {
+            let kept = before.get(facet).map_or(&[][..], Vec::as_slice);
+            let mut overlap = match D {
                 2 => self.overlap_in_plane(face, measure, &near(kept)),
                 _ => self.overlap_in_space(face, measure, &near(kept)),
             };
+            self.fade(face, &mut overlap);
             if let Some(multipliers) = Multipliers::new(&overlap, face.nodes.len(), kept) {
                 self.integrate(face, (&overlap, &multipliers), &mut sums);
-                nodes.insert(*facet, multipliers.nodes);
+                choices.nodes.insert(*facet, multipliers.nodes);
             }
         }
-        *kept = MultiplierNodes(nodes);
         // What lies on the axis of symmetry is no surface.
         let largest = sums.values().map(|s| s.area).fold(0.0, f64::max);
         sums.retain(|_, s| s.area > SLIVER * largest);
-        let mut nodes: BTreeMap<usize, Vec<([f64; D], Sums)>> = BTreeMap::new();
+        let mut nodes: BTreeMap<usize, Vec<(usize, Sums)>> = BTreeMap::new();
         for ((part, node), sums) in sums {
-            let n = self.normals[&(part, node)];
-            nodes.entry(node).or_default().push((n, sums));
+            nodes.entry(node).or_default().push((part, sums));
         }
-        let coupling = |(node, parts): (usize, Vec<([f64; D], Sums)>)| {
-            let (n, sums) = self.facing(parts);
+        let before = std::mem::take(&mut choices.facing);
+        let coupling = |(node, parts): (usize, Vec<(usize, Sums)>)| {
+            let parts = facing(parts, before.get(&node).map_or(&[][..], Vec::as_slice));
+            let of_node = parts.iter().map(|(part, _)| *part).collect();
+            choices.facing.insert(node, of_node);
+            let (n, sums) = self.gathered(node, parts);
             // Matching meshes leave weights that are rounding. Both sums of weights are the area.
             let relative = |mut weights: BTreeMap<usize, f64>| -> Vec<(usize, f64)> {
                 weights.retain(|_, w| w.abs() > ROUNDING * sums.area);
@@ -135,18 +138,33 @@ impl<const D: usize> Sides<'_, D> {
         nodes.into_iter().map(coupling).collect()
     }
 
-    /// Of the parts of a surface that meet in a node the one that looks straight at what is opposite, or those that do,
-    /// as a corner that stands in another: with their mean normal and all of their integrals.
-    fn facing(&self, mut parts: Vec<([f64; D], Sums)>) -> ([f64; D], Sums) {
-        let gap = |(_, s): &([f64; D], Sums)| (s.gap / s.area).abs();
-        let seen = |(_, s): &([f64; D], Sums)| s.seen / s.area;
-        let least = parts.iter().map(gap).fold(f64::INFINITY, f64::min);
-        parts.retain(|part| gap(part) <= least + BEYOND * part.1.size);
-        let best = parts.iter().map(seen).fold(f64::NEG_INFINITY, f64::max);
-        parts.retain(|part| seen(part) >= best - ASKEW);
+    /// What is behind what is nearest to a facet by more than its size is less and less opposite to it, by twice that not at
+    /// all. Beside a surface that a facet grazes gaps grow without end, and multipliers, which are negative in places, would
+    /// weight them to one below zero where bodies are apart.
+    fn fade(&self, face: &Face<D>, overlap: &mut Overlap) {
+        let normals = self.normals_of(face);
+        let gap = |s: &Sample| {
+            let (x, y) = (
+                interpolate(&s.shape, &face.x),
+                interpolate(&s.opposite, &self.other[s.other].x),
+            );
+            along(&x, &y, &interpolate(&s.shape, &normals))
+        };
+        let gaps: Vec<f64> = overlap.samples.iter().map(gap).collect();
+        let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
+        for (sample, gap) in overlap.samples.iter_mut().zip(gaps) {
+            sample.d_s *= (2.0 - (gap - least) / face.size()).clamp(0.0, 1.0);
+        }
+        overlap.samples.retain(|s| s.d_s > 0.0);
+    }
+
+    /// The mean normal of the parts of a surface of which a node has its multiplier, and all of their integrals.
+    fn gathered(&self, node: usize, parts: Vec<(usize, Sums)>) -> ([f64; D], Sums) {
         let mut parts = parts.into_iter();
-        let (mut n, mut sums) = parts.next().expect("a node has a part");
-        for (m, more) in parts {
+        let (part, mut sums) = parts.next().expect("a node has a part");
+        let mut n = self.normals[&(part, node)];
+        for (part, more) in parts {
+            let m = self.normals[&(part, node)];
             n = unit(&std::array::from_fn(|i| n[i] + m[i]));
             sums.area += more.area;
             for (weights, more) in [
@@ -205,6 +223,21 @@ impl<const D: usize> Sides<'_, D> {
             }
         }
     }
+}
+
+/// Of the parts of a surface that meet in a node the one that looks straight at what is opposite, or those that do, as a
+/// corner that stands in another; some have been those.
+fn facing(mut parts: Vec<(usize, Sums)>, kept: &[usize]) -> Vec<(usize, Sums)> {
+    let gap = |s: &Sums| (s.gap / s.area).abs();
+    let seen = |s: &Sums| s.seen / s.area;
+    let is_kept = |part: &usize| usize::from(kept.contains(part));
+    let all = parts.iter().map(|(_, s)| s);
+    let least = all.map(gap).fold(f64::INFINITY, f64::min);
+    parts.retain(|(part, s)| gap(s) <= least + BEYOND[is_kept(part)] * s.size);
+    let all = parts.iter().map(|(_, s)| s);
+    let best = all.map(seen).fold(f64::NEG_INFINITY, f64::max);
+    parts.retain(|(part, s)| seen(s) >= best - ASKEW[is_kept(part)]);
+    parts
 }
 
 /// How far from the overlap each node of a facet may be, of which some have a multiplier.

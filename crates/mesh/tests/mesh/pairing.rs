@@ -2,7 +2,7 @@
 
 use super::{facets, sum};
 use moreau_mesh::{
-    Axisymmetric, CellKind, Hypothesis, Mesh, MortarRow, MultiplierNodes, Pairing, PlaneStrain,
+    Axisymmetric, CellKind, Hypothesis, Mesh, MortarRow, MultiplierChoices, Pairing, PlaneStrain,
     block2, uniform,
 };
 use std::collections::BTreeMap;
@@ -277,7 +277,7 @@ fn a_node_goes_farther_to_lose_its_multiplier_than_to_gain_it() {
         ["upper.bottom", "lower.top"].map(|name| mesh.facet_group(name).expect("named"));
     // The node that is beyond the lower body where that has moved to the left.
     let (beyond, hypothesis) = ([3.0, 0.0], PlaneStrain::default());
-    let mut kept = MultiplierNodes::default();
+    let mut kept = MultiplierChoices::default();
     for (moved, fresh, sliding) in [
         (0.20, false, false),
         (0.12, true, true),
@@ -293,12 +293,12 @@ fn a_node_goes_farther_to_lose_its_multiplier_than_to_gain_it() {
                 Err(_) => *x,
             })
             .collect();
-        let rows_of = |kept: &mut MultiplierNodes| {
+        let rows_of = |kept: &mut MultiplierChoices| {
             mesh.mortar_rows_keeping(&positions, (own, other), Pairing::Mortar, &hypothesis, kept)
         };
         let has = |rows: &[MortarRow<2>]| rows.iter().any(|c| mesh.nodes()[c.node] == beyond);
         assert_eq!(
-            has(&rows_of(&mut MultiplierNodes::default())),
+            has(&rows_of(&mut MultiplierChoices::default())),
             fresh,
             "{moved}"
         );
@@ -317,7 +317,7 @@ fn a_node_goes_farther_to_lose_its_multiplier_than_to_gain_it() {
 /// straight at, or to both, with the normal between them.
 #[test]
 fn a_corner_faces_what_is_near_or_what_is_on_both_sides() {
-    let corner = |apart: f64, tilt: f64, pairing: Pairing| {
+    let corner_after = |apart: f64, tilt: f64, pairing: Pairing, choices: &mut _| {
         let block = |name, x: [f64; 2], y: [f64; 2]| {
             let kind = CellKind::Quad4;
             block2(name, kind, &uniform(x[0], x[1], 4), &uniform(y[0], y[1], 4)).expect("valid")
@@ -337,17 +337,16 @@ fn a_corner_faces_what_is_near_or_what_is_on_both_sides() {
         let group = |name| mesh.facet_group(name).expect("named");
         let own = [group("body.bottom"), group("body.right")].concat();
         let other = [group("floor.top"), group("wall.left")].concat();
-        let rows = mesh.mortar_rows(
-            mesh.nodes(),
-            (&own, &other),
-            pairing,
-            &PlaneStrain::default(),
-        );
+        let (sides, hypothesis) = ((&own[..], &other[..]), PlaneStrain::default());
+        let rows = mesh.mortar_rows_keeping(mesh.nodes(), sides, pairing, &hypothesis, choices);
         let at = |a: usize| mesh.nodes()[a];
         let row = rows.iter().find(|row| at(row.node) == [2.0, 0.0]);
         let row = row.expect("the corner has a row").clone();
         let opposite = [0, 1].map(|i| sum(&row.opposite, |a| at(a)[i]));
         (row.normal, opposite)
+    };
+    let corner = |apart, tilt, pairing| {
+        corner_after(apart, tilt, pairing, &mut MultiplierChoices::default())
     };
     for pairing in [Pairing::Mortar, Pairing::NodeToSurface] {
         // Alone on the floor, its side upright or leaning over it.
@@ -373,4 +372,79 @@ fn a_corner_faces_what_is_near_or_what_is_on_both_sides() {
         (normal[0] + half).abs() < 1e-12 && (normal[1] - half).abs() < 1e-12,
         "{normal:?}"
     );
+    // Facets are 0.5 long: of both at 0.05, and as long as that is kept, at 0.1.
+    let mut kept = MultiplierChoices::default();
+    for (apart, fresh, sliding) in [
+        (0.08, false, false),
+        (0.04, true, true),
+        (0.08, false, true),
+        (0.12, false, false),
+    ] {
+        let has_wall = |(normal, _): ([f64; 2], [f64; 2])| normal[0] < -0.1;
+        let now = corner(apart, 0.0, Pairing::Mortar);
+        let after = corner_after(apart, 0.0, Pairing::Mortar, &mut kept);
+        assert_eq!([now, after].map(has_wall), [fresh, sliding], "{apart}");
+    }
+}
+
+/// A wall beside a hill of which the flat top goes on far behind: what is 6 mm away is not opposite to a facet that has
+/// something at 0.3 mm, and no weights make a gap of bodies that are apart negative.
+#[test]
+fn gaps_of_a_wall_to_a_hill_beside_it_are_those_to_its_slope() {
+    let block = |name, x: Vec<f64>, y: Vec<f64>| block2(name, CellKind::Quad8, &x, &y);
+    for step in 0..40 {
+        let up = 0.05 * f64::from(step);
+        let top = |x: f64| 1.0 - 0.8 * ((0.25 - x) / 0.3).exp() - 0.2 * ((0.25 - x) / 4.0).exp();
+        let hill = |[x, y]: [f64; 2]| [x, y + (1.0 + y) * (up + top(x))];
+        let mesh = block("hill", uniform(0.25, 7.25, 14), vec![-1.0, 0.0])
+            .and_then(|m| m.map(hill))
+            .and_then(|m| m.joined(block("wall", vec![-1.0, 0.0], uniform(0.0, 4.0, 6))?))
+            .expect("valid");
+        let group = |name| mesh.facet_group(name).expect("named");
+        let sides = (group("wall.right"), group("hill.top"));
+        let hypothesis = PlaneStrain::default();
+        let rows = mesh.mortar_rows(mesh.nodes(), sides, Pairing::Mortar, &hypothesis);
+        assert!(!rows.is_empty(), "{up}");
+        for row in rows {
+            let [own, met] = [&row.own, &row.opposite].map(|w| sum(w, |a| mesh.nodes()[a][0]));
+            let gap = row.normal[0] * (own - met);
+            assert!(gap > 0.1, "{up}: {gap} at node {}", row.node);
+        }
+    }
+}
+
+/// A surface that is bent by less than 41° is one, bent by more it has an edge, and which of both it was at first it stays:
+/// the normal of the node there does not jump while the surface turns.
+#[test]
+fn a_surface_has_the_edges_that_it_had_at_first() {
+    let mesh = stack([CellKind::Quad4; 2], (0.0, 2.0, 2), (-1.0, 3.0, 4), |x| x);
+    let group = |name| mesh.facet_group(name).expect("named");
+    let sides = (group("upper.bottom"), group("lower.top"));
+    let of_upper = mesh.node_group("upper").expect("named");
+    let normal = |degrees: f64, choices: &mut MultiplierChoices| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let bent = |(a, x): (usize, &[f64; 2])| match of_upper.binary_search(&a) {
+            Ok(_) if x[0] > 1.0 => [1.0 + (x[0] - 1.0) * cos, x[1] + (x[0] - 1.0) * sin],
+            _ => *x,
+        };
+        let positions: Vec<[f64; 2]> = mesh.nodes().iter().enumerate().map(bent).collect();
+        let hypothesis = PlaneStrain::default();
+        let rows =
+            mesh.mortar_rows_keeping(&positions, sides, Pairing::Mortar, &hypothesis, choices);
+        let at_bend = rows
+            .into_iter()
+            .find(|row| mesh.nodes()[row.node] == [1.0, 0.0]);
+        at_bend.expect("over the lower body").normal[0]
+    };
+    let half = |degrees: f64| (0.5 * degrees).to_radians().sin();
+    let mut round = MultiplierChoices::default();
+    for degrees in [40.0, 43.0, 40.0, 50.0] {
+        let found = normal(degrees, &mut round).abs();
+        assert!((found - half(degrees)).abs() < 1e-12, "{degrees}: {found}");
+    }
+    let mut sharp = MultiplierChoices::default();
+    for degrees in [43.0, 40.0, 43.0] {
+        let found = normal(degrees, &mut sharp).abs();
+        assert!(found < 1e-12, "{degrees}: {found}");
+    }
 }

@@ -1,7 +1,7 @@
 //! Pairing of surfaces in space that do not match, wholly and partly covered, flat and curved.
 
 use super::{facets, sum};
-use moreau_mesh::{CellKind, Mesh, MortarRow, MultiplierNodes, Pairing, Solid, block3, uniform};
+use moreau_mesh::{CellKind, Mesh, MortarRow, MultiplierChoices, Pairing, Solid, block3, uniform};
 use std::collections::BTreeMap;
 
 /// Sides of the footprint along x and z.
@@ -328,7 +328,7 @@ fn nodes_keep_their_multipliers_while_the_end_of_a_surface_passes() {
             ["upper.bottom", "lower.top"].map(|name| mesh.facet_group(name).expect("named"));
         let of_lower = mesh.node_group("lower").expect("named");
         // How far the end at x = 6 is before the nodes at x = 4, over the side of a facet, 2.
-        let rows = |before: f64, kept: &mut MultiplierNodes| {
+        let rows = |before: f64, kept: &mut MultiplierChoices| {
             let moved = 2.0 + 2.0 * before;
             let place = |(a, x): (usize, &[f64; 3])| match of_lower.binary_search(&a) {
                 Ok(_) => [x[0] - moved, x[1], x[2]],
@@ -342,7 +342,7 @@ fn nodes_keep_their_multipliers_while_the_end_of_a_surface_passes() {
                 .filter(|c| (mesh.nodes()[c.node][0] - 4.0).abs() < 1e-9)
                 .count()
         };
-        let none = MultiplierNodes::default;
+        let none = MultiplierChoices::default;
         let (near, far) = (rows(0.06, &mut none()), rows(0.2, &mut none()));
         assert!(beyond(&near) > 0, "{kind}");
         assert_eq!(beyond(&far), 0, "{kind}");
