@@ -77,6 +77,8 @@ pub struct IncrementReport {
     /// Newton iterations on the bulk, those on ways within the increment that led to no balance among them; for the
     /// paper's nesting, of all nonlinear solves.
     pub newton_iterations: usize,
+    /// Of these, those on ways that led to no balance: of the increment at once, and of parts along its loading.
+    pub astray_iterations: usize,
     /// Nonlinear solves: 1, or the outer iterations of the paper's nesting.
     pub nonlinear_solves: usize,
     /// Iterations of the contact solver, summed.

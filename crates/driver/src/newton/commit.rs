@@ -234,6 +234,7 @@ impl<const D: usize> Driver<D> {
             increment: self.state.increment,
             fraction: 1.0,
             newton_iterations: counts.newton,
+            astray_iterations: 0,
             nonlinear_solves: counts.solves,
             contact_iterations: counts.contact,
             factorisations: counts.factorisations,

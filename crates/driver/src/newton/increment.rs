@@ -455,7 +455,8 @@ impl<const D: usize> Driver<D> {
         (enough, imbalance, accuracy): (f64, f64, (f64, f64)),
         proximal: f64,
     ) -> Result<(Answer<D>, SparseVector), IncrementError> {
-        let mut unsymmetric = self.unsymmetric(system, &increment.iterate, imbalance, accuracy);
+        let at = (&increment.iterate, &*increment.end);
+        let mut unsymmetric = self.unsymmetric(system, at, imbalance, accuracy);
         let load = increment.iterate.assembly.load(&[&increment.end.force]);
         // Along a path the tangent of large strains may be that of nothing that stands.
         let follows = increment.control.is_some() && self.has_large_strains();
@@ -510,7 +511,8 @@ impl<const D: usize> Driver<D> {
             let contact = self.contact_forces(&kinematics, &answer.solution.force);
             increment.solution = Some(answer.solution.clone());
             let (iterate, prescribed) = (&increment.iterate, system.prescribed());
-            let settled = self.settles(&mut unsymmetric, iterate, &answer.step, prescribed);
+            let at = (iterate, &*increment.end);
+            let settled = self.settles(&mut unsymmetric, at, &answer.step, prescribed);
             let Some(following) = &mut following else {
                 if settled {
                     return Ok((answer, contact));

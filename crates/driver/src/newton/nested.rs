@@ -289,13 +289,14 @@ impl<const D: usize> Driver<D> {
             let mut step = vec![0.0; load.len()];
             std::mem::take(&mut increment.missing).add_to(&mut step, 1.0);
             let expected = FORCING * largest(load.iter().copied());
-            let mut unsymmetric = self.unsymmetric(system, iterate, worst, (expected, 0.0));
+            let at = (&*iterate, end);
+            let mut unsymmetric = self.unsymmetric(system, at, worst, (expected, 0.0));
             loop {
                 match &unsymmetric {
                     None => system.solve(&load, &mut step)?,
                     Some(u) => system.solve(&u.load(&load), &mut step)?,
                 }
-                if self.settles(&mut unsymmetric, iterate, &step, system.prescribed()) {
+                if self.settles(&mut unsymmetric, at, &step, system.prescribed()) {
                     break;
                 }
             }

@@ -50,6 +50,20 @@ impl<const D: usize> Driver<D> {
         sum
     }
 
+    /// Adds what the skew part of the stiffness of pressures makes of a step v from displacement increments \[N\].
+    pub(crate) fn add_turning_pressures(
+        &self,
+        pressures: &SparseVector,
+        (d_u, v): (&[f64], &[f64]),
+        forces: &mut [f64],
+    ) {
+        self.visit_pressed(pressures, d_u, &mut |pressed| {
+            for (row, column, k) in turning::<D>(pressed) {
+                forces[row] += k * v[column];
+            }
+        });
+    }
+
     /// Visits the facets under pressures after displacement increments.
     fn visit_pressed(
         &self,
@@ -69,19 +83,34 @@ fn forces<const D: usize>(pressed: &Pressed) -> impl Iterator<Item = (usize, f64
     pressed.force.iter().enumerate().map(of)
 }
 
-/// The symmetric part of −∂f/∂x times a factor, by degrees of freedom. What it leaves out belongs to the edge
-/// of the surface, is of the size of the pressure and not of the stiffness, and hardly slows Newton down.
+/// The symmetric part of −∂f/∂x times a factor, by degrees of freedom.
 fn stiffening<const D: usize>(
     pressed: &Pressed,
     factor: f64,
 ) -> impl Iterator<Item = (usize, usize, f64)> {
+    derivative::<D>(pressed, move |own, transposed| {
+        -0.5 * factor * (own + transposed)
+    })
+}
+
+/// The rest of −∂f/∂x. On the surface as a whole it belongs to its edge, and is of the size of the pressure: near a limit
+/// of the load, where the symmetric part has hardly any stiffness, all the same as large as that.
+fn turning<const D: usize>(pressed: &Pressed) -> impl Iterator<Item = (usize, usize, f64)> {
+    derivative::<D>(pressed, |own, transposed| -0.5 * (own - transposed))
+}
+
+/// A matrix of the entries of ∂f/∂x and of its transpose, by degrees of freedom.
+fn derivative<const D: usize>(
+    pressed: &Pressed,
+    entry: impl Fn(f64, f64) -> f64,
+) -> impl Iterator<Item = (usize, usize, f64)> {
     let size = pressed.force.len();
     let dof = |k: usize| D * pressed.nodes[k / D] + k % D;
+    let at = move |row: usize, column: usize| pressed.derivative[row * size + column];
     let of = move |(row, column): (usize, usize)| {
-        let at = |row: usize, column: usize| pressed.derivative[row * size + column];
-        let entry = -0.5 * factor * (at(row, column) + at(column, row));
-        (dof(row), dof(column), entry)
+        let value = entry(at(row, column), at(column, row));
+        (dof(row), dof(column), value)
     };
-    let entries = (0..size).flat_map(move |row| (0..size).map(move |column| (row, column)));
+    let entries = (0..size * size).map(move |k| (k / size, k % size));
     entries.map(of)
 }

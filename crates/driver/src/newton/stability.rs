@@ -150,7 +150,7 @@ impl<const D: usize> Driver<D> {
 
     /// Of every contact in space, at every degree of freedom, the row that tells how far what slips of it under friction
     /// spins about its mean normal.
-    fn spins(
+    pub(crate) fn spins(
         &self,
         system: &System,
         (kinematics, status): (&[Kinematics<D>], &[Status]),

@@ -5,6 +5,7 @@ use crate::assembly::block::points_of;
 use crate::assembly::cell_law::Motion;
 use crate::driver::Driver;
 use crate::linear::system::System;
+use crate::model::load::Loading;
 use crate::newton::iterate::Iterate;
 use crate::vector::largest;
 use crate::vector::prescribed::Prescribed;
@@ -83,15 +84,16 @@ impl Unsymmetric {
 
 impl<const D: usize> Driver<D> {
     /// What the tangent at an iterate asks of a step beyond its symmetric part: nothing where it is
-    /// symmetric, or nothing flows.
+    /// symmetric, or nothing flows. Pressures that follow their surface ask for what belongs to its edge.
     pub(crate) fn unsymmetric(
         &self,
         system: &System,
-        now: &Iterate,
+        (now, loading): (&Iterate, &Loading<D>),
         imbalance: f64,
         accuracy: (f64, f64),
     ) -> Option<Unsymmetric> {
-        let asks = now.assembly.flows && !self.is_symmetric();
+        let flows = now.assembly.flows && !self.is_symmetric();
+        let asks = flows || !loading.pressure.is_zero();
         asks.then(|| Unsymmetric::new(now.d_u.len(), imbalance, accuracy, system.is_direct()))
     }
 
@@ -99,11 +101,11 @@ impl<const D: usize> Driver<D> {
     pub(crate) fn settles(
         &self,
         unsymmetric: &mut Option<Unsymmetric>,
-        now: &Iterate,
+        at: (&Iterate, &Loading<D>),
         step: &[f64],
         held: &Prescribed,
     ) -> bool {
-        let settled = |u: &mut Unsymmetric| u.settles(self.lacking(now, step, held));
+        let settled = |u: &mut Unsymmetric| u.settles(self.lacking(at, step, held));
         unsymmetric.as_mut().is_none_or(settled)
     }
 
@@ -120,7 +122,12 @@ impl<const D: usize> Driver<D> {
     }
 
     /// A v at an iterate, at every degree of freedom \[N\]; zero at those held.
-    fn lacking(&self, now: &Iterate, v: &[f64], held: &Prescribed) -> Vec<f64> {
+    fn lacking(
+        &self,
+        (now, loading): (&Iterate, &Loading<D>),
+        v: &[f64],
+        held: &Prescribed,
+    ) -> Vec<f64> {
         let mut forces = vec![0.0; v.len()];
         let mut motion = Motion {
             from: &self.state.displacement,
@@ -136,6 +143,7 @@ impl<const D: usize> Driver<D> {
                 }
             });
         }
+        self.add_turning_pressures(&loading.pressure, (&now.d_u, v), &mut forces);
         held.clear(&mut forces);
         forces
     }

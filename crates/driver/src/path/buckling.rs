@@ -100,7 +100,8 @@ impl<const D: usize> Driver<D> {
                 return None;
             }
             drop(tied);
-            return self.instability(system, &mut |system, force| {
+            let spins = self.spins(system, (&kinematics, &status));
+            return self.instability(system, spins, &mut |system, force| {
                 let mut x = system.at_unknowns(|dof| force[dof]);
                 system.solve_tied(&mut x);
                 let mut v = vec![0.0; force.len()];
@@ -119,7 +120,8 @@ impl<const D: usize> Driver<D> {
         let condensation =
             Condensation::new(system, seam, points, (&kinematics, all), forces).ok()?;
         let interface = condensation.yielding(&status)?;
-        self.instability(system, &mut |system, force| {
+        let spins = self.spins(system, (&kinematics, &status));
+        self.instability(system, spins, &mut |system, force| {
             let mut v = vec![0.0; force.len()];
             let condensed = system.condense(force);
             let x = interface.displacement(&condensed.load);
@@ -129,12 +131,16 @@ impl<const D: usize> Driver<D> {
         })
     }
 
-    /// The nearest elastic instability of what gives way as the compliance tells.
+    /// The nearest elastic instability of what gives way as the compliance tells, where none of the spins happens.
     fn instability(
         &self,
         system: &mut System,
+        spins: Vec<Vec<f64>>,
         compliance: &mut Compliance<'_>,
     ) -> Option<Buckling<D>> {
+        let held = Unspun::new(system, spins, compliance)?;
+        let compliance: &mut Compliance<'_> =
+            &mut |system, force| compliance(system, force).map(|v| held.without(v));
         let (weights, inverse) = self.lanczos(system, compliance, None)?;
         if inverse * Buckling::<D>::NEAR < 1.0 {
             // No mode is needed of what is far away.
@@ -227,6 +233,54 @@ impl<const D: usize> Driver<D> {
             }
         }
         Some((weights, largest))
+    }
+}
+
+/// What holds surfaces that slip under friction against spins s about their normals: that resists them, see
+/// [`Driver::spins`], and no elastic stiffness does where a body may turn about one node that sticks.
+struct Unspun {
+    rows: Vec<DVector<f64>>,
+    /// C s of every row.
+    answers: Vec<DVector<f64>>,
+    /// (s·C s)⁻¹.
+    inverse: DMatrix<f64>,
+}
+
+impl Unspun {
+    /// Of spins s under a compliance C; `None` where that is no number.
+    fn new(
+        system: &mut System,
+        rows: Vec<Vec<f64>>,
+        compliance: &mut Compliance<'_>,
+    ) -> Option<Self> {
+        let answers = rows
+            .iter()
+            .map(|row| compliance(system, row.clone()).map(DVector::from_vec));
+        let answers = answers.collect::<Option<Vec<_>>>()?;
+        let rows: Vec<_> = rows.into_iter().map(DVector::from_vec).collect();
+        let entry = |i: usize, j: usize| rows[i].dot(&answers[j]);
+        let both = DMatrix::from_fn(rows.len(), rows.len(), entry);
+        let rounding = f64::EPSILON * both.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+        let inverse = both.pseudo_inverse(rounding).ok()?;
+        Some(Self {
+            rows,
+            answers,
+            inverse,
+        })
+    }
+
+    /// Displacements v under forces, with those of the moments that keep s·v = 0. What nearly nothing resists is large in v,
+    /// and its rounding as well: it is taken off twice.
+    fn without(&self, v: Vec<f64>) -> Vec<f64> {
+        let mut v = DVector::from_vec(v);
+        for _ in 0..2 {
+            let spun = DVector::from_iterator(self.rows.len(), self.rows.iter().map(|s| s.dot(&v)));
+            let moments = &self.inverse * spun;
+            for (answer, moment) in self.answers.iter().zip(moments.iter()) {
+                v.axpy(-moment, answer, 1.0);
+            }
+        }
+        v.as_slice().to_vec()
     }
 }
 

@@ -28,6 +28,10 @@ const HALVINGS: usize = 4;
 const PART: f64 = 0.25;
 const SHORTEST: f64 = 1.0 / 128.0;
 
+/// Iterations of all its parts, over those that one way to balance may take, after which an increment that is followed is
+/// cut instead: in the example decks those that led to its end took less than one (`moreau run --json-log`).
+const FOLLOWED: usize = 3;
+
 impl<const D: usize> Driver<D> {
     /// Applies the increment from one loading to another and commits it; `watch` sees every
     /// iterate.
@@ -39,6 +43,7 @@ impl<const D: usize> Driver<D> {
         watch: &mut dyn FnMut(&Self, &Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<IncrementReport, IncrementError> {
         let mut candidate = self.equilibrium(system, (start, end), watch)?;
+        let astray_iterations = self.spent.newton;
         if candidate.counts.undetermined {
             candidate = self.nearest(system, (start, end), candidate, watch)?;
         }
@@ -52,6 +57,7 @@ impl<const D: usize> Driver<D> {
         };
         let report = self.commit(start, end, candidate)?;
         Ok(IncrementReport {
+            astray_iterations,
             mode,
             leap,
             ..report
@@ -161,10 +167,11 @@ impl<const D: usize> Driver<D> {
 
     /// Finds the equilibrium at the end of an increment by following it along the loading, in parts: history stands
     /// still, so that the equilibrium is that of one increment. Where a part may not go on for more than `patience`
-    /// iterations without halving its residual, none may fail, else parts shrink where they do.
+    /// iterations without halving its residual, none may fail, else parts shrink where they do. All of them together may
+    /// take [`FOLLOWED`] times the iterations of one: a shorter increment costs less than parts that hardly get on.
     ///
     /// # Errors
-    /// That of a part as short as they may be.
+    /// That of a part as short as they may be, or after which no more may be tried.
     fn continued(
         &mut self,
         system: &mut System,
@@ -175,6 +182,9 @@ impl<const D: usize> Driver<D> {
         let (mut done, mut length) = (0.0, PART);
         let mut last: Option<Candidate<D>> = None;
         let mut spent = Counts::default();
+        // Those of parts that failed are in `self.spent` alone.
+        let failed = self.spent.newton;
+        let most = FOLLOWED * self.settings.iterations;
         loop {
             let to = if done + length < 1.0 - 0.5 * PART {
                 done + length
@@ -205,11 +215,15 @@ impl<const D: usize> Driver<D> {
                     length = (2.0 * length).min(PART);
                     last = Some(candidate);
                 }
-                Err(error) if patience.is_some() || length < SHORTEST || error.is_broken_off() => {
-                    self.spent.add(&spent);
-                    return Err(error);
+                Err(error) => {
+                    let tried = spent.newton + (self.spent.newton - failed);
+                    let ends = patience.is_some() || length < SHORTEST || tried >= most;
+                    if ends || error.is_broken_off() {
+                        self.spent.add(&spent);
+                        return Err(error);
+                    }
+                    length *= 0.5;
                 }
-                Err(_) => length *= 0.5,
             }
         }
     }

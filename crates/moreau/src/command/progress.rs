@@ -69,8 +69,12 @@ impl Watch for Progress {
             0 => String::new(),
             n => format!(", {n} cuts"),
         };
+        let astray = match r.astray_iterations {
+            0 => String::new(),
+            n => format!(" ({n} of them on ways that led to no balance)"),
+        };
         let line = format!(
-            "step {}/{} {}, increment {} ({:.4} % of the step{cuts}): {} Newton, {} contact; \
+            "step {}/{} {}, increment {} ({:.4} % of the step{cuts}): {} Newton{astray}, {} contact; \
              {} open, {} stick, {} slip; {:.1} % plastic; gap {:.1e}; {} left",
             increment.stage,
             increment.stages,

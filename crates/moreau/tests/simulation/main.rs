@@ -26,6 +26,7 @@ mod nearby;
 mod opposite;
 mod outside;
 mod points;
+mod pressed;
 mod replaced;
 mod saved;
 mod sheared;
