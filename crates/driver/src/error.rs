@@ -199,12 +199,12 @@ pub enum ModelError {
     },
     /// A body that could move without resistance.
     #[error(
-        "the body of cell {cell} is free to move: nothing resists {motion}. \
+        "{body} is free to move: nothing resists {motion}. \
          Fix displacements, or add a contact (with friction, if the motion is along its surface)"
     )]
     FreeRigidMotion {
-        /// First cell of the body.
-        cell: usize,
+        /// The body in words, see [`Driver::body_in_words`](crate::Driver::body_in_words).
+        body: String,
         /// The motion in words.
         motion: String,
     },
@@ -265,6 +265,21 @@ pub enum ModelError {
         /// The tool.
         tool: String,
         /// The moment \[N·mm\].
+        moment: f64,
+        /// The moment in the last equilibrium \[N·mm\].
+        carried: f64,
+    },
+    /// A tool whose moment is nearly all that friction carries.
+    #[error(
+        "friction alone holds tool {tool:?} against its moment, and carries hardly more: in the last equilibrium, under \
+         {carried:.6e} N·mm, nearly all that touches the tool slipped. While the moment is there, on its way to {moment} N·mm, \
+         hardly anything decides how far the tool turns. Let it go first in a step of its own in which nothing moves, press it \
+         harder, give it a smaller moment, or prescribe its turn"
+    )]
+    SlippingTool {
+        /// The tool.
+        tool: String,
+        /// The moment at the end of the step \[N·mm\].
         moment: f64,
         /// The moment in the last equilibrium \[N·mm\].
         carried: f64,
@@ -638,6 +653,28 @@ pub enum IncrementError {
         /// The load factor and its bound.
         collapse: Collapse,
     },
+    /// No balance where something begins within something else, which shorter increments make no less.
+    #[error(
+        "{surface:?} and {opposite:?} are within each other before anything moves, by {depth:.3} mm at node {node} at \
+         {position:?}, {inside} nodes in all: that is more than the body can be pushed apart at once, and shorter \
+         increments make it no less. Of the attempt: {cause}"
+    )]
+    Overlap {
+        /// The surface of the contact.
+        surface: String,
+        /// The tool or the surface that it is against.
+        opposite: String,
+        /// How deep one is in the other \[mm\].
+        depth: f64,
+        /// The node where that is.
+        node: usize,
+        /// Its position \[mm\].
+        position: Vec<f64>,
+        /// Nodes that are within what they are in contact with.
+        inside: usize,
+        /// Why the attempt failed.
+        cause: Box<IncrementError>,
+    },
     /// The step was cut as far as allowed.
     #[error(
         "step {step:?} stopped at {:.4} % of its load: increments were cut to {smallest:.2e} of the \
@@ -745,6 +782,7 @@ fn collapse_hint(
         IncrementError::Passage { .. }
             | IncrementError::Turn { .. }
             | IncrementError::Within { .. }
+            | IncrementError::Overlap { .. }
             | IncrementError::NotFinite { .. }
             | IncrementError::Law(_)
             | IncrementError::Snap { .. }

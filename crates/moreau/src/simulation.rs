@@ -30,6 +30,7 @@
 mod contact;
 mod course;
 mod diagnosis;
+mod ends;
 mod history;
 mod json;
 mod outcome;

@@ -2,6 +2,8 @@
 //! not what contact makes of them.
 
 use crate::driver::Driver;
+use crate::error::IncrementError;
+use crate::model::load::Loading;
 use moreau_mesh::Facet;
 use nalgebra::SVector;
 
@@ -21,6 +23,10 @@ pub struct LeastGap<const D: usize> {
     /// Whether contact is found there: not where bodies are deeper within each other than a facet is long.
     pub met: bool,
 }
+
+/// Motion in an increment, over the depth of what begins within something else, up to which a shorter one is as good as the
+/// same.
+const SAME: f64 = 0.1;
 
 /// Penetrations below this part of the size of the mesh are rounding of a file.
 const ROUNDING: f64 = 1e-6;
@@ -61,6 +67,40 @@ impl<const D: usize> Driver<D> {
             };
             Some((gap, p.node))
         })
+    }
+
+    /// What begins within something else by far more than the first increment, from one loading to another, moves anything: if
+    /// that one has no balance, no shorter one has. `None` where it changes loads, which are less in a shorter one.
+    pub(crate) fn overlap_at_start(
+        &self,
+        start: &Loading<D>,
+        end: &Loading<D>,
+    ) -> Option<LeastGap<D>> {
+        if self.state.increment > 0 {
+            return None;
+        }
+        let grows = end.increment_from(start);
+        let loads = [&grows.force, &grows.pressure];
+        if loads.iter().any(|load| !load.is_zero()) || start.temperature != end.temperature {
+            return None;
+        }
+        let gaps = self.least_gaps().into_iter().filter(|g| g.inside > 0);
+        let deepest = gaps.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        (self.driven(&grows) <= SAME * -deepest.gap).then_some(deepest)
+    }
+
+    /// Why an increment failed that begins with an overlap.
+    pub(crate) fn overlapping(&self, gap: &LeastGap<D>, cause: IncrementError) -> IncrementError {
+        let (surface, opposite) = self.contact_name(gap.contact);
+        IncrementError::Overlap {
+            surface: surface.to_owned(),
+            opposite: opposite.to_owned(),
+            depth: -gap.gap,
+            node: gap.node,
+            position: gap.position.to_vec(),
+            inside: gap.inside,
+            cause: Box::new(cause),
+        }
     }
 
     fn least_gap(&self, contact: usize) -> Option<LeastGap<D>> {

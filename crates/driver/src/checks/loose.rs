@@ -4,6 +4,7 @@
 use crate::driver::Driver;
 use crate::error::{ModelError, ToolOutOfContact};
 use crate::model::load::Loading;
+use crate::model::points::in_space;
 use nalgebra::SVector;
 
 /// Gaps below this part of the size of the mesh are closed.
@@ -12,6 +13,8 @@ const CLOSED: f64 = 1e-9;
 const TOUCHING: f64 = 1e-6;
 /// How far its way is followed, in sizes of the mesh beyond the first gap.
 const FARTHEST: f64 = 10.0;
+/// Part of the largest shear of all contacts, and of their moments, each taken positive, that is nearly all.
+const NEARLY: f64 = 0.95;
 /// After so many looks it passes along the body, not towards it.
 const LOOKS: usize = 10_000;
 
@@ -60,6 +63,33 @@ impl<const D: usize> Driver<D> {
             tool: self.tools[tool].name.clone(),
             moment: moment(&tool),
             carried: carried.dot(&end.axle_of(tool)?),
+        })
+    }
+
+    /// The first tool that nothing prescribes the turn of, and that friction alone holds against a moment which is nearly all
+    /// that it carries: what touches the tool turns it the same way, by almost as much shear as its pressure allows.
+    pub(crate) fn slipping_tool(&self, end: &Loading<D>) -> Option<ModelError> {
+        let rest = vec![0.0; self.state.displacement.len()];
+        let carried = |tool: usize| {
+            let axle = end.axle_of(tool)?;
+            let (mut sum, mut all, mut shear, mut bound) = (0.0, 0.0, 0.0, 0.0);
+            let pairs = self.points.iter().zip(&self.state.contacts);
+            for (point, contact) in pairs.filter(|(p, c)| p.tool == Some(tool) && c.t[0] > 0.0) {
+                let arm = self.arm(tool, point, &rest);
+                let moment = arm.cross(&in_space(&contact.force)).dot(&axle);
+                sum += moment;
+                all += moment.abs();
+                shear += contact.t.rows(1, D - 1).norm();
+                bound += point.law.bound(contact.t[0]);
+            }
+            (all > 0.0 && sum.abs() >= NEARLY * all && shear >= NEARLY * bound).then_some(sum)
+        };
+        let mut tools = self.spun_by_normals(end).into_iter();
+        let (tool, carried) = tools.find_map(|tool| Some((tool, carried(tool)?)))?;
+        Some(ModelError::SlippingTool {
+            tool: self.tools[tool].name.clone(),
+            moment: end.force.at(self.turn_dof(tool)) * self.mesh.size(),
+            carried,
         })
     }
 

@@ -149,7 +149,7 @@ impl<const D: usize> Driver<D> {
                     motion,
                 },
                 None => ModelError::FreeRigidMotion {
-                    cell: rows.cells[body],
+                    body: self.body_in_words(rows.cells[body]),
                     motion,
                 },
             }),
@@ -261,7 +261,7 @@ impl<const D: usize> Driver<D> {
         let rows = self.resisted(&self.state.loading, Self::resisting);
         let whose = |body: usize| match body.checked_sub(rows.cells.len()) {
             Some(k) => format!("tool {:?}", self.tools[rows.tools[k]].name),
-            None => format!("the body of cell {}", rows.cells[body]),
+            None => self.body_in_words(rows.cells[body]),
         };
         let motions = rows.free().into_iter();
         motions
@@ -294,8 +294,19 @@ impl<const D: usize> Driver<D> {
         let motions = rows.free().into_iter();
         let moved = motions.filter(|(body, _)| *body < bodies.len() && has_moved(body));
         moved
-            .map(|(body, motion)| format!("{motion} of the body of cell {}", rows.cells[body]))
+            .map(|(body, motion)| format!("{motion} of {}", self.body_in_words(rows.cells[body])))
             .collect()
+    }
+
+    /// The body of a cell in words: by the smallest group of cells that holds the cell, by the cell itself where none does.
+    pub fn body_in_words(&self, cell: usize) -> String {
+        let groups = self.mesh.group_names();
+        let groups = groups.filter_map(|name| Some((name, self.mesh.cell_group(name).ok()?)));
+        let holding = groups.filter(|(_, cells)| cells.binary_search(&cell).is_ok());
+        match holding.min_by_key(|(_, cells)| cells.len()) {
+            Some((name, _)) => format!("the body \"{name}\""),
+            None => format!("the body of cell {cell}"),
+        }
     }
 
     /// Components in which a contact point may resist a motion: the normal, and the tangents where its

@@ -261,7 +261,10 @@ impl Unspun {
         let entry = |i: usize, j: usize| rows[i].dot(&answers[j]);
         let both = DMatrix::from_fn(rows.len(), rows.len(), entry);
         let rounding = f64::EPSILON * both.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
-        let inverse = both.pseudo_inverse(rounding).ok()?;
+        let inverse = match rows.is_empty() {
+            true => both,
+            false => both.pseudo_inverse(rounding).ok()?,
+        };
         Some(Self {
             rows,
             answers,

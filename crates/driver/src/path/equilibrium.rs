@@ -159,7 +159,7 @@ impl<const D: usize> Driver<D> {
     }
 
     /// The largest motion that a loading prescribes, of a turn at the size of the mesh \[mm\].
-    fn driven(&self, grows: &Loading<D>) -> f64 {
+    pub(crate) fn driven(&self, grows: &Loading<D>) -> f64 {
         let turned = largest(grows.turn.iter().map(|(_, angle)| angle));
         let moved = largest(grows.displacement.values().copied());
         moved.max(turned * self.mesh.size())

@@ -368,6 +368,11 @@ impl<const D: usize> Driver<D> {
                 }
                 Err(error) if error.is_final() => return Err(error),
                 Err(cause) => {
+                    if let Some(gap) = self.overlap_at_start(&ramp.at(ramp.done), &loading) {
+                        let cause = self.overlapping(&gap, cause);
+                        let (length, flows) = (target - ramp.done, self.plastic_fraction());
+                        return Err(ramp.stopped(cause, length, flows));
+                    }
                     // Halved exactly, and until it is not what has just failed.
                     ramp.length *= 0.5;
                     while ramp.length >= (1.0 - 1e-9) * (target - ramp.done) {
@@ -407,7 +412,7 @@ impl<const D: usize> Driver<D> {
         }
     }
 
-    /// Why a step stopped: a tool that nothing holds, if there is one.
+    /// Why a step stopped: a tool that nothing holds, or that friction holds no further, if there is one.
     fn out_of_hand(&self, ramp: &Ramp<D>, stopped: IncrementError) -> IncrementError {
         let is_singular = |error: &IncrementError| match error {
             IncrementError::Stopped { cause, .. } => cause.is_singular(),
@@ -418,6 +423,7 @@ impl<const D: usize> Driver<D> {
                 .then(|| self.spinning_tool(&ramp.end))
                 .flatten()
         });
+        let loose = loose.or_else(|| self.slipping_tool(&ramp.end));
         loose.map_or(stopped, Into::into)
     }
 

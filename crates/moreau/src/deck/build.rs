@@ -421,19 +421,21 @@ fn supports<const D: usize>(
         // The step has been loaded already.
         let supports = driver.supports(&stage.step).unwrap_or_default();
         for support in supports.iter().filter(|s| !s.free.is_empty()) {
+            let (name, _) = groups.origin(deck, support.cell);
             let error = ModelError::FreeRigidMotion {
-                cell: support.cell,
+                body: format!("the body \"{name}\""),
                 motion: support.free.join(", "),
             };
-            let (name, _) = groups.origin(deck, support.cell);
             // No contact is found between bodies that lie deep within each other.
             let unmet = gaps.iter().filter(|g| !g.met);
             let overlaps = unmet.map(|g| penetrations::sentence(deck, driver, g) + ". Until then ");
             let overlaps: String = overlaps.collect();
-            let message = format!(
-                "step \"{}\", body \"{name}\": {overlaps}{error}",
-                entry.name.value
-            );
+            let whose = match overlaps.is_empty() {
+                true => String::new(),
+                false => format!(", body \"{name}\""),
+            };
+            let step = &entry.name.value;
+            let message = format!("step \"{step}\"{whose}: {overlaps}{error}");
             findings
                 .error(&entry.name.span, message, "in this step")
                 .about(Class::Bodies);

@@ -130,7 +130,7 @@ impl<const D: usize> Course<D> {
             });
             self.ramp = Some(ramp);
             match outcome {
-                Ok(report) => return Ok(Some(self.converged(report))),
+                Ok(report) => return Ok(Some(self.converged(deck, report))),
                 Err(error) if error.is_broken_off() => return Err(error.into()),
                 Err(IncrementError::Collapse { collapse, step }) => {
                     self.tally.collapse = Some((self.stage, collapse));
@@ -160,7 +160,7 @@ impl<const D: usize> Course<D> {
     }
 
     /// Takes note of a converged increment, and of the end of its step if that is it.
-    fn converged(&mut self, report: IncrementReport) -> Converged {
+    fn converged(&mut self, deck: &Deck, report: IncrementReport) -> Converged {
         let (stages, stage) = (self.setup.stages.len(), &self.setup.stages[self.stage]);
         let place = Place {
             stage: self.stage + 1,
@@ -168,7 +168,7 @@ impl<const D: usize> Course<D> {
         };
         let (driver, until_collapse) = (&self.setup.driver, stage.until_collapse);
         self.history.record(driver, &report, &place);
-        self.tally.add(driver, &report, until_collapse);
+        self.tally.add((driver, deck), &report, until_collapse);
         let converged = Converged {
             step: stage.step.name().to_owned(),
             stage: place.stage,

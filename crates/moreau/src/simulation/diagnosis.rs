@@ -93,7 +93,7 @@ impl Diagnosis {
             let left = driver.let_go(step, seen).map(|free| (free, false));
             let left = left.or_else(|| Some((all(Status::Slip)?, true)));
             let ((cell, motion), slides) = left.or_else(|| Some((all(Status::Open)?, false)))?;
-            Some((body_of(driver, cell), motion, slides))
+            Some((driver.body_in_words(cell), motion, slides))
         });
         let suggestion = match (free, deck.steps.get(stage)) {
             (Some((body, motion, true)), Some(step)) => format!(
@@ -128,20 +128,6 @@ impl Diagnosis {
 fn pushed(deck: &Deck, stage: usize) -> Option<&ConditionEntry> {
     let mut conditions = deck.steps.get(stage)?.conditions.iter();
     conditions.find(|c| matches!(c.action, Action::Push(..) | Action::Moment(..)))
-}
-
-/// The body of a cell, by the smallest group of cells that it is in.
-fn body_of<const D: usize>(driver: &Driver<D>, cell: usize) -> String {
-    let mesh = driver.mesh();
-    let own = |name: &&str| {
-        let cells = mesh.cell_group(name).unwrap_or_default();
-        cells.binary_search(&cell).is_ok()
-    };
-    let size = |name: &&str| mesh.cell_group(name).map_or(0, <[usize]>::len);
-    match mesh.group_names().filter(own).min_by_key(size) {
-        Some(name) => format!("the body \"{name}\""),
-        None => format!("the body of cell {cell}"),
-    }
 }
 
 fn suggestion(
@@ -184,6 +170,14 @@ fn suggestion(
              force towards the surface, give the contact friction, or prescribe the motion of the tool \
              (move, turn) along what slides",
             pushed.map_or("", |p| &p.on.value)
+        ),
+        (
+            _,
+            IncrementError::Overlap {
+                surface, opposite, ..
+            },
+        ) => format!(
+            "move \"{opposite}\" off \"{surface}\" where it stands in the deck, and let the first step bring it there"
         ),
         (_, IncrementError::NotFinite { .. }) => format!(
             "in step \"{name}\" prescribe what the model can follow: displacements of its size at most, and \

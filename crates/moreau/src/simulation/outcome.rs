@@ -114,7 +114,7 @@ impl Tally {
 
     pub(super) fn add<const D: usize>(
         &mut self,
-        driver: &Driver<D>,
+        (driver, deck): (&Driver<D>, &Deck),
         report: &IncrementReport,
         to_collapse: bool,
     ) {
@@ -137,7 +137,7 @@ impl Tally {
         {
             self.criticality = Some((point, ratio, report.increment));
         }
-        self.warnings.add(driver, report, to_collapse);
+        self.warnings.add((driver, deck), report, to_collapse);
     }
 }
 

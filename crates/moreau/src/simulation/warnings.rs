@@ -5,6 +5,7 @@ use crate::deck::{Deck, Units};
 use crate::driver::{Between, Buckling, ContactRecord, Deformation, Driver, Energies, Extent};
 use crate::driver::{IncrementReport, ModelError, Numbers, Saved};
 use crate::numbers::{place, shown};
+use crate::simulation::ends::End;
 
 /// What may be doubtful about a converged state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,9 +50,11 @@ enum Kind {
     Strained,
     /// Slips that change their direction within an increment.
     Swing,
+    /// Nodes that bear on a tool beyond the ends of its line.
+    End,
 }
 
-const KINDS: [Kind; 20] = [
+const KINDS: [Kind; 21] = [
     Kind::Strain,
     Kind::Rotation,
     Kind::Inverted,
@@ -72,6 +75,7 @@ const KINDS: [Kind; 20] = [
     Kind::Stride,
     Kind::Strained,
     Kind::Swing,
+    Kind::End,
 ];
 
 /// Quality below which a cell is distorted: that of a rectangle 1 : 20, or of a square sheared by 4.2.
@@ -147,6 +151,11 @@ impl Balance {
         self.most = self.most.max(energies.taken());
     }
 
+    /// Whether all that was ever stored or dissipated is rounding.
+    fn is_idle(&self) -> bool {
+        self.most <= self.rounding
+    }
+
     fn sentence(&self, units: Units) -> Option<String> {
         let unit = units.energy();
         let [imbalance, work, taken] = self.worst.map(|v| shown(v, 4));
@@ -186,7 +195,7 @@ impl Warnings {
     /// know the load, and their size says nothing.
     pub(super) fn add<const D: usize>(
         &mut self,
-        driver: &Driver<D>,
+        (driver, deck): (&Driver<D>, &Deck),
         report: &IncrementReport,
         to_collapse: bool,
     ) {
@@ -219,6 +228,16 @@ impl Warnings {
         }
         if !to_collapse {
             self.coarse(driver, report);
+        }
+        if let Some(end) = End::farthest(driver, deck) {
+            let last = f64::from(u8::from(end.is_last));
+            let numbers = vec![end.beyond, end.count as f64, end.contact as f64, last];
+            self.note(
+                Kind::End,
+                numbers,
+                (end.node, end.position),
+                report.increment,
+            );
         }
         self.done = report.fraction;
         self.undecided(driver, report);
@@ -305,7 +324,12 @@ impl Warnings {
             let at = (most.node, most.position.to_vec());
             self.note(Kind::Shearless, numbers, at, when);
         }
-        if report.negative_eigenvalues > 0 && self.worst[Kind::Unstable as usize].is_none() {
+        // The tangent of an increment that strains far is not that of the body at its end.
+        let far = report.plastic_fraction > 0.0
+            && driver.has_large_strains()
+            && driver.strain_of_increment() > STRAINED;
+        let is_known = self.worst[Kind::Unstable as usize].is_some();
+        if report.negative_eigenvalues > 0 && !is_known && !far {
             let (at, direction) = most_moved(driver, report.mode.as_deref());
             let numbers = [vec![report.negative_eigenvalues as f64], direction].concat();
             self.note(Kind::Unstable, numbers, at, when);
@@ -432,7 +456,11 @@ impl Warnings {
     pub(super) fn sentences<const D: usize>(&self, driver: &Driver<D>, deck: &Deck) -> Vec<String> {
         let of = |kind: Kind| {
             let worst = self.worst[kind as usize].as_ref()?;
-            Some(worst.sentence(kind, driver, deck))
+            let told = match kind {
+                Kind::Free if self.balance.is_idle() => worst.pushed(driver),
+                _ => None,
+            };
+            Some(told.unwrap_or_else(|| worst.sentence(kind, driver, deck)))
         };
         let kinds = KINDS.into_iter().filter_map(of);
         kinds.chain(self.balance.sentence(deck.units)).collect()
@@ -496,6 +524,7 @@ impl Worst {
             Kind::Shearless => self.shearless(driver, deck),
             Kind::Stride => self.stride(driver, deck),
             Kind::Swing => self.swing(driver),
+            Kind::End => self.end(driver, deck),
             Kind::Strained => format!(
                 "strains are large for one increment: in increment {when} a tenth of the body is strained by {} or more, and its \
                  law goes straight from one state to the other, which makes forces wrong by percents; use {} \
@@ -626,7 +655,7 @@ impl Worst {
         let (index, at) = (self.index, place(&self.position, DIGITS));
         let step = deck.steps.get(self.when);
         let step = step.map_or("", |s| s.name.value.as_str());
-        let [own, other] = [2, 3].map(|k| body_name(driver, self.number(k) as usize));
+        let [own, other] = [2, 3].map(|k| driver.body_in_words(self.number(k) as usize));
         format!(
             "{} nodes have moved into another body at the end of step \"{step}\", as node {index} of {own}, at {at} in the \
              mesh, by {} {} into {other}: neither a contact nor a tie is between them there, and bodies pass through each \
@@ -709,6 +738,24 @@ impl Worst {
         )
     }
 
+    fn end<const D: usize>(&self, driver: &Driver<D>, deck: &Deck) -> String {
+        let (index, when, at) = (self.index, self.when, place(&self.position, DIGITS));
+        let (surface, tool) = driver.contact_name(self.number(2) as usize);
+        let which = if self.number(3) > 0.0 {
+            "last"
+        } else {
+            "first"
+        };
+        format!(
+            "\"{surface}\" bears on \"{tool}\" beyond the {which} of its points, where its line only goes on straight: by {} {} \
+             at node {index} at {at} in increment {when}, {} nodes in all; give the line the points that the tool has there, \
+             or one where it ends",
+            shown(self.number(0), 3),
+            deck.units.length(),
+            shown(self.number(1), 9)
+        )
+    }
+
     fn free<const D: usize>(&self, driver: &Driver<D>) -> String {
         let when = self.when;
         let mut now = driver.free_motions();
@@ -725,6 +772,21 @@ impl Worst {
              before; fix what symmetry fixes if they matter",
             shown(self.number(0), 9)
         )
+    }
+
+    /// That contacts push a body along which nothing holds on its other side, where no force has done any work; `None` if none
+    /// has moved.
+    fn pushed<const D: usize>(&self, driver: &Driver<D>) -> Option<String> {
+        let motions = driver.pushed_motions();
+        (!motions.is_empty()).then(|| {
+            format!(
+                "a body is pushed and not held: nothing resists the {}, and since increment {} what touches it only moves it \
+                 along, without any force; nothing has been stored or dissipated in the whole run, which tells nothing of the \
+                 body: the support on its other side is missing, as a plane of symmetry that is to be fixed",
+                motions.join(", the "),
+                self.when
+            )
+        })
     }
 
     /// How the body gives way, if that is known.
@@ -757,18 +819,6 @@ impl Worst {
              most, along {direction}; {what}: load less, or hold it against that motion",
             shown(factor, 3)
         )
-    }
-}
-
-/// The smallest group of cells with a cell, in words.
-fn body_name<const D: usize>(driver: &Driver<D>, cell: usize) -> String {
-    let mesh = driver.mesh();
-    let groups = mesh.group_names();
-    let groups = groups.filter_map(|name| Some((name, mesh.cell_group(name).ok()?)));
-    let holds = groups.filter(|(_, cells)| cells.binary_search(&cell).is_ok());
-    match holds.min_by_key(|(_, cells)| cells.len()) {
-        Some((name, _)) => format!("\"{name}\""),
-        None => format!("the body of cell {cell}"),
     }
 }
 

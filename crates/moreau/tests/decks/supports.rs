@@ -75,7 +75,7 @@ fn in_the_plane() {
     assert_eq!(stoppers(body, 1)[2].1, Contact);
     let out = refused(&loose.replace("friction = 0.1", "friction = 0"));
     for step in ["press", "release"] {
-        let said = format!("step \"{step}\", body \"block\": the body");
+        let said = format!("step \"{step}\": the body \"block\" is free to move");
         assert!(out.contains(&said), "{said} in {out}");
     }
     assert!(

@@ -4,6 +4,7 @@ mod ahead;
 mod axis;
 mod beside;
 mod beyond;
+mod causes;
 mod coarse;
 mod cornered;
 mod driven;

@@ -113,7 +113,7 @@ fix = [{{ on = "b.left", u = ["x"] }}{fix}]
 tools = [{{ name = "die", move = [0, -0.05] }}]
 "#
         )));
-        warned(&pressed, "neither conditions nor contact decide")
+        warned(&pressed, "pushed and not held")
     };
     let floor = r#"[[tool]]
 name = "floor"
