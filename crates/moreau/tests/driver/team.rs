@@ -265,12 +265,14 @@ fn results_do_not_depend_on_the_number_of_processes() {
         (Seam::Tied, false, None),
         (Seam::Cheaper, true, None),
     ] {
-        let (expected, ..) = course(driver(None, of));
+        let (expected, _, steps) = course(driver(None, of));
+        // None are of conjugate gradients; under large strains some are of pressures, whose stiffness is not symmetric.
+        assert_eq!(steps > 0, of.1);
         let size = expected.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         for count in [1, 2, 3, 5] {
             let (found, _, iterations) = course_on(count, of);
             assert_eq!(found.len(), expected.len());
-            assert_eq!(iterations, 0);
+            assert_eq!(iterations, steps);
             for (a, b) in expected.iter().zip(&found) {
                 assert!(
                     (a - b).abs() < 1e-9 * size,
