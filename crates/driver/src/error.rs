@@ -677,8 +677,9 @@ pub enum IncrementError {
     },
     /// The step was cut as far as allowed.
     #[error(
-        "step {step:?} stopped at {:.4} % of its load: increments were cut to {smallest:.2e} of the \
-         step. {}Last attempt: {cause}", 100.0 * .reached, collapse_hint(.cause, *.plastic_fraction, *.limit, (*.moves, *.reached))
+        "step {step:?} stopped at {:.4} % of its load: {}{cause}",
+        100.0 * .reached,
+        last_attempt(.cause, *.smallest, &collapse_hint(.cause, *.plastic_fraction, *.limit, (*.moves, *.reached)))
     )]
     Stopped {
         /// Name of the step.
@@ -744,7 +745,6 @@ fn worst_nodes(worst: &[Imbalance]) -> String {
     worst.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// What to look for, and a space; nothing where the cause says it.
 /// To six digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.5e}").parse().unwrap_or(value)
@@ -771,6 +771,16 @@ fn overstress(stress: &[f64; 2], borne: &[f64; 2]) -> String {
     )
 }
 
+/// What comes before the cause: how short the last attempt was, and a hint. None of an overlap, which no shorter one was
+/// tried for.
+fn last_attempt(cause: &IncrementError, smallest: f64, hint: &str) -> String {
+    match cause {
+        IncrementError::Overlap { .. } => String::new(),
+        _ => format!("increments were cut to {smallest:.2e} of the step. {hint}Last attempt: "),
+    }
+}
+
+/// What to look for, and a space; nothing where the cause says it.
 fn collapse_hint(
     cause: &IncrementError,
     plastic_fraction: f64,

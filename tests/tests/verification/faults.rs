@@ -70,7 +70,8 @@ fn free_rigid_motions_are_refused() -> Fallible {
     // Frictionless on a floor, without a support at the side.
     let mut driver = on_floor(0.0, Settings::default())?;
     match refused(&mut driver, &press("slide")) {
-        IncrementError::Model(ModelError::FreeRigidMotion { cell: 0, motion }) => {
+        IncrementError::Model(ModelError::FreeRigidMotion { body, motion }) => {
+            assert_eq!(body, "the body \"block\"");
             assert_eq!(motion, "translation along x");
         }
         other => panic!("{other:?}"),
@@ -118,7 +119,9 @@ fn free_rigid_motions_are_refused() -> Fallible {
         &mut driver,
         &Step::new("hold").fix("block.left", &[Axis::X, Axis::Y]),
     ) {
-        IncrementError::Model(ModelError::FreeRigidMotion { cell, .. }) => assert_eq!(cell, 8),
+        IncrementError::Model(ModelError::FreeRigidMotion { body, .. }) => {
+            assert_eq!(body, "the body \"loose\"");
+        }
         other => panic!("{other:?}"),
     }
     Ok(())
