@@ -293,7 +293,9 @@ impl Patch {
         let edges = [0, 1, 2].map(|k| self.on_edge(x, k));
         let [a, b, c] = edges;
         let edge = nearer(nearer(a, b), c);
-        if far(&edge) <= self.away(x) || edges.iter().all(|at| self.at(at).is_valley(x)) {
+        let away = self.away(x);
+        let is_far = away > self.bulge;
+        if far(&edge) <= away || is_far && edges.iter().all(|at| self.at(at).is_valley(x)) {
             return edge;
         }
         // A bent patch may be nearer inside, where a search from its middle does not lead.

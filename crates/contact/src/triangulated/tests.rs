@@ -398,8 +398,14 @@ fn a_bent_patch_is_met_inside() {
             0.40729874438448255,
         ),
         Point::new(4.140482671285408, -1.1259849673326614, -3.4618767616979764),
+        // Within the bulge of a patch, where all edges have valleys and the inside has another.
+        Point::new(-3.3062693186974537, 1.8052463898509614, -0.818159479266013),
+        Point::new(3.30211917766961, -1.8721157353656208, -0.8347113795551246),
+        Point::new(3.284294292804703, 2.0103085832935914, 0.8614996302692761),
+        Point::new(3.1736229825616284, 2.226559934349951, 0.9154004262752515),
+        Point::new(2.269712798887527, -2.6798508014114044, 0.5804726068488453),
     ] {
-        assert!(torus.distance(&x).abs() <= sampled(&torus, &x, 40));
+        assert!(torus.distance(&x).abs() <= sampled(&torus, &x, 40), "{x:?}");
     }
 }
 
