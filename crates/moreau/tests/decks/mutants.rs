@@ -92,7 +92,7 @@ fn mutated_decks_never_panic() {
     let (mut right, mut count) = (0, 0);
     for path in examples {
         let text = fs::read_to_string(path).expect("a deck");
-        for _ in 0..30 {
+        for _ in 0..12 {
             right += usize::from(diagnosed(&shuffled(&text, &mut dice)));
             let bytes = damaged(text.as_bytes(), &mut dice);
             right += usize::from(diagnosed(&String::from_utf8_lossy(&bytes)));

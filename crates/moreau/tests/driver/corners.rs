@@ -405,15 +405,18 @@ fn a_concave_corner_of_a_surface_is_three_tools() {
         driver.run(&step, 2, |_, _| {}).expect("converges");
         ["b.right", "b.top", "b.front"].map(|g| driver.reaction(g).expect("there"))
     };
-    for kind in [CellKind::Hex8, CellKind::Hex20] {
-        for (mu, large) in [(0.0, false), (0.0, true), (0.2, false), (0.2, true)] {
-            let [one, three] = [true, false].map(|one| pressed(kind, mu, large, one));
-            for (a, b) in one.iter().zip(&three) {
-                assert!(
-                    (a - b).norm() < 1e-6 * b.norm(),
-                    "{kind:?} {mu} {large}: {a} {b}"
-                );
-            }
+    for (kind, mu, large) in [
+        (CellKind::Hex8, 0.0, false),
+        (CellKind::Hex8, 0.0, true),
+        (CellKind::Hex8, 0.2, true),
+        (CellKind::Hex20, 0.0, true),
+    ] {
+        let [one, three] = [true, false].map(|one| pressed(kind, mu, large, one));
+        for (a, b) in one.iter().zip(&three) {
+            assert!(
+                (a - b).norm() < 1e-6 * b.norm(),
+                "{kind:?} {mu} {large}: {a} {b}"
+            );
         }
     }
 }

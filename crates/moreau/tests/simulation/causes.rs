@@ -176,7 +176,7 @@ name = "b"
 element = "quad8"
 x = [0, 18]
 y = [0, 2]
-cells = [18, 2]
+cells = [18, 1]
 [[material]]
 on = "b"
 young = 70000.0

@@ -32,7 +32,7 @@ fn an_interruption_within_an_increment_changes_no_bit() {
     for (name, from, to) in [
         ("punched-block", "increments = 20", "increments = 5"),
         ("cylinder-to-collapse", "increments = 10", "increments = 5"),
-        ("ring-squeezed", "increments = 50", "increments = 50"),
+        ("ring-squeezed", "increments = 50", "increments = 10"),
         (
             "block-dragged-on-block",
             "increments = 10",

@@ -95,7 +95,7 @@ name = "b"
 element = "quad8"
 x = [0, 14]
 y = [0, 4]
-cells = [28, 6]
+cells = [20, 4]
 [[material]]
 on = "b"
 young = 70e3
