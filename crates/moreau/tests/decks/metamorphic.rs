@@ -9,8 +9,10 @@ use super::{folder, temporary};
 use moreau::deck::{Given, open_in};
 use moreau::run::{Directory, Watch, resume, run};
 use moreau::simulation::{Converged, Simulation};
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
+use std::sync::{Arc, LazyLock, Mutex, OnceLock};
 use toml::{Table, Value};
 
 /// The examples, with two increments a step and loads in proportion; solids on a third of the lines, large plane
@@ -152,6 +154,25 @@ impl Watch for Pause {
     fn stops(&self) -> bool {
         self.0 == 0
     }
+}
+
+/// The histories of the examples as they are, on two threads, each made once for all who compare with it.
+static AS_IT_IS: LazyLock<Mutex<BTreeMap<String, Arc<OnceLock<History>>>>> =
+    LazyLock::new(Mutex::default);
+
+/// Compares something with the history of an example as it is.
+fn beside_itself(name: &str, deck: &Table, compare: impl FnOnce(&History)) {
+    let all = || AS_IT_IS.lock().expect("no panic holds it");
+    let kept = all().entry(name.to_owned()).or_default().clone();
+    compare(kept.get_or_init(|| on_threads(2, name, deck)));
+}
+
+/// The history of an example on so many threads.
+fn on_threads(threads: usize, name: &str, deck: &Table) -> History {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let (beside, name) = (folder("docs/examples"), format!("{name}-{threads}"));
+    pool.expect("threads")
+        .install(|| history(deck, &beside, &name, false))
 }
 
 /// Runs a deck into a directory, after a pause if that is asked for.

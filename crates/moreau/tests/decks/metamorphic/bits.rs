@@ -7,15 +7,11 @@ use super::*;
 fn threads_and_pauses_change_no_bit() {
     let beside = folder("docs/examples");
     for (name, deck) in examples() {
-        let on = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            let name = format!("{name}-{threads}");
-            pool.expect("threads")
-                .install(|| history(&deck, &beside, &name, false))
-        };
-        let (one, two) = (on(1), on(2));
-        assert!(one.text == two.text, "{name}: threads");
-        let paused = history(&deck, &beside, &format!("{name}-paused"), true);
-        assert!(one.text == paused.text, "{name}: a pause");
+        beside_itself(&name, &deck, |two| {
+            let one = on_threads(1, &name, &deck);
+            assert!(one.text == two.text, "{name}: threads");
+            let paused = history(&deck, &beside, &format!("{name}-paused"), true);
+            assert!(one.text == paused.text, "{name}: a pause");
+        });
     }
 }
