@@ -141,19 +141,23 @@ impl<const D: usize> Sides<'_, D> {
     /// What is behind what is nearest to a facet by more than its size is less and less opposite to it, by twice that not at
     /// all. Beside a surface that a facet grazes gaps grow without end, and multipliers, which are negative in places, would
     /// weight them to one below zero where bodies are apart.
+    ///
+    /// Nor is what a facet would be deep within, below the surface that it meets by more than half of its size times the
+    /// cosine of their angle, by twice that not at all: a side that stands across a surface is beyond its end.
     fn fade(&self, face: &Face<D>, overlap: &mut Overlap) {
         let normals = self.normals_of(face);
-        let gap = |s: &Sample| {
-            let (x, y) = (
-                interpolate(&s.shape, &face.x),
-                interpolate(&s.opposite, &self.other[s.other].x),
-            );
-            along(&x, &y, &interpolate(&s.shape, &normals))
+        let met = |s: &Sample| {
+            let (other, n) = (&self.other[s.other], interpolate(&s.shape, &normals));
+            let (x, y) = (interpolate(&s.shape, &face.x), interpolate(&s.opposite, &other.x));
+            let cosine = -dot(&unit(&n), &unit(&other.outward(other.middle())));
+            (along(&x, &y, &n), cosine.max(f64::MIN_POSITIVE))
         };
-        let gaps: Vec<f64> = overlap.samples.iter().map(gap).collect();
-        let least = gaps.iter().copied().fold(f64::INFINITY, f64::min);
-        for (sample, gap) in overlap.samples.iter_mut().zip(gaps) {
-            sample.d_s *= (2.0 - (gap - least) / face.size()).clamp(0.0, 1.0);
+        let met: Vec<(f64, f64)> = overlap.samples.iter().map(met).collect();
+        let least = met.iter().map(|m| m.0).fold(f64::INFINITY, f64::min);
+        for (sample, (gap, cosine)) in overlap.samples.iter_mut().zip(met) {
+            let behind = 2.0 - (gap - least) / face.size();
+            let within = 2.0 + 2.0 * gap / (face.size() * cosine);
+            sample.d_s *= behind.min(within).clamp(0.0, 1.0);
         }
         overlap.samples.retain(|s| s.d_s > 0.0);
     }
