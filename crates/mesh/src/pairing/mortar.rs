@@ -142,13 +142,16 @@ impl<const D: usize> Sides<'_, D> {
     /// all. Beside a surface that a facet grazes gaps grow without end, and multipliers, which are negative in places, would
     /// weight them to one below zero where bodies are apart.
     ///
-    /// Nor is what a facet would be deep within, below the surface that it meets by more than half of its size times the
-    /// cosine of their angle, by twice that not at all: a side that stands across a surface is beyond its end.
+    /// So is what it would be within by more than half of its size times the cosine of the angle between them: a side across
+    /// a surface is beyond its end, and not as deep in it as it is wide.
     fn fade(&self, face: &Face<D>, overlap: &mut Overlap) {
         let normals = self.normals_of(face);
         let met = |s: &Sample| {
             let (other, n) = (&self.other[s.other], interpolate(&s.shape, &normals));
-            let (x, y) = (interpolate(&s.shape, &face.x), interpolate(&s.opposite, &other.x));
+            let (x, y) = (
+                interpolate(&s.shape, &face.x),
+                interpolate(&s.opposite, &other.x),
+            );
             let cosine = -dot(&unit(&n), &unit(&other.outward(other.middle())));
             (along(&x, &y, &n), cosine.max(f64::MIN_POSITIVE))
         };

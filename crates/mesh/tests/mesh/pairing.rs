@@ -448,3 +448,37 @@ fn a_surface_has_the_edges_that_it_had_at_first() {
         assert!(found < 1e-12, "{degrees}: {found}");
     }
 }
+
+/// A body that stands beyond the end of another and leans over it: its side looks back, through the body, at the surface that
+/// its bottom stands on, and is not within that.
+#[test]
+fn a_side_beyond_the_end_of_a_surface_meets_nothing_behind_it() {
+    let block = |name, x: Vec<f64>, y: Vec<f64>| block2(name, CellKind::Quad4, &x, &y);
+    let side = |lean: f64, sink: f64| {
+        let leaning = |[x, y]: [f64; 2]| [x + lean * y, y - sink];
+        let mesh = block("upper", uniform(-1.0, 1.2, 4), uniform(0.0, 2.0, 2))
+            .and_then(|m| m.map(leaning))
+            .and_then(|m| m.joined(block("lower", uniform(-3.0, 1.0, 4), vec![-1.0, 0.0])?))
+            .expect("valid");
+        let group = |name| mesh.facet_group(name).expect("named");
+        let surface = [group("upper.bottom"), group("upper.right")].concat();
+        let sides = (surface.as_slice(), group("lower.top"));
+        let rows = mesh.mortar_rows(
+            mesh.nodes(),
+            sides,
+            Pairing::Mortar,
+            &PlaneStrain::default(),
+        );
+        assert!(rows.len() >= 4, "{lean} {sink}: {} rows", rows.len());
+        rows.into_iter().filter(|row| row.normal[1] < 0.999).count()
+    };
+    for (lean, sink) in [
+        (0.0, 0.0),
+        (0.01, 0.004),
+        (0.1, 0.03),
+        (0.2, 0.06),
+        (0.2, 0.1),
+    ] {
+        assert_eq!(side(lean, sink), 0, "{lean} {sink}");
+    }
+}

@@ -26,6 +26,7 @@ mod narrow;
 mod nearby;
 mod opposite;
 mod outside;
+mod overhang;
 mod points;
 mod pressed;
 mod replaced;
