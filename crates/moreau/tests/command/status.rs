@@ -299,6 +299,7 @@ fn a_tool_that_nothing_holds_is_told() {
     let (head, _) = example
         .split_once("[[step]]\nname = \"relax\"")
         .expect("two steps");
+    let head = head.replace("cells = [20, 10]", "cells = [8, 4]");
     let beside = head.replace("center = [0, 70]", "center = [90, 70]");
     let (status, _, err, results) = run("beside", &beside, &["--quiet"]);
     assert_eq!(status, 1, "{err}");

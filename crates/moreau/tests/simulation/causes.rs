@@ -198,7 +198,7 @@ tools = [{{ name = "ball", move = [1.5, -0.1] }}]
 {between}
 [[step]]
 name = "roll"
-increments = 12
+increments = {{ start = 0.08, min = 0.01, max = 0.08 }}
 fix = [{{ on = "b.left", u = ["x"] }}, {{ on = "b.bottom", u = ["y"] }}]
 tools = [{{ name = "ball", move = [4.5, -0.1], moment = 0 }}]
 "#
