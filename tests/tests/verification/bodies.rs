@@ -3,6 +3,7 @@
 //! change; not tools.
 
 mod between;
+mod cornered;
 mod curved;
 mod dragged;
 mod folded;

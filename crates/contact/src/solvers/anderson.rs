@@ -29,7 +29,7 @@ impl Anderson {
         let residual = &image - x;
         let size = residual.norm();
         match &self.best {
-            Some((safe, best)) if size > GROWTH * best || !size.is_finite() => {
+            Some((safe, best)) if self.strays(size, *best) => {
                 // The map has changed its branch: what was learnt is worth nothing.
                 let safe = safe.clone();
                 *self = Self::default();
@@ -54,6 +54,12 @@ impl Anderson {
         }
         self.last = Some((image, residual));
         next
+    }
+
+    /// Whether a residual is none of the branch that was extrapolated. One that grows before anything was tells of a map that
+    /// expands, and the difference is what there is to learn of it.
+    fn strays(&self, size: f64, best: f64) -> bool {
+        !size.is_finite() || size > GROWTH * best && !self.images.is_empty()
     }
 
     /// Least-squares weights of the differences; `None` without differences or without rank.
@@ -106,5 +112,19 @@ mod tests {
             "{}",
             (x - &exact).norm()
         );
+    }
+
+    /// Where a step of the plain iteration multiplies the error by hundreds in one direction, the next tells which.
+    #[test]
+    fn a_map_that_expands_in_a_direction_is_solved_as_one_that_contracts() {
+        let gains = DVector::from_vec(vec![-250.0, 0.1, 0.1, 0.5]);
+        let exact = DVector::from_vec(vec![1.0, -2.0, 3.0, 0.5]);
+        let mut anderson = Anderson::default();
+        let mut x = DVector::zeros(4);
+        for _ in 0..6 {
+            let image = &exact + gains.component_mul(&(&x - &exact));
+            x = anderson.next(&x, image);
+        }
+        assert!((&x - &exact).norm() < 1e-8, "{x}");
     }
 }
