@@ -142,8 +142,8 @@ impl<const D: usize> Sides<'_, D> {
     /// all. Beside a surface that a facet grazes gaps grow without end, and multipliers, which are negative in places, would
     /// weight them to one below zero where bodies are apart.
     ///
-    /// So is what it would be within by more than half of its size times the cosine of the angle between them: a side across
-    /// a surface is beyond its end, and not as deep in it as it is wide.
+    /// So is what it would be within by more than its size times the squared cosine of their angle: a side across a surface
+    /// is beyond its end, and not as deep in it as it is wide.
     fn fade(&self, face: &Face<D>, overlap: &mut Overlap) {
         let normals = self.normals_of(face);
         let met = |s: &Sample| {
@@ -153,13 +153,13 @@ impl<const D: usize> Sides<'_, D> {
                 interpolate(&s.opposite, &other.x),
             );
             let cosine = -dot(&unit(&n), &unit(&other.outward(other.middle())));
-            (along(&x, &y, &n), cosine.max(f64::MIN_POSITIVE))
+            (along(&x, &y, &n), cosine.max(f64::EPSILON))
         };
         let met: Vec<(f64, f64)> = overlap.samples.iter().map(met).collect();
         let least = met.iter().map(|m| m.0).fold(f64::INFINITY, f64::min);
         for (sample, (gap, cosine)) in overlap.samples.iter_mut().zip(met) {
             let behind = 2.0 - (gap - least) / face.size();
-            let within = 2.0 + 2.0 * gap / (face.size() * cosine);
+            let within = 2.0 + gap / (face.size() * cosine * cosine);
             sample.d_s *= behind.min(within).clamp(0.0, 1.0);
         }
         overlap.samples.retain(|s| s.d_s > 0.0);

@@ -482,3 +482,16 @@ fn a_side_beyond_the_end_of_a_surface_meets_nothing_behind_it() {
         assert_eq!(side(lean, sink), 0, "{lean} {sink}");
     }
 }
+
+/// Bodies that begin within each other, as those of a fit, by nearly a facet: tractions are forces over the whole area.
+#[test]
+fn areas_do_not_depend_on_how_deep_bodies_are_within_each_other() {
+    let block = |name, y: Vec<f64>| block2(name, CellKind::Quad4, &uniform(0.0, 4.0, 8), &y);
+    for deep in [0.0, 0.2, 0.4, 0.48] {
+        let mesh = block("upper", vec![-deep, 2.0])
+            .and_then(|m| m.joined(block("lower", vec![-2.0, 0.0])?))
+            .expect("valid");
+        let area: f64 = pair(&mesh, Pairing::Mortar).iter().map(|r| r.area).sum();
+        assert!((area - 4.0).abs() < 1e-12, "{deep}: {area}");
+    }
+}
