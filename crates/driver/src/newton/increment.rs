@@ -99,9 +99,14 @@ impl<const D: usize> Driver<D> {
         control: Option<&'a mut Control<'c, D>>,
     ) -> Increment<'a, 'c, D> {
         self.begin_grips(system, start);
-        // Tools resist nothing: they are where they shall be from the first.
-        for (&dof, u) in end.displacement.range(self.mesh_dofs()..) {
-            d_u[dof] = u - start.displacement.get(&dof).unwrap_or(u);
+        let increments = end.displacement.iter();
+        for (&dof, u) in increments.filter(|&(&dof, _)| !end.directions.is_turned(dof)) {
+            let increment = u - start.displacement.get(&dof).unwrap_or(u);
+            // Tools resist nothing: they are where they shall be from the first. Of bodies a guess may be off by rounding.
+            let off = (d_u[dof] - increment).abs();
+            if dof >= self.mesh_dofs() || off <= 4.0 * f64::EPSILON * increment.abs() {
+                d_u[dof] = increment;
+            }
         }
         // One that a force takes through a gap begins where it meets the body: its last solution is that of the gap.
         let last = match self.meet(end, &mut d_u) {

@@ -31,8 +31,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// How far the guess of an increment is from what it becomes, after increments to some parts of a way \[mm\].
-fn off(large: bool, ends: &[f64], way: f64) -> f64 {
+/// A bar that is pulled to some parts of a way: of each increment the first guess and what it becomes \[mm\].
+fn guesses(large: bool, ends: &[f64], way: f64) -> Vec<[Vec<f64>; 2]> {
     let (x, y) = (uniform(0.0, 2.0, 2), uniform(0.0, 1.0, 1));
     let mesh = block2("bar", CellKind::Quad8, &x, &y).expect("valid");
     let start = match large {
@@ -44,8 +44,7 @@ fn off(large: bool, ends: &[f64], way: f64) -> f64 {
         .material("bar", elastic, Integration::Reduced)
         .expect("valid");
     let mut driver = Driver::new(model, Settings::default()).expect("valid");
-    let mut last = f64::NAN;
-    for end in ends {
+    let pulled = |end: &f64| {
         let step = Step::new("pull")
             .fix("bar.left", &[Axis::X, Axis::Y])
             .displace("bar.right", Axis::X, end * way)
@@ -54,10 +53,17 @@ fn off(large: bool, ends: &[f64], way: f64) -> f64 {
         let [guess, .., found] = iterates.as_slice() else {
             panic!("at least two iterates");
         };
-        let differences = guess.d_u.iter().zip(&found.d_u).map(|(a, b)| (a - b).abs());
-        last = differences.fold(0.0, f64::max);
-    }
-    last
+        [guess.d_u.clone(), found.d_u.clone()]
+    };
+    ends.iter().map(pulled).collect()
+}
+
+/// How far the guess of the last increment is from what it becomes \[mm\].
+fn off(large: bool, ends: &[f64], way: f64) -> f64 {
+    let guesses = guesses(large, ends, way);
+    let [guess, found] = &guesses[ends.len() - 1];
+    let differences = guess.iter().zip(found).map(|(a, b)| (a - b).abs());
+    differences.fold(0.0, f64::max)
 }
 
 /// Of third order, where increments are equal and where they are not; with two equilibria known of second.
@@ -75,6 +81,20 @@ fn a_smooth_path_is_foreseen() {
     }
     // Of small strains the elastic path is straight.
     assert!(off(false, &[1.0, 2.0, 3.5], 0.04) < 1e-12);
+}
+
+/// Displacements that increments prescribe are in their guesses to the last bit, although tenths are none in binary: a first
+/// step that had to make up for rounding would be taken as it is, however far it leads.
+#[test]
+fn what_is_prescribed_is_reached_by_a_guess() {
+    let tenths = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6];
+    let lengths = [0.1, 0.1, 0.3 - 0.2, 0.4 - 0.3, 0.5 - 0.4, 0.6 - 0.5];
+    for ([guess, found], length) in guesses(true, &tenths, 1.0).iter().zip(lengths).skip(1) {
+        assert!(
+            guess.contains(&length) && found.contains(&length),
+            "{length}"
+        );
+    }
 }
 
 /// What turns back, or comes from far shorter increments, tells nothing.
