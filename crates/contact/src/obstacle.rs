@@ -189,11 +189,38 @@ impl<const D: usize> Ball<D> {
     fn side(&self) -> f64 {
         if self.hollow { -1.0 } else { 1.0 }
     }
+
+    /// Distance where `along` of the way from the center counts for nothing. The difference of two lengths is rounded as
+    /// they are, which of a large radius is too much for the force that a stiff body makes of it; here it is that of their
+    /// squares, with what products and sums round off, over their sum.
+    fn beyond(&self, x: &SVector<f64, D>, along: f64) -> f64 {
+        let around = (x - self.center).norm_squared() - along * along;
+        let (mut squares, mut lost) = (0.0, -along * along);
+        let mut add = |a: f64, b: f64| {
+            let (sum, rest) = sum_and_rest(squares, a * b);
+            squares = sum;
+            lost += rest + a.mul_add(b, -(a * b));
+        };
+        for (x, c) in x.iter().zip(&self.center) {
+            let (way, rest) = sum_and_rest(*x, -c);
+            add(way, way);
+            add(2.0 * way, rest);
+        }
+        add(-self.radius, self.radius);
+        self.side() * (squares + lost) / (around.max(0.0).sqrt() + self.radius)
+    }
+}
+
+/// a + b, and what its rounding leaves out (D. E. Knuth, The art of computer programming 2, 4.2.2).
+fn sum_and_rest(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
 }
 
 impl<const D: usize> Obstacle<D> for Ball<D> {
     fn distance(&self, x: &SVector<f64, D>) -> f64 {
-        self.side() * ((x - self.center).norm() - self.radius)
+        self.beyond(x, 0.0)
     }
 
     fn normal(&self, x: &SVector<f64, D>) -> SVector<f64, D> {
@@ -275,7 +302,7 @@ impl Cylinder {
 
 impl Obstacle<3> for Cylinder {
     fn distance(&self, x: &SVector<f64, 3>) -> f64 {
-        self.ball.distance(&self.section(x))
+        self.ball.beyond(x, (x - self.ball.center).dot(&self.axis))
     }
 
     fn normal(&self, x: &SVector<f64, 3>) -> SVector<f64, 3> {
@@ -390,6 +417,29 @@ mod tests {
             );
         }
         assert!((x - foot(&from)).norm() < 1e-3, "{x} {}", foot(&from));
+    }
+
+    /// The distance of a point near the origin from one whose center is far away is as exact as its coordinates: with c at
+    /// the distance R from the origin |x − c|² − R² is |x|² − 2 x·c, of which nothing cancels here.
+    #[test]
+    fn a_large_radius_is_as_exact_as_a_small_one() {
+        for k in [1.0, 1e3, 1e6, 1e9] {
+            let (radius, center) = (5.0 * k, SVector::from([3.0 * k, 4.0 * k, 0.0]));
+            let ball = Ball::new([3.0 * k, 4.0 * k, 0.0], radius).expect("valid");
+            let roll = Cylinder::new([3.0 * k, 4.0 * k, 0.0], [0.0, 0.0, 1.0], radius);
+            let roll = roll.expect("valid");
+            for x in [[-0.3, 0.1, 0.0], [0.02, -0.7, 0.4], [-0.37, -0.11, -0.9]] {
+                let x = SVector::from(x);
+                let exact = |square: f64| {
+                    let squares = square - 2.0 * x.dot(&center);
+                    squares / (radius + (squares + radius * radius).sqrt())
+                };
+                let (ball, round) = (ball.distance(&x), exact(x.norm_squared()));
+                assert!((ball / round - 1.0).abs() < 1e-14, "{k}: {ball} {round}");
+                let (roll, flat) = (roll.distance(&x), exact(x.norm_squared() - x[2] * x[2]));
+                assert!((roll / flat - 1.0).abs() < 1e-14, "{k}: {roll} {flat}");
+            }
+        }
     }
 
     proptest! {

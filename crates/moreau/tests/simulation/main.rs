@@ -30,6 +30,7 @@ mod overhang;
 mod points;
 mod pressed;
 mod replaced;
+mod rolls;
 mod saved;
 mod sheared;
 mod shears;
