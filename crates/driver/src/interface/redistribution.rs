@@ -52,17 +52,9 @@ impl<const D: usize> Driver<D> {
             return;
         }
         let neighbours = self.neighbours(surface);
-        // Those that cannot give way to a pressure, next to others that can.
-        let stiff = |&c: &usize| {
-            if crosses(c) {
-                return true;
-            }
-            let normal = motion_rows[c].plane(&SVector::zeros()).map(|(n, _)| n);
-            let free = &loading.free_at(own(c));
-            normal.is_none_or(|n| {
-                !Kinematics::new(&self.points[c], &n, 0.0, &SVector::zeros(), free).active[0]
-            })
-        };
+        // Those that cannot give way at all, next to others that can. Whether a node that is free in some directions gives way
+        // to a pressure would hang on the last digit of its normal.
+        let stiff = |&c: &usize| crosses(c) || loading.free_at(own(c)).dimension() == 0;
         let (held, mut kept): (BTreeSet<usize>, BTreeSet<usize>) = all.into_iter().partition(stiff);
         let mut stranded = Vec::new();
         for c in held {
@@ -281,6 +273,18 @@ impl<const D: usize> Driver<D> {
             .collect()
     }
 
+    /// A point with its first tangent where its node is free along the surface, if it is held in other directions: what is
+    /// said of each direction by itself is the same however the bodies are turned.
+    fn aligned(&self, c: usize, n: &SVector<f64, D>, loading: &Loading<D>) -> ContactPoint<D> {
+        let mut point = self.points[c].clone();
+        let own = loading.free_at(point.node);
+        if own.dimension() < D {
+            let tangents = own.common(&Subspace::spanned(&[*n]).complement());
+            point.axis = tangents.vectors().next().or(point.axis);
+        }
+        point
+    }
+
     /// Points that are held, of which the relative displacement, as far as it is free, is determined
     /// by those of others: by those on tools, then by the points with a freedom of their own, then by those with one
     /// opposite nearly to themselves. Where only that is determined by others which is along the directions in which they
@@ -300,16 +304,18 @@ impl<const D: usize> Driver<D> {
             true => self.footing.opposite[c],
             false => f64::INFINITY,
         };
-        let mut order: Vec<(f64, usize)> = kept.iter().map(|&c| (alone(c), c)).collect();
+        // Weights that are equal but for rounding are equal.
+        let mut order: Vec<(f32, usize)> = kept.iter().map(|&c| (alone(c) as f32, c)).collect();
         order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         let mut rows = self.held_by(grounds, motion_rows, loading);
         let mut spare = Vec::new();
         for (alone, c) in order {
-            let (motion_row, point) = (&motion_rows[c], &self.points[c]);
+            let motion_row = &motion_rows[c];
             let mut own_only = false;
             let Some((n, gap)) = motion_row.plane(&SVector::zeros()) else {
                 continue;
             };
+            let point = &self.aligned(c, &n, loading);
             let least = DISTINCT * motion_row.largest_weight();
             let is_grounded = grounded.contains(&point.node);
             let unknown = |dof: usize| is_free(dof).then_some(dof);

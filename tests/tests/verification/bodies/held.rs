@@ -171,3 +171,93 @@ fn a_body_that_is_held_as_a_whole_presses_evenly() -> Fallible {
     check(plane())?;
     check(space())
 }
+
+/// A finer body on a coarser one, held at two of its sides and pressed on the third, so that what nodes can do is
+/// not what their neighbours can: turned as a whole, it moves as it would if it were not.
+#[test]
+fn what_is_held_along_the_interface_is_held_however_it_is_turned() -> Fallible {
+    let odd = Unit::new_normalize(Vector3::new(1.0, 2.0, -0.5));
+    for (kind, cells, swapped) in [
+        (Hex8, [[2, 2, 3], [3, 1, 2]], false),
+        (Hex8, [[2, 1, 2], [1, 1, 1]], false),
+        (Hex20, [[2, 1, 2], [1, 1, 1]], false),
+        (Hex8, [[2, 1, 2], [1, 1, 1]], true),
+    ] {
+        let moved =
+            |rotation: SMatrix<f64, 3, 3>| -> Fallible<(Vec<SVector<f64, 3>>, Vec<Status>)> {
+                let stack = Stack::<Solid, 3>::new([kind, kind], cells);
+                let stack = Stack {
+                    friction: 0.3,
+                    swapped,
+                    rotation,
+                    ..stack
+                };
+                let along = |k: usize| stack.turn(from_fn(|i| if i == k { 1.0 } else { 0.0 }));
+                let step = Step::new("press")
+                    .fix_along("lower.bottom", along(0))
+                    .fix_along("lower.bottom", along(1))
+                    .fix_along("lower.back", along(2))
+                    .fix_along("upper.left", along(0))
+                    .fix_along("upper.back", along(2))
+                    .pressure("upper.top", PRESSURE);
+                let mut driver = stack.driver(stack.mesh()?, Settings::default())?;
+                driver.run(&step, 1, |_, _| {})?;
+                let all = 0..driver.mesh().nodes().len();
+                let back = |a| rotation.tr_mul(&driver.displacement(a));
+                let statuses = driver.contacts().iter().map(|c| c.status);
+                Ok((all.map(back).collect(), statuses.collect()))
+            };
+        let (straight, statuses) = moved(SMatrix::identity())?;
+        let largest = straight.iter().map(|u| u.norm()).fold(0.0, f64::max);
+        for (axis, angle) in [
+            (Vector3::y_axis(), 30.0),
+            (Vector3::z_axis(), 45.0),
+            (odd, 77.0),
+        ] {
+            let angle: f64 = angle;
+            let turn = Rotation3::from_axis_angle(&axis, angle.to_radians());
+            let (turned, found) = moved(turn.into_inner())?;
+            assert_eq!(found, statuses, "{kind:?} {swapped} {angle}");
+            for (a, (u, v)) in straight.iter().zip(&turned).enumerate() {
+                let off = (u - v).norm();
+                assert!(
+                    off <= 1e-8 * largest,
+                    "{kind:?} {swapped} {angle}: node {a} {off:e} of {largest:e}"
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The nodes of a side are moved across the interface and free along it. How much of the force goes through them is the
+/// same in one increment as in several, and under large strains: in those the interface has turned a little, and a
+/// multiplier that a node gave way to by nothing would be one that it gives way to by hardly anything.
+#[test]
+fn what_is_held_across_the_interface_bears_however_little_it_turns() -> Fallible {
+    for kind in [Quad4, Quad8, Tri6] {
+        let pressed = |large: Option<f64>, increments: usize| -> Fallible<f64> {
+            let stack = Stack::<PlaneStrain, 2>::new([kind, kind], [[6, 4], [4, 4]]);
+            // A yield stress that nothing reaches.
+            let stack = Stack {
+                large,
+                yield_stress: large.map(|_| E),
+                ..stack
+            };
+            let mut driver = stack.driver(stack.mesh()?, Settings::default())?;
+            let down = -PRESSURE / E * HEIGHT;
+            let step = Step::new("press")
+                .fix("lower.bottom", &[Axis::X, Axis::Y])
+                .fix("upper.right", &[Axis::X])
+                .displace("upper.top", Axis::Y, down)
+                .displace("upper.left", Axis::Y, down);
+            driver.run(&step, increments, |_, _| {})?;
+            let [own, _] = stack.surfaces();
+            Ok(driver.contact_force(own)?.norm())
+        };
+        let once = pressed(None, 1)?;
+        close(&format!("{kind:?}"), pressed(None, 2)?, once, 0.01);
+        close(&format!("{kind:?}"), pressed(Some(E), 2)?, once, 0.02);
+    }
+    Ok(())
+}
