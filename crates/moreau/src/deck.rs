@@ -120,23 +120,7 @@ pub fn open_with(text: &str, folder: &Path, given: &Given) -> (Deck, Option<Prob
         // The first tells what else is wrong, and needs this one until then.
         return (deck, problem, findings);
     }
-    if let Some(problem) = &problem {
-        let columns = match problem {
-            Problem::Plane(setup) => columns(setup),
-            Problem::Solid(setup) => columns(setup),
-        };
-        for expectation in &deck.expectations {
-            let column = &expectation.column;
-            if !columns.iter().any(|(name, _)| *name == column.value) {
-                let names = columns.iter().map(|(name, _)| name.as_str());
-                let near = finding::did_you_mean(&column.value, names);
-                let message = format!("no result is called \"{}\"{near}", column.value);
-                findings
-                    .error(&column.span, message, "not a column of history.csv")
-                    .about(Class::Names);
-            }
-        }
-    }
+    expected(&deck, problem.as_ref(), &mut findings);
     let doubts = findings.iter().filter(|f| f.severity == Severity::Warning);
     let doubts = doubts.map(|f| f.message.clone()).collect();
     match &mut problem {
@@ -145,6 +129,39 @@ pub fn open_with(text: &str, folder: &Path, given: &Given) -> (Deck, Option<Prob
         None => {}
     }
     (deck, problem.filter(|_| findings.errors() == 0), findings)
+}
+
+/// Notes what cannot be expected of a problem: without a tolerance, or of no column. That keeps no problem from being built, so
+/// that all of it is told at once.
+fn expected(deck: &Deck, problem: Option<&Problem>, findings: &mut Findings) {
+    let columns = problem.map(|problem| match problem {
+        Problem::Plane(setup) => columns(setup),
+        Problem::Solid(setup) => columns(setup),
+    });
+    for Expectation {
+        column,
+        relative,
+        absolute,
+        ..
+    } in &deck.expectations
+    {
+        let is_it = |(name, _): &(String, Unit)| *name == column.value;
+        if let Some(columns) = columns.as_ref().filter(|all| !all.iter().any(is_it)) {
+            let names = columns.iter().map(|(name, _)| name.as_str());
+            let near = finding::did_you_mean(&column.value, names);
+            let message = format!("no result is called \"{}\"{near}", column.value);
+            let unknown = findings.error(&column.span, message, "not a column of history.csv");
+            unknown.about(Class::Names);
+        }
+        if relative.is_none() && absolute.is_none() {
+            let message = format!("\"{}\" has no tolerance ≥ 0", column.value);
+            findings.error(
+                &column.span,
+                message,
+                "expected relative = … or absolute = …",
+            );
+        }
+    }
 }
 
 /// The checksum of the files that a deck reads, as its key `checksum` has it, with some meshes that are not on disk; none

@@ -63,8 +63,17 @@ pub(super) fn includes_fail(findings: &Findings) -> bool {
 /// The table of a text whose places begin at one; what is no TOML in it is noted.
 fn parse<'t>(text: &'t str, start: usize, log: &Log) -> DeTable<'t> {
     let (document, errors) = DeTable::parse_recoverable(text);
+    let mut told: Option<Range<usize>> = None;
     for error in errors {
         let span = error.span().unwrap_or(0..0);
+        // What is said of a place again follows from what was said first.
+        if told
+            .as_ref()
+            .is_some_and(|t| (t.start..=t.end).contains(&span.start))
+        {
+            continue;
+        }
+        told = Some(span.clone());
         let message = not_toml(text, &span, error.message());
         log.borrow_mut()
             .error(&(span.start + start..span.end + start), message, "here")
@@ -123,12 +132,18 @@ fn not_toml(text: &str, span: &Range<usize>, said: &str) -> String {
     let digit = |c: Option<char>| c.is_some_and(|c| c.is_ascii_digit());
     let (before, from) = text.split_at_checked(span.start).unwrap_or((text, ""));
     let here = text.get(span.clone()).unwrap_or_default();
+    let unsigned = from.strip_prefix(['+', '-']).unwrap_or(from);
+    let sign = &from[..from.len() - unsigned.len()];
+    let (last, begun) = (before.chars().last(), before.strip_suffix('.'));
+    let has_begun = digit(begun.and_then(|b| b.chars().last()));
     if said == "duplicate key" {
         format!("the key \"{here}\" stands twice in one table")
-    } else if from.starts_with(',') && digit(before.chars().last()) && digit(from.chars().nth(1)) {
+    } else if from.starts_with(',') && digit(last) && digit(from.chars().nth(1)) {
         "a comma within a number: decimals have a point, as in 0.3".into()
-    } else if from.starts_with('.') && digit(from.chars().nth(1)) {
-        "a number begins with a digit, as in 0.3".into()
+    } else if has_begun && !digit(from.chars().next()) {
+        "a number ends with a digit, as in 5.0".into()
+    } else if unsigned.starts_with('.') && digit(unsigned.chars().nth(1)) && !digit(last) {
+        format!("a number begins with a digit, as in {sign}0.3")
     } else {
         format!("not TOML: {}", said.replace('\n', ", "))
     }

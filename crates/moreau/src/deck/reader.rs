@@ -52,6 +52,14 @@ impl Log {
         self.findings.into_inner()
     }
 
+    /// Whether something within a place, or at its end, is no TOML.
+    fn is_no_toml(&self, place: &Range<usize>) -> bool {
+        let within = |at: &Range<usize>| at.start <= place.end && place.start <= at.end;
+        let findings = self.borrow();
+        let mut all = findings.iter();
+        all.any(|f| f.class == Class::Syntax && within(&f.span))
+    }
+
     /// Lets formulas from here on use a parameter.
     pub(super) fn define(&self, name: &str, value: f64) {
         self.parameters.borrow_mut().insert(name.to_owned(), value);
@@ -342,8 +350,8 @@ impl<'a> Table<'a> {
 
 /// Notes that a value is of the wrong type.
 pub(super) fn wrong<T>(value: Value<'_>, what: &str, expected: &str, log: &Log) -> Option<T> {
-    // What is no TOML is told as that, and left without a value.
-    if matches!(value.get_ref(), DeValue::Float(n) if n.as_str().is_empty()) {
+    // What is no TOML is told as that.
+    if log.is_no_toml(&value.span()) {
         return None;
     }
     let found = match value.get_ref() {

@@ -219,11 +219,3 @@ fn an_angle_of_friction_is_told_as_that() {
         &["friction has an angle, expected coulomb, the tangent of that"],
     );
 }
-
-/// What is no TOML has no value that could be wrong, too.
-#[test]
-fn a_number_that_is_no_toml_is_told_once() {
-    let shown = shown("friction = 0.1", "friction = 1.");
-    assert!(shown.contains("not TOML: invalid fraction"), "{shown}");
-    assert!(!shown.contains("is the number"), "{shown}");
-}

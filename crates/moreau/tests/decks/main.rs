@@ -129,6 +129,33 @@ fn all_errors_are_shown_at_once() {
     }
 }
 
+/// What is wrong in `[expect]` keeps no problem from being built, and is told whatever else is wrong.
+#[test]
+fn all_that_cannot_be_expected_is_shown_at_once() {
+    let (head, _) = DECK.split_once("[expect]").expect("expectations");
+    let expected = |lines: &str| {
+        let text = format!("{head}[expect]\n{lines}");
+        let (_, problem, findings) = open(&text);
+        assert_eq!(problem.is_none(), findings.errors() > 0);
+        findings
+            .iter()
+            .map(|f| f.message.clone())
+            .collect::<Vec<_>>()
+    };
+    let good = "\"force.punch.y\" = { value = -1, absolute = 1 }\n";
+    assert_eq!(expected(good), [""; 0]);
+    let both = expected("\"force.punsh.y\" = { value = -1 }\nopen = { value = 1, relative = -1 }");
+    let told = [
+        "no result is called \"force.punsh.y\"; did you mean \"force.punch.y\"?",
+        "\"force.punsh.y\" has no tolerance ≥ 0",
+        "\"open\" has no tolerance ≥ 0",
+    ];
+    assert_eq!(both, told);
+    let text = format!("{head}[expect]\nopen = {{ value = 1 }}").replace("0.3", "0.7");
+    let (_, _, findings) = open(&text);
+    assert_eq!(findings.errors(), 2, "{findings:?}");
+}
+
 #[test]
 fn syntax_errors_have_a_place() {
     let text = DECK.replace("young = 210000.0", "young 210000.0");

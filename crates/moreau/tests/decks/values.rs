@@ -48,11 +48,34 @@ fn what_is_told_twice_is_pointed_at() {
     let along = tools("{ name = \"foundation\", force = [0, 1], move = [0.1, 0.1] }");
     let expected = "a tool with a force and a motion along y, expected one of both";
     assert!(along.contains(expected), "{along}");
-    let point = shown("friction = 0.1", "friction = .1");
-    assert!(
-        point.contains("a number begins with a digit, as in 0.3"),
-        "{point}"
-    );
+}
+
+/// One finding for what is no number of TOML, whatever its sign, among others in an array or alone: it has no value that could be
+/// wrong, too.
+#[test]
+fn numbers_begin_and_end_with_digits() {
+    let told = |number: &str| {
+        let alone = DECK.replacen("friction = 0.1", &format!("friction = {number}"), 1);
+        let one_of = DECK.replacen("x = [0, 50]", &format!("x = [{number}, 50]"), 1);
+        [alone, one_of].map(|text| {
+            let (_, _, findings) = open(&text);
+            let told: Vec<String> = findings.iter().map(|f| f.message.clone()).collect();
+            assert_eq!(told.len(), 1, "{number}: {told:?}");
+            told[0].clone()
+        })
+    };
+    for (number, expected) in [
+        (".1", "a number begins with a digit, as in 0.3"),
+        ("-.1", "a number begins with a digit, as in -0.3"),
+        ("+.1e3", "a number begins with a digit, as in +0.3"),
+        ("5.", "a number ends with a digit, as in 5.0"),
+        ("-5.e3", "a number ends with a digit, as in 5.0"),
+    ] {
+        assert_eq!(told(number), [expected; 2], "{number}");
+    }
+    for number in ["1.5.2", "1..2", "--5", "05", "-", "- 5", "0.3."] {
+        told(number);
+    }
 }
 
 #[test]

@@ -167,13 +167,6 @@ pub(super) fn read_expectations(root: &Table<'_>) -> Vec<Expectation> {
         let number = inner.number("value");
         let tolerance = |key| inner.number_if(key).filter(|t| t.value >= 0.0);
         let (relative, absolute) = (tolerance("relative"), tolerance("absolute"));
-        if relative.is_none() && absolute.is_none() {
-            log.borrow_mut().error(
-                &value.span(),
-                format!("\"{}\" has no tolerance ≥ 0", column.value),
-                "expected relative = … or absolute = …",
-            );
-        }
         inner.finish();
         if let Some(number) = number {
             list.push(Expectation {
