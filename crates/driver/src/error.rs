@@ -152,6 +152,15 @@ pub enum ModelError {
         /// Its position \[mm\].
         position: Vec<f64>,
     },
+    /// A surface against itself under small strains.
+    #[error(
+        "{surface:?} against itself under small strains: a part has to bend far to touch itself, which large strains \
+         alone follow"
+    )]
+    SmallSelfContact {
+        /// The surface.
+        surface: String,
+    },
     /// A facet that two ties have.
     #[error(
         "{group:?} is tied already where it is at {position:?}, by the tie of {surface:?} to {to:?}: \

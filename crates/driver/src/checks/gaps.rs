@@ -20,7 +20,7 @@ pub struct LeastGap<const D: usize> {
     pub position: [f64; D],
     /// Nodes that are within what they are in contact with.
     pub inside: usize,
-    /// Whether contact is found there: not where bodies are deeper within each other than a facet is long.
+    /// Whether contact is found there: not at a node that is deeper within the other body than a facet is long.
     pub met: bool,
 }
 
@@ -117,14 +117,25 @@ impl<const D: usize> Driver<D> {
             met,
         };
         let met = least.map(|l| found(l, inside, true));
-        let deeper = self.overlap(contact).filter(|(_, depth, _)| {
-            // A gap that was found is measured along normals, which is what counts.
-            within(-depth) && met.is_none_or(|m| !within(m.gap))
+        let deeper = self.overlap(contact).filter(|&(node, depth, _)| {
+            // A gap that was found is the mean around its node along its normal, which is what counts: where curved meshes do
+            // not match, nodes are within facets whose gaps are open.
+            within(-depth) && met.is_none_or(|m| !within(m.gap)) && !self.is_met(contact, node)
         });
         match deeper {
             Some((node, depth, inside)) => Some(found(&(-depth, node), inside, false)),
             None => met,
         }
+    }
+
+    /// Whether a gap was found of which a node of either surface of a pair is a part.
+    fn is_met(&self, contact: usize, node: usize) -> bool {
+        let pairs = self.points.iter().zip(&self.footing.rows);
+        let mut own = pairs.filter(|(p, _)| p.contact == contact).map(|p| p.1);
+        let none = SVector::zeros();
+        own.any(|row| {
+            row.plane(&none).is_some() && row.weights().any(|(a, w)| a == node && w != 0.0)
+        })
     }
 
     /// The node of either surface of a pair that is deepest within the other body, how much deeper than where the contact

@@ -105,7 +105,7 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
     ///
     /// # Errors
     /// An unknown group; [`ModelError::SharedContactNode`] for a node of `surface` that is one of
-    /// another contact with the same surface; [`ModelError::SharedSurfaceNode`].
+    /// another contact with the same surface; [`ModelError::SharedSurfaceNode`]; [`ModelError::SmallSelfContact`].
     pub fn pair(
         mut self,
         surface: &str,
@@ -116,7 +116,12 @@ impl<const D: usize, H: Analysis<D>> Model<D, H> {
         let own = self.mesh.node_group(surface)?;
         self.mesh.facet_group(opposite)?;
         let other = self.mesh.node_group(opposite)?;
-        let itself = self.large && surface == opposite && pairing == Pairing::Mortar;
+        let itself = surface == opposite && pairing == Pairing::Mortar;
+        if itself && !self.large {
+            return Err(ModelError::SmallSelfContact {
+                surface: surface.into(),
+            });
+        }
         let shared = own.iter().find(|a| other.binary_search(a).is_ok());
         if let Some(&node) = shared.filter(|_| !itself) {
             return Err(ModelError::SharedSurfaceNode {

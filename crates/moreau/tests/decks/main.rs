@@ -3,6 +3,7 @@
 mod along;
 mod amplitudes;
 mod axes;
+mod contacts;
 mod driven;
 mod flat;
 mod heat;

@@ -91,7 +91,7 @@ fn small_strains_refuse_a_surface_against_itself() -> Fallible {
     let refused = model.contact("strip.top", "strip.top", Coulomb::new(0.2)?);
     assert!(matches!(
         refused.err(),
-        Some(ModelError::SharedSurfaceNode { .. })
+        Some(ModelError::SmallSelfContact { .. })
     ));
     Ok(())
 }

@@ -400,7 +400,15 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
     findings: &mut Findings,
 ) -> Option<Model<D, H>> {
     let mut note = |span: &Range<usize>, error: ModelError| {
-        findings.error(span, error.to_string(), "here");
+        let message = error.to_string();
+        match error {
+            ModelError::SmallSelfContact { .. } => {
+                let help =
+                    "strain = \"finite\", or the two sides that face each other as two surfaces";
+                findings.error_with(span, message, "the same surface", help)
+            }
+            _ => findings.error(span, message, "here"),
+        };
     };
     let mut pieces = Vec::new();
     for (entry, law) in deck.materials.iter().zip(&parts.laws) {
@@ -443,7 +451,11 @@ pub(super) fn assemble<const D: usize, H: Analysis<D>>(
     }
     for (entry, law) in deck.contacts.iter().zip(&parts.frictions) {
         let added = model.contact(&entry.surface.value, &entry.against.value, *law);
-        model = added.map_err(|e| note(&entry.surface.span, e)).ok()?;
+        let at = |error: &ModelError| match error {
+            ModelError::SmallSelfContact { .. } => &entry.against.span,
+            _ => &entry.surface.span,
+        };
+        model = added.map_err(|e| note(at(&e), e)).ok()?;
         if let FrictionEntry::Orthotropic(_, axis) = &entry.friction {
             let along = model.along(std::array::from_fn(|i| axis.value[i]));
             model = along.map_err(|e| note(&axis.span, e)).ok()?;
