@@ -3,7 +3,7 @@
 
 mod amplitudes;
 mod axes;
-mod collapse;
+mod changes;
 mod conditions;
 mod flat;
 mod groups;
@@ -211,7 +211,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     conditions::driven::<D>(deck, findings);
     conditions::heat(deck, &groups, findings);
     amplitudes::check(deck, &groups, findings);
-    collapse::check((deck, &groups), &driver, &stages, findings);
+    changes::check((deck, &groups), &driver, &stages, findings);
     conditions::inner_surfaces(deck, &groups, findings);
     slips::warn(deck, &groups, surface, findings);
     flat::warn(deck, &groups, findings);
@@ -369,7 +369,7 @@ fn unfinished(deck: &Deck, given: &Given, findings: &mut Findings) {
     };
     if deck.steps.iter().any(|s| s.until_collapse) {
         refuse(
-            "until = \"collapse\": a limit load is that of the undeformed structure",
+            "until = \"collapse\": a limit load is one of small strains",
             "strain = \"small\"",
         );
     }

@@ -3,6 +3,7 @@
 mod along;
 mod amplitudes;
 mod axes;
+mod changes;
 mod contacts;
 mod driven;
 mod flat;
