@@ -137,3 +137,48 @@ load = [{{ on = "bar.top", traction = [0, 600] }}]
         );
     }
 }
+
+/// A block that two jaws squeeze by 10 MPa on 10 mm and that weighs 70.4 N is held up to 2 μ N of friction if all are rigid. Under
+/// small strains, too, surfaces are paired where the loads have taken them: normals turn with the bodies, and what that takes is in
+/// proportion to the strains.
+#[test]
+fn jaws_hold_what_normals_of_the_bodies_as_they_are_let_them() {
+    let factor = |young: f64| {
+        let fix = r#"fix = [{ on = "a.left", u = ["x", "y"] }, { on = "b.right", u = ["y"] }]"#;
+        let squeezed = r#"{ on = "b.right", pressure = 10.0 }"#;
+        let deck = format!(
+            r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+mesh.block = [
+    {{ name = "a", element = "quad8", x = [0, 3], y = [0, 10], cells = [2, 6] }},
+    {{ name = "c", element = "quad8", x = [3, 7], y = [1, 9], cells = [3, 5] }},
+    {{ name = "b", element = "quad8", x = [7, 10], y = [0, 10], cells = [2, 7] }},
+]
+material = [{{ on = ["a", "b", "c"], young = {young:?}, poisson = 0.3 }}]
+contact = [
+    {{ surface = "c.left", against = "a.right", friction = 0.3 }},
+    {{ surface = "c.right", against = "b.left", friction = 0.3 }},
+]
+[[step]]
+name = "grip"
+increments = 1
+{fix}
+load = [{squeezed}]
+[[step]]
+name = "pull"
+increments = 4
+{COLLAPSE}
+{fix}
+load = [{squeezed}, {{ on = "c", body-force = [0, -2.2] }}]
+"#
+        );
+        let run = finish(simulation(&deck));
+        run.outcome().collapse.expect("a limit").1.load_factor
+    };
+    let rigid = 2.0 * 0.3 * 10.0 * 10.0 / (2.2 * 4.0 * 8.0);
+    let [soft, stiff] = [1e3, 1e5].map(|young| (rigid - factor(young)) * young / 1e3);
+    assert!(
+        soft > 0.02 && (soft / stiff - 1.0).abs() < 0.1,
+        "{soft}, {stiff}"
+    );
+}
