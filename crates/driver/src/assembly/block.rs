@@ -47,8 +47,11 @@ pub struct PointState<const D: usize> {
     pub position: [f64; D],
     /// Quadrature weight times Jacobian times measure \[mm³\].
     pub weight: f64,
-    /// Cauchy stress \[MPa\].
+    /// Cauchy stress \[MPa\]: with `weight` times `jacobian` it is in balance with the forces on the deformed body.
     pub stress: Sym2,
+    /// Volume of the deformed body over that of the undeformed one, 1 under small strains: that of the point, or of
+    /// its cell where that is what the law is asked with, the mean dilatation.
+    pub jacobian: f64,
     /// Equivalent plastic strain p.
     pub plastic_strain: f64,
 }
@@ -240,15 +243,17 @@ impl<C: CellLaw<D>, const D: usize> SolidBlock<C, D> {
         ((self.cells.as_ref(), k), old)
     }
 
-    /// The committed state at a quadrature point, where the displacements have this gradient.
+    /// The committed state at a quadrature point, with this displacement gradient, as averaged as the law is asked with it.
     fn point(&self, point: usize, gradient: &Matrix3<f64>) -> PointState<D> {
         let state = &self.old[point];
         let law = self.of_cell.law();
+        let jacobian = C::jacobian(gradient);
         PointState {
             cell: self.members[point / self.cells.points_per_cell()],
             position: self.cells.position(point),
             weight: self.cells.weight(point),
-            stress: self.of_cell.stress(state, gradient),
+            stress: self.of_cell.stress(state) / jacobian,
+            jacobian,
             plastic_strain: law.equivalent_plastic_strain(C::material(state)),
         }
     }
@@ -457,45 +462,51 @@ impl<C: CellLaw<D>, const D: usize> Block<D> for SolidBlock<C, D> {
     fn fields(&self, u: &[f64]) -> Vec<PointField> {
         let mut fields: Vec<PointField> = Vec::new();
         let count = self.cells.points_per_cell();
-        let mut gradient = [Matrix3::zeros(); MAX_POINTS];
-        for (point, state) in self.old.iter().enumerate() {
-            if point % count == 0 {
-                self.cells
-                    .gradient(point / count, u, &mut gradient[..count]);
+        visit_gradients(self.cells.as_ref(), u, &mut |k, gradients| {
+            C::average_dilatation((self.cells.as_ref(), k), gradients);
+            for (g, gradient) in gradients.iter().enumerate() {
+                let state = &self.old[k * count + g];
+                let mut index = 0;
+                let mut add = |name: &str, values: &[f64]| {
+                    if index == fields.len() {
+                        fields.push(PointField {
+                            name: name.to_owned(),
+                            components: values.len(),
+                            values: Vec::with_capacity(values.len() * self.old.len()),
+                        });
+                    }
+                    fields[index].values.extend(values);
+                    index += 1;
+                };
+                C::fields(gradient, &mut add);
+                let law = self.of_cell.law();
+                law.fields(
+                    C::material(state),
+                    &mut |name, values| match C::frame(state) {
+                        Some(frame) => add(name, &turned(&frame, values)),
+                        None => add(name, values),
+                    },
+                );
             }
-            let mut index = 0;
-            let mut add = |name: &str, values: &[f64]| {
-                if index == fields.len() {
-                    fields.push(PointField {
-                        name: name.to_owned(),
-                        components: values.len(),
-                        values: Vec::with_capacity(values.len() * self.old.len()),
-                    });
-                }
-                fields[index].values.extend(values);
-                index += 1;
-            };
-            C::fields(&gradient[point % count], &mut add);
-            let law = self.of_cell.law();
-            law.fields(
-                C::material(state),
-                &mut |name, values| match C::frame(state) {
-                    Some(frame) => add(name, &turned(&frame, values)),
-                    None => add(name, values),
-                },
-            );
-        }
+        });
         fields
     }
 
     fn gradients(&self, u: &[f64], sink: &mut dyn FnMut(&PointState<D>, &Matrix3<f64>)) {
-        visit_gradients(self.cells.as_ref(), u, &mut |point, gradient| {
-            sink(&self.point(point, gradient), gradient);
+        let count = self.cells.points_per_cell();
+        let mut averaged = [Matrix3::zeros(); MAX_POINTS];
+        visit_gradients(self.cells.as_ref(), u, &mut |k, gradients| {
+            let averaged = &mut averaged[..count];
+            averaged.copy_from_slice(gradients);
+            C::average_dilatation((self.cells.as_ref(), k), averaged);
+            for (g, (gradient, averaged)) in gradients.iter().zip(averaged).enumerate() {
+                sink(&self.point(k * count + g, averaged), gradient);
+            }
         });
     }
 
     fn add_stress_stiffness(&self, v: &[f64], force: &mut [f64]) {
-        let stress = |point: usize| self.of_cell.stress(&self.old[point], &Matrix3::zeros());
+        let stress = |point: usize| self.of_cell.stress(&self.old[point]);
         add_stress_stiffness(self.cells.as_ref(), &stress, v, force);
     }
 
@@ -521,19 +532,17 @@ impl<C: CellLaw<D>, const D: usize> Block<D> for SolidBlock<C, D> {
     }
 }
 
-/// Hands every quadrature point on with the displacement gradient there, cell by cell.
+/// Hands every cell on with the displacement gradients at its points.
 pub(crate) fn visit_gradients<const D: usize>(
     cells: &dyn Cells<D>,
     u: &[f64],
-    sink: &mut dyn FnMut(usize, &Matrix3<f64>),
+    sink: &mut dyn FnMut(usize, &mut [Matrix3<f64>]),
 ) {
     let count = cells.points_per_cell();
-    let mut gradient = [Matrix3::zeros(); MAX_POINTS];
+    let mut gradients = [Matrix3::zeros(); MAX_POINTS];
     for k in 0..cells.count() {
-        cells.gradient(k, u, &mut gradient[..count]);
-        for (g, gradient) in gradient[..count].iter().enumerate() {
-            sink(k * count + g, gradient);
-        }
+        cells.gradient(k, u, &mut gradients[..count]);
+        sink(k, &mut gradients[..count]);
     }
 }
 

@@ -175,8 +175,16 @@ pub trait CellLaw<const D: usize>: 'static + Send + Sync {
         v: &[f64],
     ) -> Option<FlowPower>;
 
-    /// Cauchy stress of a point where the displacements have this gradient \[MPa\].
-    fn stress(&self, state: &Self::State, gradient: &Matrix3<f64>) -> Sym2;
+    /// Stress of a point, of the volume of the undeformed body \[MPa\].
+    fn stress(&self, state: &Self::State) -> Sym2;
+
+    /// Gives displacement gradients at the points of a cell the mean dilatation, where the law is asked with that.
+    fn average_dilatation(_cell: (&dyn Cells<D>, usize), _gradients: &mut [Matrix3<f64>]) {}
+
+    /// Volume over that of the undeformed body at a point with this displacement gradient.
+    fn jacobian(_gradient: &Matrix3<f64>) -> f64 {
+        1.0
+    }
 
     /// Fields of what the displacements do to a point where they have this gradient, by name and components,
     /// beside those of the law.

@@ -411,8 +411,30 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Large<L> {
         None
     }
 
-    fn stress(&self, state: &Self::State, gradient: &Matrix3<f64>) -> Sym2 {
-        state.in_space(&self.0.stress(&state.material)) / (1.0 + volume_change(gradient))
+    fn stress(&self, state: &Self::State) -> Sym2 {
+        state.in_space(&self.0.stress(&state.material))
+    }
+
+    fn average_dilatation((cells, k): (&dyn Cells<D>, usize), gradients: &mut [Matrix3<f64>]) {
+        if !cells.averages_dilatation() {
+            return;
+        }
+        let count = gradients.len();
+        let (mut volume, mut change) = (0.0, 0.0);
+        for (g, gradient) in gradients.iter().enumerate() {
+            let weight = cells.weight(k * count + g);
+            volume += weight;
+            change += weight * volume_change(gradient);
+        }
+        let mean = (change / volume).ln_1p();
+        for gradient in gradients {
+            let own = volume_change(gradient).ln_1p();
+            *gradient = without((own - mean) / 3.0, gradient);
+        }
+    }
+
+    fn jacobian(gradient: &Matrix3<f64>) -> f64 {
+        1.0 + volume_change(gradient)
     }
 
     fn fields(gradient: &Matrix3<f64>, sink: &mut dyn FnMut(&str, &[f64])) {

@@ -337,6 +337,7 @@ impl<const D: usize> PanelBlock<D> {
             position: self.cells.position(point),
             weight: self.cells.weight(point),
             stress: self.old.stress[point],
+            jacobian: 1.0,
             plastic_strain: self.old.p[point],
         }
     }
@@ -537,8 +538,11 @@ impl<const D: usize> Block<D> for PanelBlock<D> {
     }
 
     fn gradients(&self, u: &[f64], sink: &mut dyn FnMut(&PointState<D>, &Matrix3<f64>)) {
-        visit_gradients(self.cells.as_ref(), u, &mut |point, gradient| {
-            sink(&self.point(point), gradient);
+        visit_gradients(self.cells.as_ref(), u, &mut |k, gradients| {
+            let first = k * self.cells.points_per_cell();
+            for (g, gradient) in gradients.iter().enumerate() {
+                sink(&self.point(first + g), gradient);
+            }
         });
     }
 

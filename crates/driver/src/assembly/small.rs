@@ -144,7 +144,7 @@ impl<L: BulkLaw, const D: usize> CellLaw<D> for Small<L> {
         Some(sum)
     }
 
-    fn stress(&self, state: &L::State, _: &Matrix3<f64>) -> Sym2 {
+    fn stress(&self, state: &L::State) -> Sym2 {
         self.0.stress(state)
     }
 

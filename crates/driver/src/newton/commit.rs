@@ -155,17 +155,12 @@ impl<const D: usize> Driver<D> {
     ) -> (Energies, f64) {
         let mut energies = self.state.energies;
         energies.external_work += work;
-        let large = self.has_large_strains();
         let (mut friction, mut penalty) = (0.0, 0.0);
         for (k, (c, before)) in kinematics
             .iter()
             .zip(contacts.iter().zip(&self.state.contacts))
         {
-            let slipped = (1..D).map(|j| c.t[j] * (c.u[j] + c.spring[j])).sum::<f64>();
-            friction -= match large && c.t[0] > 0.0 {
-                true => slipped * self.mean_bound(k, before.t[0], c.t[0]),
-                false => slipped,
-            };
+            friction += self.rubbed(k, before, c);
             // Springs in series: ½ t·C t, with C t₀* the part they held before.
             let held = k.local_force(&before.force);
             penalty += 0.5 * c.spring[0] * c.t[0];
@@ -188,14 +183,36 @@ impl<const D: usize> Driver<D> {
         (energies, fraction(plastic_volume, volume))
     }
 
-    /// The mean of the largest shears at both pressures, over that at the last: by which slip under a pressure that
-    /// changes is counted to second order in the increment.
-    fn mean_bound(&self, kinematics: &Kinematics<D>, before: f64, now: f64) -> f64 {
-        let bound = |t_n: f64| kinematics.law.bound(t_n);
-        match bound(now) > 0.0 && bound(now).is_finite() {
-            true => 0.5 * (bound(before.max(0.0)) / bound(now) + 1.0),
-            false => 1.0,
+    /// What friction dissipates at a contact point in the increment: its slip under the last shear, or under large strains
+    /// under the mean of both ends, which is right to second order where a pressure changes. The shear of the start is the
+    /// largest one at the pressure then, as far as that much resists the slip at one of the ends: a point that opens counts
+    /// with what there was, whether its last pressure is zero or rounding, and one that is lifted off with no shear rubs nothing
+    /// on its way.
+    fn rubbed(
+        &self,
+        kinematics: &Kinematics<D>,
+        before: &ContactRecord<D>,
+        now: &ContactRecord<D>,
+    ) -> f64 {
+        let slip = now.u + now.spring;
+        let last = -(1..D).map(|j| now.t[j] * slip[j]).sum::<f64>();
+        let bound = |t_n: f64| kinematics.law.bound(t_n.max(0.0));
+        if !self.has_large_strains() || bound(now.t[0]).is_infinite() {
+            return last;
         }
+        let tangential: Local<D> = SVector::from_fn(|j, _| if j > 0 { slip[j] } else { 0.0 });
+        let way = match (now.status, kinematics.dragged) {
+            // Dragged along by conditions, and open: its tangents take no part.
+            (Status::Open, Some(slip)) => slip,
+            _ => kinematics.force(&tangential),
+        };
+        let shear = before.t.rows(1, D - 1).norm();
+        let resisting = (-before.force.dot(&way)).clamp(0.0, shear * way.norm());
+        let first = match bound(now.t[0]) > 0.0 && now.t[0] > 0.0 {
+            true => (last * bound(before.t[0]) / bound(now.t[0])).min(last + resisting),
+            false => resisting,
+        };
+        0.5 * (first + last)
     }
 
     /// Displacements at the end of an increment: prescribed values exactly, not as sums of increments.

@@ -7,7 +7,6 @@ use crate::error::ModelError;
 use crate::model::load::{Condition, Loading, Step};
 use crate::model::temperature::{Field, Temperature};
 use crate::vector::largest;
-use nalgebra::Matrix3;
 
 impl<const D: usize> Driver<D> {
     /// How much warmer every cell is in a step than when it was free of stress \[K\].
@@ -126,20 +125,15 @@ impl<const D: usize> Driver<D> {
         if free.is_empty() {
             return 0.0;
         }
-        let large = self.has_large_strains();
         let (mut work, mut left) = (0.0, free);
         for block in &self.blocks {
             let (own, others) = left.split_at(points_of(block.as_ref()).min(left.len()));
             left = others;
             let mut of_points = own.iter();
-            block.gradients(displacement, &mut |point, gradient| {
-                let volume = match large {
-                    true => (Matrix3::identity() + gradient).determinant(),
-                    false => 1.0,
-                };
+            block.gradients(displacement, &mut |point, _| {
                 let trace: f64 = (0..3).map(|i| point.stress[i]).sum();
                 let free = of_points.next().unwrap_or(&0.0);
-                work += point.weight * volume * trace * free;
+                work += point.weight * point.jacobian * trace * free;
             });
         }
         work

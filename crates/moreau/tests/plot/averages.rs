@@ -27,6 +27,7 @@ fn points<E: Element<2, N>, const N: usize>(
             position: at.x,
             weight: weight * at.det * moreau::mesh::Hypothesis::measure(&thickness, &at.x),
             stress: moreau::mandel::Sym2::zeros(),
+            jacobian: 1.0,
             plastic_strain: f(at.x),
         })
         .collect()

@@ -186,6 +186,7 @@ fn a_linear_stress_is_exact() {
                 position,
                 weight: 1.0,
                 stress: linear(&position),
+                jacobian: 1.0,
                 plastic_strain: 0.0,
             };
             // Points of a parallelogram: the middle, and a quarter of the way to the corners.

@@ -1,6 +1,7 @@
 //! A deck in memory, stepped from outside.
 
 mod ahead;
+mod averaged;
 mod axis;
 mod beside;
 mod beyond;
@@ -24,6 +25,7 @@ mod mechanisms;
 mod methods;
 mod narrow;
 mod nearby;
+mod opened;
 mod opposite;
 mod outside;
 mod overhang;

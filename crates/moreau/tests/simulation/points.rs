@@ -9,10 +9,11 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Rounding of sums and of Newton's end.
 const ROUND_OFF: f64 = 1e-11;
-const RULES: [Integration; 3] = [Integration::Reduced, Integration::Full, Integration::BBar];
+pub(super) const RULES: [Integration; 3] =
+    [Integration::Reduced, Integration::Full, Integration::BBar];
 
 /// Zero where the plane has no component.
-fn three(v: &[f64]) -> [f64; 3] {
+pub(super) fn three(v: &[f64]) -> [f64; 3] {
     std::array::from_fn(|i| v.get(i).copied().unwrap_or(0.0))
 }
 
@@ -41,7 +42,7 @@ fn displaced<const D: usize, H: Analysis<D>>(
 
 /// Bodies of every kind of cell, distorted but with straight edges, in which the rules of volumes
 /// and of forces are exact.
-fn plane() -> impl Iterator<Item = Mesh<2>> {
+pub(super) fn plane() -> impl Iterator<Item = Mesh<2>> {
     let kinds = CellKind::ALL.into_iter().filter(|k| k.dimension() == 2);
     kinds.map(|kind| {
         let mesh = block2("b", kind, &[1.0, 1.4, 2.0], &[0.0, 0.5, 1.5]).expect("a mesh");
@@ -50,7 +51,7 @@ fn plane() -> impl Iterator<Item = Mesh<2>> {
     })
 }
 
-fn space() -> impl Iterator<Item = Mesh<3>> {
+pub(super) fn space() -> impl Iterator<Item = Mesh<3>> {
     let kinds = CellKind::ALL.into_iter().filter(|k| k.dimension() == 3);
     kinds.map(|kind| {
         let lines = [[0.0, 0.4, 1.0], [0.0, 0.5, 1.5], [0.0, 0.6, 0.9]];
@@ -60,12 +61,12 @@ fn space() -> impl Iterator<Item = Mesh<3>> {
     })
 }
 
-fn values<'a>(arrays: &'a [Array], name: &str) -> &'a [f64] {
+pub(super) fn values<'a>(arrays: &'a [Array], name: &str) -> &'a [f64] {
     let array = arrays.iter().find(|a| a.name == name);
     &array.unwrap_or_else(|| panic!("no {name}")).values
 }
 
-fn near(a: f64, b: f64, size: f64, what: &str) {
+pub(super) fn near(a: f64, b: f64, size: f64, what: &str) {
     assert!((a - b).abs() <= ROUND_OFF * size, "{what}: {a} {b}");
 }
 

@@ -302,9 +302,10 @@ impl<const D: usize> Block<D> for SpreadBlock<D> {
                     position: std::array::from_fn(|i| point[i]),
                     weight: point[D],
                     stress: Sym2::from_column_slice(&point[D + 1..D + 7]),
-                    plastic_strain: point[D + 7],
+                    jacobian: point[D + 7],
+                    plastic_strain: point[D + 8],
                 };
-                sink(&state, &Matrix3::from_column_slice(&point[D + 8..]));
+                sink(&state, &Matrix3::from_column_slice(&point[D + 9..]));
             }
         });
     }

@@ -31,13 +31,14 @@ pub(crate) fn energies(e: &BlockEnergy) -> [f64; 4] {
     [e.stored, e.dissipated, e.plastic_volume, e.volume]
 }
 
-/// Points of a block as numbers: cell in the block, position, weight, stress, plastic strain and gradient.
+/// Points of a block as numbers: cell in the block, position, weight, stress, Jacobian, plastic strain and gradient.
 pub(crate) fn points<const D: usize>(block: &dyn Block<D>, u: &[f64]) -> Vec<f64> {
     let mut numbers = Vec::new();
     block.gradients(u, &mut |point, gradient| {
         numbers.extend(point.position);
         numbers.push(point.weight);
         numbers.extend(point.stress.iter());
+        numbers.push(point.jacobian);
         numbers.push(point.plastic_strain);
         numbers.extend(gradient.iter());
     });
@@ -46,7 +47,7 @@ pub(crate) fn points<const D: usize>(block: &dyn Block<D>, u: &[f64]) -> Vec<f64
 
 /// Numbers of a point.
 pub(crate) const fn per_point(dimension: usize) -> usize {
-    dimension + 1 + 6 + 1 + 9
+    dimension + 1 + 6 + 1 + 1 + 9
 }
 
 /// The nodes of some blocks, ascending.
