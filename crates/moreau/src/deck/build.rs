@@ -215,6 +215,7 @@ fn setup<const D: usize, H: driver::Analysis<D>>(
     conditions::inner_surfaces(deck, &groups, findings);
     slips::warn(deck, &groups, surface, findings);
     flat::warn(deck, &groups, findings);
+    flat::warn_of_layers(deck, (&driver, &stages), &groups, findings);
     unjoined::warn(deck, &driver, &groups, findings);
     let held = conditions::held(deck, &groups);
     Some(Setup {

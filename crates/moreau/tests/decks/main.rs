@@ -12,6 +12,7 @@ mod includes;
 mod initial;
 mod keys;
 mod laws;
+mod layers;
 mod meshes;
 mod metamorphic;
 mod methods;

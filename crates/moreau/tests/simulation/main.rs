@@ -18,6 +18,7 @@ mod inverted;
 mod joints;
 mod keys;
 mod laws;
+mod layers;
 mod leaps;
 mod let_go;
 mod limits;

@@ -1,5 +1,9 @@
 //! Flat serendipity cells of the reduced rule below surfaces that touch, which are too soft: warnings.
 
+mod layers;
+
+pub(super) use layers::warn as warn_of_layers;
+
 use super::groups::Groups;
 use super::parts::quadrature;
 use crate::deck::entries::Deck;
