@@ -16,7 +16,7 @@ const YIELD: f64 = 5.0;
 fn bent<const D: usize, H: Analysis<D>>(
     mesh: &Mesh<D>,
     hypothesis: H,
-    law: &(impl BulkLaw + Clone),
+    law: &impl BulkLaw,
 ) -> Vec<(Integration, Driver<D>)> {
     let of_rule = |rule| {
         let model = Model::with_large_strains(mesh.clone(), hypothesis)

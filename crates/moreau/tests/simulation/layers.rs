@@ -46,7 +46,7 @@ move = [{{ on = "s.right", u = {{ y = -0.01 }} }}]
     force.last().expect("an increment").abs() / beam
 }
 
-/// In a row of its own the dilatation of a bent cell has no mean, and what is left of its stiffness are the deviators: 2 (1 − ν)/3.
+/// The table of docs/theory/elements.md. In a row of its own the dilatation of a bent cell has no mean, and what is left of its stiffness are the deviators: 2 (1 − ν)/3.
 /// Of n rows that is so of what varies within each, a part 1/n² of the whole.
 #[test]
 fn strips_of_few_rows_bend_with_a_part_of_their_stiffness() {
@@ -60,18 +60,16 @@ fn strips_of_few_rows_bend_with_a_part_of_their_stiffness() {
         ] {
             let lost = (1.0 - 2.0 * (1.0 - poisson) / 3.0) / (rows * rows) as f64;
             let found = stiffness(element, "", rows, poisson);
-            println!("{element} {rows} {poisson}: {found:.3}");
             assert!(
-                (found - (1.0 - lost)).abs() < 0.01,
+                (found - (1.0 - lost)).abs() < 5e-3,
                 "{element} {rows} {poisson}: {found}"
             );
         }
         // Of all points linear cells lack the strain across, which bending makes vary.
         let full = stiffness("quad4", "quadrature = \"full\"", 1, poisson);
         let quadratic = stiffness("quad8", "", 1, poisson);
-        println!("{poisson}: full {full:.3}, quad8 {quadratic:.3}");
-        assert!((quadratic - 1.0).abs() < 0.01, "{quadratic}");
+        assert!((quadratic - 1.0).abs() < 5e-3, "{quadratic}");
         let held = (1.0 - poisson) * (1.0 - poisson) / (1.0 - 2.0 * poisson);
-        assert!((full - held).abs() < 0.01, "{full}");
+        assert!((full - held).abs() < 5e-3, "{full}");
     }
 }
