@@ -46,9 +46,9 @@ pub(crate) struct Following<const D: usize> {
 }
 
 impl<const D: usize> Following<D> {
-    /// Forgets the best step.
-    pub(crate) fn forget(&mut self) {
-        self.best = None;
+    /// Takes the next step for better than the best so far, which is one under forces that are others then.
+    pub(crate) fn asks_for_others(&mut self) {
+        self.left = f64::INFINITY;
     }
 }
 

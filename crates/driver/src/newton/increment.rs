@@ -526,12 +526,12 @@ impl<const D: usize> Driver<D> {
                 continue;
             };
             let ways = (iterate.d_u.as_slice(), reached.as_slice());
-            if !settled {
-                // The best under other forces.
-                following.forget();
-            }
             let given = (answer, &contact);
-            match self.pair_along((system, &increment.end), following, ways, given)? {
+            let paired = self.pair_along((system, &increment.end), following, ways, given)?;
+            if !settled {
+                following.asks_for_others();
+            }
+            match paired {
                 Some(next) => kinematics = Cow::Owned(next),
                 None if settled => {
                     if let Some(best) = following.best.take() {
