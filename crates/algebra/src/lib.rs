@@ -14,6 +14,7 @@
 //! | what a factor will take, before there is one | [`Cost`] |
 //! | fewer unknowns that the others follow, and Pᵀ A P | [`CoarseSpace`] |
 //! | conjugate gradients, preconditioned by sweeps and the factor of a coarse space | [`ConjugateGradients`] |
+//! | Tᵀ S T of dense matrices and sparse transformations | [`congruence`] |
 //! | factors of dense matrices | [`DenseCholesky`], [`DenseLdlt`], [`Lu`] |
 //! | L U = P A of sparse unsymmetric matrices | [`SparseLu`] of [`Rows`] |
 //! | processes that hold one matrix together, and factorise it | [`Team`] |
@@ -49,6 +50,7 @@
 
 mod cholesky;
 mod coarse;
+mod congruence;
 mod conjugate;
 mod dense;
 mod either;
@@ -65,6 +67,7 @@ mod team;
 
 pub use cholesky::Cholesky;
 pub use coarse::{CoarseError, CoarseSpace};
+pub use congruence::congruence;
 pub use conjugate::{ConjugateGradients, Interface, Operator, Stop};
 pub use dense::{DenseCholesky, DenseLdlt, less_gram, mirror, square, transposed_product};
 pub use either::Either;

@@ -6,6 +6,9 @@ pub(crate) mod subspace;
 
 use std::collections::BTreeMap;
 
+/// A combination of unknowns: coefficients by number, ascending.
+pub(crate) type Combination = Vec<(usize, f64)>;
+
 /// Loads, contact forces, prescribed motions: a number at some degrees of freedom, zero at the
 /// others.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -217,7 +217,7 @@ impl<const D: usize> Sides<'_, D> {
             // What is as near is met by the part that looks straight at it.
             let off = |(n, (gap, k, _)): &([f64; D], (f64, usize, Values))| {
                 let other = &self.other[*k];
-                gap.abs() + size * (1.0 + dot(n, &unit(&other.outward(other.middle()))))
+                gap.abs() + size * (1.0 + dot(n, &other.facing))
             };
             let Some((n, (_, k, n_b))) = met.min_by(|a, b| off(a).total_cmp(&off(b))) else {
                 continue;

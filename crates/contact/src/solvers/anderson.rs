@@ -42,9 +42,10 @@ impl Anderson {
         }
         if let Some((last_image, last_residual)) = &self.last {
             let (of_image, of_residual) = (&image - last_image, &residual - last_residual);
-            self.gain = self
-                .gain
-                .max(of_image.norm() / (&of_image - &of_residual).norm());
+            let moved = (&of_image - &of_residual).norm();
+            if moved > 0.0 {
+                self.gain = self.gain.max(of_image.norm() / moved);
+            }
             self.images.push_back(of_image);
             self.residuals.push_back(of_residual);
             if self.images.len() > MEMORY.min(image.len()) {

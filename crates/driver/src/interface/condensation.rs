@@ -245,7 +245,7 @@ impl InFrames {
         let of_node = system.shift();
         let springs = suspended.iter().map(|s| s.spring(&stiffness, of_node));
         let springs: Vec<f64> = springs.collect();
-        let mut stiffness = transformation.congruence(stiffness);
+        let mut stiffness = transformation.congruence(&stiffness);
         let mut load = transformation.transposed(load);
         for (own, spring) in suspended.iter().zip(springs) {
             let row = transformation.combination(&own.row);

@@ -3,10 +3,12 @@
 
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::Kinematics;
+use crate::vector::Combination;
 use crate::vector::directions::Directions;
-use moreau_algebra::mirror;
+use moreau_algebra::congruence;
 use nalgebra::{DMatrix, DVector};
-use std::collections::BTreeMap;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 /// A component of the relative displacement as a combination of unknowns, those that a degree of
 /// freedom is given by.
@@ -15,8 +17,8 @@ pub(crate) fn row<const D: usize>(
     kinematics: &Kinematics<D>,
     component: usize,
     unknown: impl Fn(usize) -> Option<usize>,
-) -> BTreeMap<usize, f64> {
-    let mut row = BTreeMap::new();
+) -> Combination {
+    let mut row = Vec::new();
     for (a, w) in motion_row.weights() {
         for i in 0..D {
             let along = |dof: usize| kinematics.axes[(dof - D * a, component)];
@@ -24,7 +26,7 @@ pub(crate) fn row<const D: usize>(
             if let Some(dof) = unknown(D * a + i)
                 && coefficient != 0.0
             {
-                *row.entry(dof).or_insert(0.0) += coefficient;
+                row.push((dof, coefficient));
             }
         }
     }
@@ -32,9 +34,22 @@ pub(crate) fn row<const D: usize>(
         && let Some(dof) = unknown(dof)
         && coefficient != 0.0
     {
-        row.insert(dof, coefficient);
+        row.push((dof, coefficient));
     }
-    row
+    gathered(row)
+}
+
+/// What has the same number added up.
+fn gathered(mut entries: Combination) -> Combination {
+    entries.sort_by_key(|&(k, _)| k);
+    entries.dedup_by(|next, kept| {
+        let same = next.0 == kept.0;
+        if same {
+            kept.1 += next.1;
+        }
+        same
+    });
+    entries
 }
 
 /// A coefficient of what rows before leave, beside weights whose sum is one, that is none: unknowns that are solved for
@@ -49,13 +64,58 @@ pub(crate) struct Elimination {
     /// Which of the solved unknowns each one is.
     place: Vec<Option<usize>>,
     solved: Vec<Solved>,
+    /// Room for the combination at work, of u and of x.
+    u: Sum,
+    x: Sum,
 }
 
 /// x_dof = Σ u-coefficients u + Σ x-coefficients x.
 struct Solved {
     dof: usize,
-    u: BTreeMap<usize, f64>,
-    x: BTreeMap<usize, f64>,
+    u: Combination,
+    x: Combination,
+}
+
+/// A combination to which others are added.
+#[derive(Default)]
+struct Sum {
+    value: Vec<f64>,
+    is_in: Vec<bool>,
+    entries: Vec<usize>,
+}
+
+impl Sum {
+    /// Adds to a coefficient; whether it is a new one.
+    fn add(&mut self, k: usize, value: f64) -> bool {
+        if k >= self.value.len() {
+            self.value.resize(k + 1, 0.0);
+            self.is_in.resize(k + 1, false);
+        }
+        self.value[k] += value;
+        let new = !self.is_in[k];
+        if new {
+            self.is_in[k] = true;
+            self.entries.push(k);
+        }
+        new
+    }
+
+    /// Leaves an unknown out, for its coefficient.
+    fn remove(&mut self, k: usize) -> f64 {
+        self.is_in[k] = false;
+        std::mem::take(&mut self.value[k])
+    }
+
+    /// The sum, and room for the next one.
+    fn take(&mut self) -> Combination {
+        let mut entries = std::mem::take(&mut self.entries);
+        entries.retain(|&k| self.is_in[k]);
+        entries.sort_unstable();
+        let sum = entries.iter().map(|&k| (k, self.remove(k))).collect();
+        entries.clear();
+        self.entries = entries;
+        sum
+    }
 }
 
 impl Elimination {
@@ -63,58 +123,68 @@ impl Elimination {
         Self {
             place: vec![None; unknowns],
             solved: Vec::new(),
+            u: Sum::default(),
+            x: Sum::default(),
         }
     }
 
     /// Whether a row says something that those solved do not: whether after them a coefficient above the least is left.
-    pub(crate) fn is_independent(&self, row: &BTreeMap<usize, f64>, least: f64) -> bool {
-        let (_, left) = self.reduced(row.clone());
-        left.values().any(|c| c.abs() > least)
+    pub(crate) fn is_independent(&mut self, row: &Combination, least: f64) -> bool {
+        let (_, left) = self.reduced(row);
+        left.iter().any(|(_, c)| c.abs() > least)
     }
 
     /// Solves Σ row x = u_component, for one of the `own` unknowns if it can; false if no unknown
     /// is left to solve for.
-    pub(crate) fn solve(
-        &mut self,
-        component: usize,
-        row: &BTreeMap<usize, f64>,
-        own: &[usize],
-    ) -> bool {
-        let (u, x) = self.reduced(row.clone());
-        let largest = |among: &mut dyn Iterator<Item = (&usize, &f64)>| {
-            among
-                .map(|(&dof, &c)| (dof, c))
-                .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
-        };
-        let Some(any) = largest(&mut x.iter()).filter(|(_, c)| c.abs() > NONE) else {
+    pub(crate) fn solve(&mut self, component: usize, row: &Combination, own: &[usize]) -> bool {
+        let (mut u, mut x) = self.reduced(row);
+        let larger = |a: &&(usize, f64), b: &&(usize, f64)| a.1.abs().total_cmp(&b.1.abs());
+        let any = x.iter().max_by(larger).filter(|(_, c)| c.abs() > NONE);
+        let Some(&any) = any else {
             return false;
         };
-        let (dof, pivot) = largest(&mut x.iter().filter(|(dof, _)| own.contains(dof)))
+        let among_own = x.iter().filter(|(dof, _)| own.contains(dof));
+        let (dof, pivot) = among_own
+            .max_by(larger)
             .filter(|(_, c)| c.abs() >= OWN * any.1.abs())
+            .copied()
             .unwrap_or(any);
-        let over = |all: BTreeMap<usize, f64>| all.into_iter().map(move |(k, c)| (k, -c / pivot));
-        let mut u: BTreeMap<usize, f64> = over(u).collect();
-        u.insert(component, 1.0 / pivot);
-        let x = over(x).filter(|(k, _)| *k != dof).collect();
+        x.retain(|(k, _)| *k != dof);
+        u.iter_mut()
+            .chain(&mut x)
+            .for_each(|(_, c)| *c = -*c / pivot);
+        u.push((component, 1.0 / pivot));
+        u.sort_unstable_by_key(|&(k, _)| k);
         self.place[dof] = Some(self.solved.len());
         self.solved.push(Solved { dof, u, x });
         true
     }
 
-    /// A combination of unknowns with those that are solved replaced.
-    fn reduced(&self, mut x: BTreeMap<usize, f64>) -> (BTreeMap<usize, f64>, BTreeMap<usize, f64>) {
-        let mut u = BTreeMap::new();
+    /// A combination of unknowns with those that are solved replaced: by u, and by others.
+    fn reduced(&mut self, row: &Combination) -> (Combination, Combination) {
         // One that was solved earlier may bring in later ones, never the other way round.
-        let first = |x: &BTreeMap<usize, f64>| {
-            let places = x.keys().filter_map(|&dof| self.place[dof]);
-            places.min()
+        let mut open = BinaryHeap::new();
+        let enter = |dof: usize, c: f64, x: &mut Sum, open: &mut BinaryHeap<Reverse<usize>>| {
+            if x.add(dof, c)
+                && let Some(k) = self.place[dof]
+            {
+                open.push(Reverse(k));
+            }
         };
-        while let Some(solved) = first(&x).map(|k| &self.solved[k]) {
-            let c = x.remove(&solved.dof).unwrap_or(0.0);
-            add(&mut u, &solved.u, c);
-            add(&mut x, &solved.x, c);
+        for &(dof, c) in row {
+            enter(dof, c, &mut self.x, &mut open);
         }
-        (u, x)
+        while let Some(Reverse(k)) = open.pop() {
+            let solved = &self.solved[k];
+            let factor = self.x.remove(solved.dof);
+            for &(k, c) in &solved.u {
+                self.u.add(k, factor * c);
+            }
+            for &(dof, c) in &solved.x {
+                enter(dof, factor * c, &mut self.x, &mut open);
+            }
+        }
+        (self.u.take(), self.x.take())
     }
 
     /// Every unknown by the u of all components and the unknowns never solved for.
@@ -122,9 +192,10 @@ impl Elimination {
         for k in (0..self.solved.len()).rev() {
             let x = std::mem::take(&mut self.solved[k].x);
             // All of those solved later have been finished.
-            let (u, x) = self.reduced(x);
-            add(&mut self.solved[k].u, &u, 1.0);
-            self.solved[k].x = x;
+            let (u, x) = self.reduced(&x);
+            let solved = &mut self.solved[k];
+            solved.u = gathered([std::mem::take(&mut solved.u), u].concat());
+            solved.x = x;
         }
         let unknowns = self.place.len();
         let mut column = components;
@@ -137,20 +208,14 @@ impl Elimination {
             None => vec![(columns[dof], 1.0)],
             Some(k) => {
                 let Solved { u, x, .. } = &self.solved[k];
-                let rest = x.iter().map(|(&dof, &c)| (columns[dof], c));
-                u.iter().map(|(&k, &c)| (k, c)).chain(rest).collect()
+                let rest = x.iter().map(|&(dof, c)| (columns[dof], c));
+                u.iter().copied().chain(rest).collect()
             }
         };
         Transformation {
             rows: (0..unknowns).map(row).collect(),
             columns: column,
         }
-    }
-}
-
-fn add(to: &mut BTreeMap<usize, f64>, from: &BTreeMap<usize, f64>, factor: f64) {
-    for (&k, &c) in from {
-        *to.entry(k).or_insert(0.0) += factor * c;
     }
 }
 
@@ -168,14 +233,9 @@ impl Transformation {
     }
 
     /// Σ row x by (u, y).
-    pub(crate) fn combination(&self, row: &BTreeMap<usize, f64>) -> BTreeMap<usize, f64> {
-        let mut sum = BTreeMap::new();
-        for (&x, &c) in row {
-            for &(z, t) in &self.rows[x] {
-                *sum.entry(z).or_insert(0.0) += c * t;
-            }
-        }
-        sum
+    pub(crate) fn combination(&self, row: &Combination) -> Combination {
+        let of = |&(x, c): &(usize, f64)| self.rows[x].iter().map(move |&(z, t)| (z, c * t));
+        gathered(row.iter().flat_map(of).collect())
     }
 
     /// Tᵀ f.
@@ -190,36 +250,8 @@ impl Transformation {
     }
 
     /// Tᵀ S T of a symmetric S.
-    pub(crate) fn congruence(&self, s: DMatrix<f64>) -> DMatrix<f64> {
-        // Entries of T by columns, and where those of each column begin.
-        let mut entries: Vec<(usize, usize, f64)> = Vec::new();
-        for (i, row) in self.rows.iter().enumerate() {
-            entries.extend(row.iter().map(|&(k, c)| (k, i, c)));
-        }
-        entries.sort_unstable_by_key(|&(k, i, _)| (k, i));
-        let start = |k: usize| entries.partition_point(|entry| entry.0 < k);
-        let start: Vec<usize> = (0..=self.columns).map(start).collect();
-        let mut out = DMatrix::zeros(self.columns, self.columns);
-        // A column of Tᵀ S, of which the lower triangle takes what is below the diagonal.
-        let mut answer = vec![0.0; self.columns];
-        for (s, row) in s.column_iter().zip(&self.rows) {
-            let Some(first) = row.iter().map(|&(k, _)| k).min() else {
-                continue;
-            };
-            answer[first..].fill(0.0);
-            for &(k, i, c) in &entries[start[first]..] {
-                answer[k] += c * s[i];
-            }
-            for &(k, c) in row {
-                let mut column = out.column_mut(k);
-                let column = &mut column.as_mut_slice()[k..];
-                for (entry, answer) in column.iter_mut().zip(&answer[k..]) {
-                    *entry += c * answer;
-                }
-            }
-        }
-        mirror(&mut out);
-        out
+    pub(crate) fn congruence(&self, s: &DMatrix<f64>) -> DMatrix<f64> {
+        congruence(s, &self.rows, self.columns)
     }
 }
 
@@ -250,13 +282,15 @@ mod tests {
             }
             let t = elimination.finish(rows);
             prop_assert_eq!(t.columns, unknowns);
-            let identity = t.congruence(DMatrix::identity(unknowns, unknowns));
+            let s = DMatrix::from_fn(unknowns, unknowns, |i, j| ((i * i + j * j) as f64).sin());
+            let seen = t.congruence(&s);
             let mut product = DMatrix::zeros(rows, unknowns);
             for k in 0..unknowns {
                 let z = DVector::from_fn(unknowns, |i, _| f64::from(u8::from(i == k)));
                 let x = t.apply(&z);
                 product.set_column(k, &(&b * &x));
-                prop_assert!((x.norm_squared() - identity[(k, k)]).abs() < 1e-10 * identity.amax());
+                let seen = seen.column(k) - t.transposed(&(&s * &x));
+                prop_assert!(seen.amax() < 1e-10 * (1.0 + x.amax().powi(2)));
             }
             prop_assert!((product - DMatrix::identity(rows, unknowns)).amax() < 1e-10);
         }
@@ -265,7 +299,7 @@ mod tests {
     #[test]
     fn a_row_without_freedom_is_refused() {
         let mut elimination = Elimination::new(2);
-        let row = |c: [f64; 2]| -> BTreeMap<usize, f64> { [(0, c[0]), (1, c[1])].into() };
+        let row = |c: [f64; 2]| vec![(0, c[0]), (1, c[1])];
         assert!(elimination.solve(0, &row([1.0, 2.0]), &[0]));
         assert!(elimination.solve(1, &row([1.0, -1.0]), &[0]));
         assert!(!elimination.solve(2, &row([3.0, 1.0]), &[0]));

@@ -40,6 +40,8 @@ impl<const D: usize> Driver<D> {
         d_u: &[f64],
     ) -> Result<(), ModelError> {
         match self.repairs() {
+            // As they are where a step has been followed to its end.
+            true if self.footing.at == d_u => Ok(()),
             true => self.pair_at(loading, d_u),
             false => self.stretch_areas(d_u),
         }

@@ -19,6 +19,7 @@ use crate::model::footing::Ground;
 use crate::model::load::Loading;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::model::points::{ContactPoint, Kinematics};
+use crate::vector::Combination;
 use crate::vector::subspace::Subspace;
 use moreau_mesh::Facet;
 use nalgebra::SVector;
@@ -138,7 +139,7 @@ impl<const D: usize> Driver<D> {
         if grounds.is_empty() {
             return;
         }
-        let held = self.held_by(grounds, motion_rows, loading);
+        let mut held = self.held_by(grounds, motion_rows, loading);
         let unknown = |dof: usize| (!loading.displacement.contains_key(&dof)).then_some(dof);
         for &c in kept {
             let (motion_row, point) = (&motion_rows[c], &self.points[c]);
@@ -146,7 +147,7 @@ impl<const D: usize> Driver<D> {
                 continue;
             };
             let free = motion_row.free(point.node, |a| loading.free_at(a));
-            let is_held = |m: &SVector<f64, D>| {
+            let mut is_held = |m: &SVector<f64, D>| {
                 let k = Kinematics::new(point, m, 0.0, &SVector::zeros(), &free);
                 let along = row((motion_row, &loading.directions), &k, 0, unknown);
                 !held.is_independent(&along, DISTINCT * motion_row.largest_weight())
@@ -319,7 +320,7 @@ impl<const D: usize> Driver<D> {
             let least = DISTINCT * motion_row.largest_weight();
             let is_grounded = grounded.contains(&point.node);
             let unknown = |dof: usize| is_free(dof).then_some(dof);
-            let rows_in = |free: &Subspace<D>| -> Vec<(usize, BTreeMap<usize, f64>)> {
+            let rows_in = |free: &Subspace<D>| -> Vec<(usize, Combination)> {
                 let k = Kinematics::new(point, &n, gap, &SVector::zeros(), free);
                 let given = (motion_row, &loading.directions);
                 let active = (0..D).filter(|&j| k.active[j]);
@@ -327,14 +328,14 @@ impl<const D: usize> Driver<D> {
                     .map(|j| (D * c + j, row(given, &k, j, unknown)))
                     .collect()
             };
-            let are_distinct = |all: &[(usize, BTreeMap<usize, f64>)], rows: &Elimination| {
+            let are_distinct = |all: &[(usize, Combination)], rows: &mut Elimination| {
                 // What tools hold of the motion along the surface is left to them afterwards.
                 let decisive = if is_grounded { 1 } else { D };
                 let mut own = all.iter().take(decisive);
                 own.all(|(_, row)| rows.is_independent(row, least))
             };
             let mut all = rows_in(&motion_row.free(point.node, |a| loading.free_at(a)));
-            if alone.is_finite() && !are_distinct(&all, &rows) {
+            if alone.is_finite() && !are_distinct(&all, &mut rows) {
                 let own = loading.free_at(point.node);
                 let parts = match point.law.is_tie() {
                     true => own.dimension() > 0,
@@ -343,7 +344,7 @@ impl<const D: usize> Driver<D> {
                 if parts {
                     all = rows_in(&own);
                 }
-                if !(parts && are_distinct(&all, &rows)) {
+                if !(parts && are_distinct(&all, &mut rows)) {
                     spare.push(c);
                     continue;
                 }

@@ -237,7 +237,7 @@ impl<'a, const D: usize> Tied<'a, D> {
             for &c in points {
                 for j in (0..D).filter(|&j| kinematics[c].active[j]) {
                     let row = self.rows[D * c + j].iter();
-                    let row: BTreeMap<usize, f64> = row.map(|&(p, v)| (p as usize, v)).collect();
+                    let row = row.map(|&(p, v)| (p as usize, v)).collect();
                     if !rows.solve(D * c + j, &row, &[]) {
                         let steepness = steepness(&kinematics[c], &force[c], penalty[c][j]);
                         springs[c].compliance[j] = 1.0 / spring(self.stiffness[c], steepness);

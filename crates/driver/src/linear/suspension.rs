@@ -2,9 +2,9 @@
 //! spring whose force starts from the last multiplier; not the contact problem.
 
 use crate::model::points::Kinematics;
+use crate::vector::Combination;
 use moreau_laws::{Friction, Local};
 use nalgebra::{DMatrix, DVector};
-use std::collections::BTreeMap;
 
 /// A component of a relative displacement that is a combination R x of unknowns which others have
 /// determined already.
@@ -24,11 +24,11 @@ pub(crate) struct Suspended {
     /// Index of the component among those of all contacts.
     pub(crate) component: usize,
     /// R, by unknown.
-    pub(crate) row: BTreeMap<usize, f64>,
+    pub(crate) row: Combination,
     /// t₀ \[N\].
     pub(crate) force: f64,
     /// The row whose stiffness the spring has a multiple of: R, or where that may be empty that of the normal.
-    pub(crate) measure: BTreeMap<usize, f64>,
+    pub(crate) measure: Combination,
     /// Least stiffness of the spring, [`steepness`] \[N/mm\].
     pub(crate) steepness: f64,
 }
@@ -89,7 +89,7 @@ impl Suspended {
     /// k \[N/mm\], from the diagonal of the stiffness of the unknowns, and that of a node.
     pub(crate) fn spring(&self, stiffness: &DMatrix<f64>, of_node: f64) -> f64 {
         let entries = self.measure.iter();
-        let own: f64 = entries.map(|(&x, c)| c * c * stiffness[(x, x)]).sum();
+        let own: f64 = entries.map(|&(x, c)| c * c * stiffness[(x, x)]).sum();
         spring(own.abs().max(SOFTEST * of_node), self.steepness)
     }
 
@@ -98,10 +98,10 @@ impl Suspended {
     pub(crate) fn add(
         &self,
         k: f64,
-        row: &BTreeMap<usize, f64>,
+        row: &Combination,
         (stiffness, load): (&mut DMatrix<f64>, &mut DVector<f64>),
     ) {
-        let mut elongation: Vec<(usize, f64)> = row.iter().map(|(&z, c)| (z, -c)).collect();
+        let mut elongation: Vec<(usize, f64)> = row.iter().map(|&(z, c)| (z, -c)).collect();
         elongation.push((self.component, 1.0));
         for &(i, a) in &elongation {
             load[i] -= self.force * a;
@@ -123,9 +123,9 @@ mod tests {
         let of = |own: f64, steepness: f64| {
             let suspended = Suspended {
                 component: 0,
-                row: BTreeMap::from([(0, 2.0)]),
+                row: vec![(0, 2.0)],
                 force: 0.0,
-                measure: BTreeMap::from([(0, 2.0)]),
+                measure: vec![(0, 2.0)],
                 steepness,
             };
             suspended.spring(&DMatrix::from_element(1, 1, own), 1e5)

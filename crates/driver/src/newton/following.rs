@@ -18,6 +18,9 @@ const LIMIT: usize = 20;
 /// Steps in a row that leave more than the best, after which that is taken.
 const WORSE: usize = 4;
 
+/// Change of what a step leaves, over that, with which it is nothing that surfaces could make less.
+const SAME: f64 = 0.01;
+
 /// Part of the imbalance at which an increment is accepted that a step may leave.
 const EXACT: f64 = 0.1;
 
@@ -39,8 +42,9 @@ pub(crate) struct Following<const D: usize> {
     steps: usize,
     /// Steps since the best.
     worse: usize,
-    /// What the best step leaves \[N\].
+    /// What the best step leaves, and the last \[N\].
     left: f64,
+    last: f64,
     /// The best step, with the contact forces of where it leads \[N\].
     pub(crate) best: Option<(Answer<D>, SparseVector)>,
 }
@@ -49,6 +53,7 @@ impl<const D: usize> Following<D> {
     /// Takes the next step for better than the best so far, which is one under forces that are others then.
     pub(crate) fn asks_for_others(&mut self) {
         self.left = f64::INFINITY;
+        self.last = f64::INFINITY;
     }
 }
 
@@ -76,6 +81,7 @@ impl<const D: usize> Driver<D> {
                 steps: 0,
                 worse: 0,
                 left: f64::INFINITY,
+                last: f64::INFINITY,
                 best: None,
             }
         })
@@ -114,7 +120,8 @@ impl<const D: usize> Driver<D> {
             following.left = left;
             following.best = Some((answer, forces));
         }
-        let ends = following.steps >= LIMIT || following.worse >= WORSE;
+        let stays = (left - std::mem::replace(&mut following.last, left)).abs() <= SAME * left;
+        let ends = stays || following.steps >= LIMIT || following.worse >= WORSE;
         if left <= enough || !left.is_finite() || ends {
             return Ok(None);
         }
@@ -122,7 +129,7 @@ impl<const D: usize> Driver<D> {
         let mut there = d_u.to_vec();
         let pairs = following.dofs.iter().zip(next.iter());
         pairs.for_each(|(&dof, v)| there[dof] += v);
-        self.pair_at(end, &there)?;
+        self.follow_surfaces(end, &there)?;
         following.tried = next;
         Ok(Some(self.kinematics(system, end, reached)))
     }

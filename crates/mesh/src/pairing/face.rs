@@ -1,7 +1,7 @@
 //! A facet of a surface, an edge in the plane and a face in space, and the lines that meet it; not
 //! its cell.
 
-use crate::geometry::{basis, bounds, cofactors, diagonal, dot, interpolate};
+use crate::geometry::{bounds, cofactors, diagonal, dot, interpolate};
 use crate::mesh::{Change, NodeKind};
 use crate::{Element, FacetKind, Line2, Line3, Quad4, Quad8, Quad9, Tri3, Tri6};
 
@@ -9,7 +9,7 @@ use crate::{Element, FacetKind, Line2, Line3, Quad4, Quad8, Quad9, Tri3, Tri6};
 pub(super) type Aabb<const D: usize> = ([f64; D], [f64; D]);
 
 /// Most nodes of a facet.
-const NODES: usize = 9;
+pub(super) const NODES: usize = 9;
 
 /// Values of all nodes of a facet; those of nodes that are not there are zero.
 pub(super) type Values = [f64; NODES];
@@ -30,6 +30,10 @@ pub(super) struct Face<const D: usize> {
     pub(super) change: Change,
     /// Which of the smooth parts of its surface it is of.
     pub(super) part: usize,
+    /// Diagonal of the box around it \[mm\].
+    size: f64,
+    /// The outward unit normal at its middle.
+    pub(super) facing: [f64; D],
 }
 
 /// Values of the nodes that there are.
@@ -45,13 +49,18 @@ impl<const D: usize> Face<D> {
         change: Change,
     ) -> Self {
         let nodes: Vec<usize> = nodes.collect();
-        Self {
+        let x: Vec<[f64; D]> = nodes.iter().map(|&a| positions[a]).collect();
+        let mut face = Self {
             kind,
-            x: nodes.iter().map(|&a| positions[a]).collect(),
+            size: diagonal(&x),
+            x,
             nodes,
             change,
             part: 0,
-        }
+            facing: [0.0; D],
+        };
+        face.facing = unit(&face.outward(face.middle()));
+        face
     }
 
     pub(super) fn node_kind(&self, local: usize) -> NodeKind {
@@ -87,23 +96,25 @@ impl<const D: usize> Face<D> {
 
     /// The vectors ∂x/∂ξ; the first is none, and its cofactor the area vector.
     fn tangents(&self, xi: Xi) -> [[f64; D]; D] {
-        // Derivatives along the last coordinates of D.
-        let along = |x: &[[f64; D]], gradient: &[&[f64]]| {
-            let padded = |g: &&[f64]| std::array::from_fn(|i| if i == 0 { 0.0 } else { g[i - 1] });
-            basis(&gradient.iter().map(padded).collect::<Vec<_>>(), x)
-        };
-        fn slices<const M: usize, const N: usize>(gradient: &[[f64; M]; N]) -> [&[f64]; N] {
-            std::array::from_fn(|a| gradient[a].as_slice())
+        fn along<const D: usize, const M: usize, const N: usize>(
+            gradient: [[f64; M]; N],
+            x: &[[f64; D]],
+        ) -> [[f64; D]; D] {
+            let sum = |i: usize, j: usize| gradient.iter().zip(x).map(|(g, x)| g[j] * x[i]).sum();
+            std::array::from_fn(|j| match j {
+                0 => [0.0; D],
+                _ => std::array::from_fn(|i| sum(i, j - 1)),
+            })
         }
         let x = &self.x;
         match self.kind {
-            FacetKind::Line2 => along(x, &slices(&Line2::shape_gradient([xi[0]]))),
-            FacetKind::Line3 => along(x, &slices(&Line3::shape_gradient([xi[0]]))),
-            FacetKind::Tri3 => along(x, &slices(&Tri3::shape_gradient(xi))),
-            FacetKind::Tri6 => along(x, &slices(&Tri6::shape_gradient(xi))),
-            FacetKind::Quad4 => along(x, &slices(&Quad4::shape_gradient(xi))),
-            FacetKind::Quad8 => along(x, &slices(&Quad8::shape_gradient(xi))),
-            FacetKind::Quad9 => along(x, &slices(&Quad9::shape_gradient(xi))),
+            FacetKind::Line2 => along(Line2::shape_gradient([xi[0]]), x),
+            FacetKind::Line3 => along(Line3::shape_gradient([xi[0]]), x),
+            FacetKind::Tri3 => along(Tri3::shape_gradient(xi), x),
+            FacetKind::Tri6 => along(Tri6::shape_gradient(xi), x),
+            FacetKind::Quad4 => along(Quad4::shape_gradient(xi), x),
+            FacetKind::Quad8 => along(Quad8::shape_gradient(xi), x),
+            FacetKind::Quad9 => along(Quad9::shape_gradient(xi), x),
         }
     }
 
@@ -124,7 +135,7 @@ impl<const D: usize> Face<D> {
     }
 
     pub(super) fn size(&self) -> f64 {
-        diagonal(&self.x)
+        self.size
     }
 
     pub(super) fn bounds(&self) -> Aabb<D> {
@@ -133,9 +144,10 @@ impl<const D: usize> Face<D> {
 
     /// Mean of the places of the corners.
     pub(super) fn middle(&self) -> Xi {
-        let corners = self.kind.corner_count();
-        let sum = |i: usize| self.places()[..corners].iter().map(|xi| xi[i]).sum::<f64>();
-        [0, 1].map(|i| sum(i) / corners as f64)
+        match self.kind {
+            FacetKind::Tri3 | FacetKind::Tri6 => [1.0 / 3.0; 2],
+            _ => [0.0; 2],
+        }
     }
 
     /// Whether x(ξ) is linear: a triangle with straight sides, a parallelogram.
@@ -163,7 +175,7 @@ impl<const D: usize> Face<D> {
             let hit = first >= 0.0 && second <= 0.0 && first > second;
             return hit.then(|| [root(side, first, second), 0.0]);
         }
-        let xi = self.below(&View::new(*x, n), [0.0; 2])?;
+        let xi = self.below(&View::new(*x, n), [0.0; 2], self.middle())?;
         let inside = match self.kind {
             FacetKind::Tri3 | FacetKind::Tri6 => {
                 xi[0].min(xi[1]).min(1.0 - xi[0] - xi[1]) >= -OUTSIDE
@@ -180,10 +192,10 @@ impl<const D: usize> Face<D> {
         (0..2).all(|i| (xi[i] - middle[i]).abs() <= self.unit())
     }
 
-    /// The place that is seen at a point of a view, by Newton's method from the middle; `None` if
+    /// The place that is seen at a point of a view, by Newton's method from a first guess; `None` if
     /// none is found, as may happen far outside.
-    pub(super) fn below(&self, view: &View<D>, point: [f64; 2]) -> Option<Xi> {
-        let mut xi = self.middle();
+    pub(super) fn below(&self, view: &View<D>, point: [f64; 2], guess: Xi) -> Option<Xi> {
+        let mut xi = guess;
         for _ in 0..30 {
             let missing = view.of(&self.at(xi));
             let missing = [0, 1].map(|i| point[i] - missing[i]);

@@ -1,7 +1,7 @@
 //! Dual multipliers on the part of a facet that the other surface covers; not the search of that
 //! part.
 
-use super::face::{Face, Values, along, unit};
+use super::face::{Face, NODES, Values, along, difference, unit};
 use super::{MortarRow, Sides};
 use crate::geometry::{dot, interpolate};
 use crate::mesh::{Facet, NodeKind};
@@ -152,7 +152,7 @@ impl<const D: usize> Sides<'_, D> {
                 interpolate(&s.shape, &face.x),
                 interpolate(&s.opposite, &other.x),
             );
-            let cosine = -dot(&unit(&n), &unit(&other.outward(other.middle())));
+            let cosine = -dot(&unit(&n), &other.facing);
             (along(&x, &y, &n), cosine.max(f64::EPSILON))
         };
         let met: Vec<(f64, f64)> = overlap.samples.iter().map(met).collect();
@@ -194,6 +194,11 @@ impl<const D: usize> Sides<'_, D> {
         sums: &mut BTreeMap<(usize, usize), Sums>,
     ) {
         let count = face.nodes.len();
+        let apart = |s: &Sample| {
+            let x = interpolate(&s.shape, &face.x);
+            difference(&interpolate(&s.opposite, &self.other[s.other].x), &x)
+        };
+        let apart: Vec<[f64; D]> = overlap.samples.iter().map(apart).collect();
         for (&a, phi) in multipliers.nodes.iter().zip(&multipliers.values) {
             let sums = sums
                 .entry((face.part, face.nodes[a]))
@@ -216,16 +221,22 @@ impl<const D: usize> Sides<'_, D> {
                 let products = overlap.samples.iter().zip(phi).map(|(s, p)| p * s.shape[c]);
                 *sums.own.entry(face.nodes[c]).or_insert(0.0) += products.sum::<f64>();
             }
-            for (sample, p) in overlap.samples.iter().zip(phi) {
-                let other = &self.other[sample.other];
-                sums.seen -= p * dot(&n, &unit(&other.outward(other.middle())));
-                let (x, y) = (
-                    interpolate(&sample.shape, &face.x),
-                    interpolate(&sample.opposite, &other.x),
-                );
-                sums.gap += p * along(&x, &y, &n);
-                for (&b, n) in other.nodes.iter().zip(sample.opposite) {
-                    *sums.opposite.entry(b).or_insert(0.0) += p * n;
+            let gap = |(p, apart): (&f64, &[f64; D])| p * dot(apart, &n);
+            sums.gap += phi.iter().zip(&apart).map(gap).sum::<f64>();
+            let mut phi = phi.iter();
+            for samples in overlap.samples.chunk_by(|s, next| s.other == next.other) {
+                let other = &self.other[samples[0].other];
+                let (mut whole, mut weights) = (0.0, [0.0; NODES]);
+                for (sample, p) in samples.iter().zip(&mut phi) {
+                    whole += p;
+                    weights
+                        .iter_mut()
+                        .zip(sample.opposite)
+                        .for_each(|(w, n)| *w += p * n);
+                }
+                sums.seen -= whole * dot(&n, &other.facing);
+                for (&b, w) in other.nodes.iter().zip(weights) {
+                    *sums.opposite.entry(b).or_insert(0.0) += w;
                 }
             }
         }
@@ -290,14 +301,16 @@ impl Multipliers {
 /// Φ_a = Σ_c A_ac ψ_c with A ∫ψ_c Ñ_d = δ_ad ∫Ñ_d.
 fn dual(samples: &[Sample], nodes: &[usize]) -> Option<Vec<Vec<f64>>> {
     let order = nodes.len();
-    let spanning = |s: &Sample, row: usize| {
+    let spanning = |s: &Sample| -> Values {
         let sum: f64 = nodes.iter().map(|&c| s.changed[c]).sum();
-        s.changed[nodes[row]] + (1.0 - sum) / order as f64
+        let psi = |&c: &usize| s.changed[c] + (1.0 - sum) / order as f64;
+        std::array::from_fn(|c| nodes.get(c).map_or(0.0, psi))
     };
+    let spanning: Vec<Values> = samples.iter().map(spanning).collect();
     let mut moments = DMatrix::<f64>::zeros(order, order);
-    for s in samples {
+    for (s, psi) in samples.iter().zip(&spanning) {
         for c in 0..order {
-            let weight = s.d_s * spanning(s, c);
+            let weight = s.d_s * psi[c];
             for d in 0..order {
                 moments[(c, d)] += weight * s.changed[nodes[d]];
             }
@@ -307,11 +320,11 @@ fn dual(samples: &[Sample], nodes: &[usize]) -> Option<Vec<Vec<f64>>> {
     let shares: Vec<f64> = moments.column_iter().map(|c| c.sum()).collect();
     let inverse = moments.try_inverse()?;
     let phi = |a: usize| {
-        let at = |s: &Sample| {
-            let value = |c: usize| inverse[(a, c)] * spanning(s, c);
+        let at = |(s, psi): (&Sample, &Values)| {
+            let value = |c: usize| inverse[(a, c)] * psi[c];
             s.d_s * shares[a] * (0..order).map(value).sum::<f64>()
         };
-        samples.iter().map(at).collect()
+        samples.iter().zip(&spanning).map(at).collect()
     };
     Some((0..order).map(phi).collect())
 }

@@ -189,13 +189,13 @@ impl<'a, const D: usize> Cells<'a, D> {
 /// How far a point is below the plane of a side \[mm\].
 fn below<const D: usize>(x: &[f64; D], face: &Face<D>) -> f64 {
     let middle = face.middle();
-    face::along(x, &face.at(middle), &face.outward(middle))
+    face::along(x, &face.at(middle), &face.facing)
 }
 
 /// Distance of a point to a face, along its normal, or to its boundary where that passes by \[mm\].
 pub(super) fn distance<const D: usize>(x: &[f64; D], face: &Face<D>) -> f64 {
     // Lines that meet a face come from the side that it looks to.
-    let n = face.outward(face.middle()).map(|v| -v);
+    let n = face.facing.map(|v| -v);
     if let Some(eta) = face.hit(x, &n) {
         return face::along(x, &face.at(eta), &n).abs();
     }

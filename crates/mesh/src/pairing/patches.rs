@@ -97,7 +97,8 @@ impl<const D: usize> Sides<'_, D> {
     /// Distance to another face along the view, at a point of it.
     fn gap(&self, face: &Face<D>, view: &View<D>, at: [f64; 2], other: usize) -> Option<f64> {
         let other = &self.other[other];
-        let (x, y) = (face.below(view, at)?, other.below(view, at)?);
+        let x = face.below(view, at, face.middle())?;
+        let y = other.below(view, at, other.middle())?;
         Some(dot(&difference(&other.at(y), &face.at(x)), &view.normal))
     }
 
@@ -119,22 +120,29 @@ impl<const D: usize> Sides<'_, D> {
         let curved = normals.iter().any(tilted);
         let mut samples = Vec::new();
         for triangle in patch.polygon.triangles() {
-            let [a, b, c] = triangle;
             let twice = 2.0 * polygon::area(&triangle);
+            // Places between those of the corners are nearly those that are looked for.
+            let [own, opposite] = [face, other].map(|f| {
+                triangle.map(|p| f.below(view, p, f.middle()).unwrap_or_else(|| f.middle()))
+            });
             for point in &rule.points {
-                let [s, t] = point.xi;
-                let at = [0, 1].map(|i| a[i] + s * (b[i] - a[i]) + t * (c[i] - a[i]));
-                let (Some(xi), Some(mut eta)) = (face.below(view, at), other.below(view, at))
-                else {
+                let between = |[a, b, c]: [[f64; 2]; 3]| {
+                    let [s, t] = point.xi;
+                    [0, 1].map(|i| a[i] + s * (b[i] - a[i]) + t * (c[i] - a[i]))
+                };
+                let at = between(triangle);
+                let Some(xi) = face.below(view, at, between(own)) else {
                     continue;
                 };
                 let shape = face.shape(xi);
-                if curved {
-                    // Opposite is what is met along the normal, which changes from place to place.
-                    let along = View::new(face.at(xi), &interpolate(&shape, &normals));
-                    let met = other.below(&along, [0.0; 2]);
-                    eta = met.filter(|eta| other.is_near(eta)).unwrap_or(eta);
-                }
+                let guess = between(opposite);
+                // Opposite is what is met along the normal, which changes from place to place.
+                let along = curved.then(|| View::new(face.at(xi), &interpolate(&shape, &normals)));
+                let met = along.and_then(|along| other.below(&along, [0.0; 2], guess));
+                let met = met.filter(|eta| other.is_near(eta));
+                let Some(eta) = met.or_else(|| other.below(view, at, guess)) else {
+                    continue;
+                };
                 // The area of the face itself, not of what is seen.
                 let outward = face.outward(xi);
                 let tilt = dot(&outward, &outward).sqrt() / dot(&outward, &view.normal);
@@ -170,7 +178,9 @@ fn near<const D: usize>(
     let half = 0.5 * face.unit();
     let place = |patch: &Patch| {
         let corners = patch.polygon.corners().iter();
-        let places: Option<Vec<_>> = corners.map(|&c| face.below(view, c)).collect();
+        let places: Option<Vec<_>> = corners
+            .map(|&c| face.below(view, c, face.middle()))
+            .collect();
         places.map(Polygon::new)
     };
     let places: Vec<Polygon> = patches.iter().filter_map(place).collect();

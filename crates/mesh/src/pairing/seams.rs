@@ -1,6 +1,6 @@
 //! Where facets lie on each other that no cells share: cracks, and bodies side by side; not what joins them.
 
-use super::face::{self, Face, unit};
+use super::face::{self, Face};
 use super::overlap::distance;
 use super::tree::Tree;
 use crate::geometry::dot;
@@ -23,11 +23,12 @@ impl<const D: usize> Mesh<D> {
         let tree = Tree::new(faces.iter().map(around).collect());
         let mut seams = Vec::new();
         for (k, face) in faces.iter().enumerate() {
-            let (x, normal) = (face.at(face.middle()), face.outward(face.middle()));
+            let x = face.at(face.middle());
             for other in tree.within(&(x, x)).into_iter().filter(|&o| o != k) {
                 let opposite = &faces[other];
-                let facing = dot(&unit(&normal), &unit(&opposite.outward(opposite.middle())));
-                if facing < FACES && distance(&x, opposite) <= NEAR * face.size() {
+                if dot(&face.facing, &opposite.facing) < FACES
+                    && distance(&x, opposite) <= NEAR * face.size()
+                {
                     seams.push([boundary[k.min(other)], boundary[k.max(other)]]);
                 }
             }
