@@ -38,7 +38,7 @@ mod triangulated;
 
 pub use error::ContactError;
 pub use global::{GlobalProblem, GlobalSolution};
-pub use obstacle::{Ball, Corner, Cylinder, Obstacle, Plane, frame};
+pub use obstacle::{Ball, Corner, Cylinder, Obstacle, Plane, arc, frame};
 pub use polyline::Polyline;
 pub use problem::{BlockMatrix, Certificate, CondensedProblem, LocalProblem, Residual};
 pub use solvers::{

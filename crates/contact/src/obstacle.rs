@@ -190,24 +190,27 @@ impl<const D: usize> Ball<D> {
         if self.hollow { -1.0 } else { 1.0 }
     }
 
-    /// Distance where `along` of the way from the center counts for nothing. The difference of two lengths is rounded as
+    /// Distance of a point at x − c less a way along an axis, from the center c. The difference of two lengths is rounded as
     /// they are, which of a large radius is too much for the force that a stiff body makes of it; here it is that of their
     /// squares, with what products and sums round off, over their sum.
-    fn beyond(&self, x: &SVector<f64, D>, along: f64) -> f64 {
-        let around = (x - self.center).norm_squared() - along * along;
-        let (mut squares, mut lost) = (0.0, -along * along);
+    fn beyond(&self, x: &SVector<f64, D>, along: &SVector<f64, D>, times: f64) -> f64 {
+        let (mut squares, mut lost, mut around) = (0.0, 0.0, 0.0);
         let mut add = |a: f64, b: f64| {
             let (sum, rest) = sum_and_rest(squares, a * b);
             squares = sum;
             lost += rest + a.mul_add(b, -(a * b));
         };
-        for (x, c) in x.iter().zip(&self.center) {
+        for ((x, c), along) in x.iter().zip(&self.center).zip(along) {
             let (way, rest) = sum_and_rest(*x, -c);
+            let less = along * times;
+            let (way, more) = sum_and_rest(way, -less);
+            let rest = rest + more - along.mul_add(times, -less);
             add(way, way);
             add(2.0 * way, rest);
+            around += way * way;
         }
         add(-self.radius, self.radius);
-        self.side() * (squares + lost) / (around.max(0.0).sqrt() + self.radius)
+        self.side() * (squares + lost) / (around.sqrt() + self.radius)
     }
 }
 
@@ -220,7 +223,7 @@ fn sum_and_rest(a: f64, b: f64) -> (f64, f64) {
 
 impl<const D: usize> Obstacle<D> for Ball<D> {
     fn distance(&self, x: &SVector<f64, D>) -> f64 {
-        self.beyond(x, 0.0)
+        self.beyond(x, &SVector::zeros(), 0.0)
     }
 
     fn normal(&self, x: &SVector<f64, D>) -> SVector<f64, D> {
@@ -239,15 +242,8 @@ impl<const D: usize> Obstacle<D> for Ball<D> {
     }
 
     fn way(&self, from: &SVector<f64, D>, to: &SVector<f64, D>) -> SVector<f64, D> {
-        // Sine, as long as it is, and cosine of the angle between both.
-        let (before, now) = (self.normal(from), self.normal(to));
-        let chord = now - before;
-        let sine = chord - now * now.dot(&chord);
-        let length = sine.norm();
-        match length > 0.0 {
-            true => sine * (self.radius * length.atan2(before.dot(&now)) / length),
-            false => sine,
-        }
+        // In a hollow normals look against the radius.
+        arc(&self.normal(from), &self.normal(to)) * (self.side() * self.radius)
     }
 
     fn reference(&self) -> SVector<f64, D> {
@@ -302,7 +298,8 @@ impl Cylinder {
 
 impl Obstacle<3> for Cylinder {
     fn distance(&self, x: &SVector<f64, 3>) -> f64 {
-        self.ball.beyond(x, (x - self.ball.center).dot(&self.axis))
+        let along = (x - self.ball.center).dot(&self.axis);
+        self.ball.beyond(x, &self.axis, along)
     }
 
     fn normal(&self, x: &SVector<f64, 3>) -> SVector<f64, 3> {
@@ -346,6 +343,19 @@ fn finite<const D: usize>(what: &'static str, x: &SVector<f64, D>) -> Result<(),
             expected: "finite coordinates",
         }),
         None => Ok(()),
+    }
+}
+
+/// The angle between two unit vectors, as a vector along the way from the first to the second, tangent to it at the latter:
+/// the way over a ball of radius one.
+pub fn arc<const D: usize>(before: &SVector<f64, D>, now: &SVector<f64, D>) -> SVector<f64, D> {
+    let chord = now - before;
+    // As long as the sine is.
+    let sine = chord - now * now.dot(&chord);
+    let length = sine.norm();
+    match length > 0.0 {
+        true => sine * (length.atan2(before.dot(now)) / length),
+        false => sine,
     }
 }
 
@@ -452,12 +462,15 @@ mod tests {
         ) {
             let (from, to) = (SVector::from(from), SVector::from(to));
             prop_assume!(from.norm() > 0.1 && to.norm() > 0.1 && from.angle(&to) < 3.0);
-            goes_along_itself(&Ball::new([0.0; 3], 2.0).expect("valid"), from, to);
+            let ball = Ball::new([0.0; 3], 2.0).expect("valid");
+            goes_along_itself(&ball, from, to);
+            goes_along_itself(&ball.hollow(), from, to);
             goes_along_itself(&Plane::new([0.0; 3], [1.0, -2.0, 0.5]).expect("valid"), from, to);
             let cylinder = Cylinder::new([0.0; 3], [0.3, 1.0, -0.4], 2.0).expect("valid");
             let [a, b] = [from, to].map(|x| cylinder.section(&x));
             prop_assume!(a.norm() > 0.1 && b.norm() > 0.1 && a.angle(&b) < 3.0);
             goes_along_itself(&cylinder, from, to);
+            goes_along_itself(&cylinder.hollow(), from, to);
         }
     }
 
@@ -491,7 +504,9 @@ mod tests {
             let axis = SVector::from([1.0, 2.0, -2.0]);
             let cylinder = Cylinder::new([1.0, 0.5, 0.0], axis.into(), 1.5).expect("valid");
             let (x, y) = (SVector::from(x), SVector::from(x) + axis * s);
-            prop_assert!((cylinder.distance(&x) - cylinder.distance(&y)).abs() < 1e-12);
+            prop_assert!((cylinder.distance(&x) - cylinder.distance(&y)).abs() < 1e-13);
+            let far = x + axis * 1e4;
+            prop_assert!((cylinder.distance(&x) - cylinder.distance(&far)).abs() < 4e-11);
             // Distance of a point to a line, by the cross product.
             let from = x - SVector::from([1.0, 0.5, 0.0]);
             let distance = from.cross(&axis).norm() / axis.norm() - 1.5;

@@ -121,7 +121,7 @@ impl<const D: usize> Driver<D> {
             let x = tool.seen(place, &turn);
             let from = self.seen(p, motion_row);
             let slip = match follows {
-                true => turned(obstacle.way(&from, &x), &turn),
+                true => turned(p.way(obstacle, &from, &x), &turn),
                 false => slip,
             };
             let Some(corner) = self.corner(i, obstacle, (&from, &x)) else {

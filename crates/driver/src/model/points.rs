@@ -3,7 +3,7 @@
 use crate::error::ModelError;
 use crate::model::motion_row::RelativeMotionRow;
 use crate::vector::subspace::Subspace;
-use moreau_contact::{Obstacle, frame};
+use moreau_contact::{Obstacle, arc, frame};
 use moreau_laws::{Friction, Local, Status};
 use moreau_mesh::{NodeKind, nearest};
 use nalgebra::{Rotation3, SMatrix, SVector, UnitQuaternion, Vector3};
@@ -148,6 +148,18 @@ impl<const D: usize> ContactPoint<D> {
             weighted += w * (distance - here);
         }
         here + weighted - self.offset
+    }
+
+    /// The way along a tool from one place to another, at the distance at which the point touches \[mm\]: that along the
+    /// surface, and as much farther around as the normal turns.
+    pub(crate) fn way(
+        &self,
+        obstacle: &dyn Obstacle<D>,
+        from: &SVector<f64, D>,
+        to: &SVector<f64, D>,
+    ) -> SVector<f64, D> {
+        let turn = arc(&obstacle.normal(from), &obstacle.normal(to));
+        obstacle.way(from, to) + turn * self.offset
     }
 }
 

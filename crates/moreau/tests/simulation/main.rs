@@ -1,6 +1,7 @@
 //! A deck in memory, stepped from outside.
 
 mod ahead;
+mod around;
 mod averaged;
 mod axis;
 mod beside;
