@@ -52,8 +52,8 @@ fn gathered(mut entries: Combination) -> Combination {
     entries
 }
 
-/// A coefficient of what rows before leave, beside weights whose sum is one, that is none: unknowns that are solved for
-/// with it are its inverse of what they are.
+/// A coefficient of what rows before leave, beside weights whose sum is one and beside what they bring in, that is none:
+/// unknowns that are solved for with it are its inverse of those, row after row.
 const NONE: f64 = 1e-3;
 
 /// Coefficient of an own unknown, over the largest, from which on it is the one solved for.
@@ -135,12 +135,13 @@ impl Elimination {
     }
 
     /// Solves Σ row x = u_component, for one of the `own` unknowns if it can; false if no unknown
-    /// is left to solve for.
+    /// is left to solve for, or only one that would be far larger than what it follows from.
     pub(crate) fn solve(&mut self, component: usize, row: &Combination, own: &[usize]) -> bool {
         let (mut u, mut x) = self.reduced(row);
         let larger = |a: &&(usize, f64), b: &&(usize, f64)| a.1.abs().total_cmp(&b.1.abs());
-        let any = x.iter().max_by(larger).filter(|(_, c)| c.abs() > NONE);
-        let Some(&any) = any else {
+        let brought = u.iter().map(|(_, c)| c.abs()).fold(1.0, f64::max);
+        let any = x.iter().max_by(larger);
+        let Some(&any) = any.filter(|(_, c)| c.abs() > NONE * brought) else {
             return false;
         };
         let among_own = x.iter().filter(|(dof, _)| own.contains(dof));
@@ -303,5 +304,16 @@ mod tests {
         assert!(elimination.solve(0, &row([1.0, 2.0]), &[0]));
         assert!(elimination.solve(1, &row([1.0, -1.0]), &[0]));
         assert!(!elimination.solve(2, &row([3.0, 1.0]), &[0]));
+    }
+
+    /// Of two tools that look nearly the same way one decides how a node moves along both; of what follows from that and
+    /// is as slight another node does not.
+    #[test]
+    fn a_slight_row_is_solved_for_but_none_after_the_other() {
+        let mut elimination = Elimination::new(3);
+        assert!(elimination.solve(0, &vec![(0, 1.0)], &[0]));
+        assert!(elimination.solve(1, &vec![(0, 1.0), (1, 2e-3)], &[1]));
+        assert!(!elimination.solve(2, &vec![(1, 1.0), (2, 2e-3)], &[2]));
+        assert!(elimination.solve(2, &vec![(1, 1.0), (2, 2.0)], &[2]));
     }
 }
