@@ -274,7 +274,7 @@ fn delassus<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Auto;
+    use crate::GaussSeidel;
     use moreau_laws::Coulomb;
 
     /// Of bodies that are not the ones factorised: 2 v = 1 is solved where 3 v = 1 is asked for.
@@ -291,7 +291,7 @@ mod tests {
             law,
         )
         .expect("valid");
-        let solution = global.solve(&Auto::default()).expect("open");
+        let solution = global.solve(&GaussSeidel::default()).expect("open");
         assert_eq!((solution.bodies[0], solution.balance), (0.5, 0.0));
         global.stiffness[0].2 = 3.0;
         // 1.5 against 1, over the larger.

@@ -14,8 +14,6 @@ mod one_contact;
 mod penalty;
 mod proximal;
 mod semismooth;
-#[cfg(test)]
-mod tests;
 mod tied;
 mod tresca;
 mod uzawa;

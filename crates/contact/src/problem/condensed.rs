@@ -403,7 +403,6 @@ fn breakdown(a: &DMatrix<f64>) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ContactSolver, SemismoothNewton};
     use moreau_laws::Coulomb;
 
     fn coulomb(mu: f64) -> Friction {
@@ -466,33 +465,6 @@ mod tests {
             assert!((least..=NEAR * least).contains(&c), "{across}: {c}");
         }
         assert_eq!(stabilising(3.0, 1e5), None);
-    }
-
-    /// A body that nothing holds under a load of rounding: where that is told, it is at rest where it is.
-    #[test]
-    fn a_load_that_is_rounding_moves_nothing() {
-        let s = DMatrix::from_row_slice(
-            4,
-            4,
-            &[
-                1.0, 0.0, -1.0, 0.0, 0.0, 1.0, 0.0, -1.0, -1.0, 0.0, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0,
-            ],
-        );
-        let load = DVector::from_row_slice(&[1e-10, 0.0, 2e-10, 0.0]);
-        let gaps = vec![Local::<2>::new(0.1, 0.0); 2];
-        let before = vec![Local::<2>::new(1.0, 0.0), Local::zeros()];
-        let problem = CondensedProblem::new(s, load, gaps, vec![coulomb(0.3); 2], before);
-        let mut problem = problem.expect("valid");
-        let solve = |problem: &_| SemismoothNewton::default().solve(problem, None);
-        assert!(solve(&problem).is_err());
-        problem.rounds(1e-9);
-        let solution = solve(&problem).expect("at rest");
-        assert!(solution.exact);
-        assert_eq!(solution.motion, [Local::<2>::zeros(); 2]);
-        assert_eq!(solution.status, [Status::Open; 2]);
-        // A load that is more than that moves it.
-        problem.rounds(1e-12);
-        assert!(solve(&problem).is_err());
     }
 
     /// What is measured in newtons, by its definition.

@@ -7,8 +7,6 @@ mod iterate;
 mod progress;
 mod recycled;
 mod step;
-#[cfg(test)]
-mod tests;
 
 use super::{ContactSolution, Tolerance, expect_guess, is_within};
 use crate::ContactError;

@@ -1,9 +1,15 @@
 //! Every method for the local problem on problems with known answers, and all against each other.
 
-use super::*;
-use crate::{BlockMatrix, GlobalProblem};
-use moreau_laws::{AnisotropicCoulomb, Coulomb, Friction, LimitedCoulomb, Tie, Tresca};
-use nalgebra::DMatrix;
+use crate::stack;
+use moreau_contact::{
+    Admm, Auto, BlockMatrix, Certificate, CondensedProblem, ContactError, ContactSolver, Dual,
+    GaussSeidel, GlobalProblem, LocalProblem, LocalSolution, LocalSolver, NewtonMap, Penalty,
+    ProximalNewton, Reason, SemismoothNewton, Tolerance, TrescaFixedPoint, Uzawa,
+};
+use moreau_laws::{
+    AnisotropicCoulomb, Coulomb, Friction, LimitedCoulomb, Local, Status, Tie, Tresca,
+};
+use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
 
 const SHARP: f64 = 1e-12;
@@ -274,11 +280,7 @@ fn no_method_depends_on_units() {
         .map(|method| method.solve(&reference, None).expect("solvable"))
         .collect();
     let all = reference.statuses(&statuses[0].force, &statuses[0].displacement);
-    for status in [
-        moreau_laws::Status::Open,
-        moreau_laws::Status::Stick,
-        moreau_laws::Status::Slip,
-    ] {
+    for status in [Status::Open, Status::Stick, Status::Slip] {
         assert!(
             all.contains(&status),
             "the problem lacks {status:?}: {all:?}"
@@ -395,12 +397,12 @@ fn the_reduction_of_the_global_form_is_that_of_dense_algebra() {
     }
     let solution = global.solve(&Auto::default()).expect("solvable");
     assert!(solution.balance < 1e-14);
-    let r = crate::problem::stack(&solution.local.force);
-    let v = &inverse * (&h * r + nalgebra::DVector::from_vec(load));
+    let r = stack(&solution.local.force);
+    let v = &inverse * (&h * r + DVector::from_vec(load));
     for (a, b) in v.iter().zip(&solution.bodies) {
         assert!((a - b).abs() < 1e-12);
     }
-    let u = h.transpose() * v + crate::problem::stack(&free);
+    let u = h.transpose() * v + stack(&free);
     for (a, b) in u.iter().zip(solution.local.displacement.iter().flatten()) {
         assert!((a - b).abs() < 1e-12);
     }
@@ -411,7 +413,6 @@ fn bad_data_is_refused() {
     let one = || vec![Coulomb::new(0.3).expect("valid")];
     let q = |n| vec![Local::<2>::zeros(); n];
     let identity = || BlockMatrix::<2>::from_dense(&DMatrix::identity(2, 2)).expect("square");
-    use crate::ContactError;
     assert!(matches!(
         LocalProblem::new(identity(), q(2), one()),
         Err(ContactError::Dimension {
@@ -486,7 +487,7 @@ fn all_methods() -> Vec<Box<dyn ContactSolver<2>>> {
 /// One contact pressed and dragged.
 fn pressed(stiffness: f64, load: f64) -> CondensedProblem<2> {
     let s = DMatrix::from_row_slice(2, 2, &[1.0, 0.9, 0.9, 1.0]) * stiffness;
-    let f = nalgebra::DVector::from_vec(vec![-load, load]);
+    let f = DVector::from_vec(vec![-load, load]);
     let law = vec![Coulomb::new(0.3).expect("valid")];
     let zero = vec![Local::zeros()];
     CondensedProblem::new(s, f, vec![Local::<2>::new(10.0, 10.0)], law, zero).expect("valid")

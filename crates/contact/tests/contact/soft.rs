@@ -1,7 +1,7 @@
 //! Contacts whose structure has next to no stiffness: what their gaps are is seen all the same.
 
 use moreau_contact::{CondensedProblem, ContactError, ContactSolver, Penalty, SemismoothNewton};
-use moreau_laws::{Coulomb, Friction, Local};
+use moreau_laws::{Coulomb, Friction, Local, Status};
 use nalgebra::{DMatrix, DVector};
 
 fn methods() -> [Box<dyn ContactSolver<2>>; 2] {
@@ -92,4 +92,37 @@ fn the_weight_of_displacements_never_vanishes() {
     let mut held = problem(&[0.0], &[-1.0], &[0.1]);
     held.hold(2.0);
     assert_eq!(held.alpha(0), 2.0);
+}
+
+/// A body that nothing holds under a load of rounding: where that is told, it is at rest where it is.
+#[test]
+fn a_load_that_is_rounding_moves_nothing() {
+    let s = DMatrix::from_row_slice(
+        4,
+        4,
+        &[
+            1.0, 0.0, -1.0, 0.0, 0.0, 1.0, 0.0, -1.0, -1.0, 0.0, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0,
+        ],
+    );
+    let load = DVector::from_row_slice(&[1e-10, 0.0, 2e-10, 0.0]);
+    let gaps = vec![Local::<2>::new(0.1, 0.0); 2];
+    let before = vec![Local::<2>::new(1.0, 0.0), Local::zeros()];
+    let problem = CondensedProblem::new(
+        s,
+        load,
+        gaps,
+        vec![Coulomb::new(0.3).expect("valid"); 2],
+        before,
+    );
+    let mut problem = problem.expect("valid");
+    let solve = |problem: &_| SemismoothNewton::default().solve(problem, None);
+    assert!(solve(&problem).is_err());
+    problem.rounds(1e-9);
+    let solution = solve(&problem).expect("at rest");
+    assert!(solution.exact);
+    assert_eq!(solution.motion, [Local::<2>::zeros(); 2]);
+    assert_eq!(solution.status, [Status::Open; 2]);
+    // A load that is more than that moves it.
+    problem.rounds(1e-12);
+    assert!(solve(&problem).is_err());
 }
