@@ -33,6 +33,7 @@ pub(super) fn report<const D: usize>(
     let name = directory.canonicalize().ok();
     let name = name.as_deref().and_then(Path::file_name);
     let forces = over_time(&history, deck);
+    let warnings = list(&run["warnings"]);
     let page = context! {
         title => if deck.title.is_empty() { "moreau" } else { &deck.title },
         status => text("status"),
@@ -46,7 +47,11 @@ pub(super) fn report<const D: usize>(
         exactness => exactness(&run, deck),
         effort => effort(&run),
         expectations => expectations(&run),
-        warnings => list(&run["warnings"]),
+        warned => match warnings.len() {
+            1 => "1 warning".to_owned(),
+            n => format!("{n} warnings"),
+        },
+        warnings => warnings,
         certificate => certificate(&history, deck),
         deck => resolved,
         history => forces.as_ref().and_then(|chart| chart.to_svg().ok()),
