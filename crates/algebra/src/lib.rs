@@ -83,5 +83,5 @@ pub use team::{ENGINE, Parcel, Share, SharedTeam, Team, Unpacked};
 #[cfg(test)]
 extern crate self as moreau_algebra;
 #[cfg(test)]
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/algebra/common/mod.rs"]
 mod common;

@@ -1,7 +1,7 @@
 //! What every engine promises, of MUMPS on one process and on several, which this program starts itself: where
 //! there is no `mpirun` it says so and tests one.
 
-#[path = "../../algebra/tests/common/mod.rs"]
+#[path = "../../algebra/tests/algebra/common/mod.rs"]
 mod common;
 
 use common::promises::*;

@@ -1,8 +1,6 @@
 //! The order of elimination, of any graph.
 
-mod common;
-
-use common::graph;
+use crate::common::graph;
 use moreau_algebra::nested_dissection;
 use proptest::prelude::*;
 

@@ -1,9 +1,7 @@
 //! What every engine promises, against dense algebra: written once, run over each of them.
 
-mod common;
-
-use common::promises::*;
-use common::{Sample, definite, indefinite, laplacian, norm, saddle};
+use crate::common::promises::*;
+use crate::common::{Sample, definite, indefinite, laplacian, norm, saddle};
 use moreau_algebra::{Cholesky, Cost, Either, Engine, EngineError, Inertia, Ldlt, Matrix};
 use nalgebra::DMatrix;
 use proptest::prelude::*;
