@@ -2,15 +2,80 @@
 
 use super::choice::engine;
 use super::*;
+use crate::Model;
+use crate::assembly::block::Block;
 use crate::assembly::cell_law::{Motion, Stiffness};
 use crate::error::Inaccurate;
+use crate::model::load::Loading;
+use crate::newton::iterate::Iterate;
 use crate::vector::SparseVector;
+use crate::vector::directions::Directions;
 use crate::vector::largest;
-use crate::{Axis, Driver, Model, Settings, Step};
 use moreau_algebra::{Cholesky, Cost, Inertia, Interface, Pattern, TooLarge};
-use moreau_laws::{Elastic, VonMises};
-use moreau_mesh::{CellKind, Integration, PlaneStrain, block2, uniform};
+use moreau_laws::{BulkLaw, Elastic, VonMises};
+use moreau_mesh::{CellKind, Integration, Mesh, PlaneStrain, block2, uniform};
 use nalgebra::{DMatrix, DVector};
+
+/// A body whose system is made without a driver: with one all of Newton's iteration would be compiled for these tests.
+struct Body {
+    mesh: Mesh<2>,
+    blocks: Vec<Box<dyn Block<2>>>,
+}
+
+impl Body {
+    fn new(mesh: Mesh<2>, law: impl BulkLaw + 'static) -> Self {
+        let model = Model::new(mesh, PlaneStrain::default());
+        let model = model.material("block", law, Integration::Reduced);
+        let mut model = model.expect("valid");
+        Self {
+            blocks: model.take_blocks(),
+            mesh: model.mesh,
+        }
+    }
+
+    /// Of so many cells along each axis.
+    fn block(cells: [usize; 2], law: impl BulkLaw + 'static) -> Self {
+        let (x, y) = (uniform(0.0, 10.0, cells[0]), uniform(0.0, 5.0, cells[1]));
+        Self::new(
+            block2("block", CellKind::Quad8, &x, &y).expect("valid"),
+            law,
+        )
+    }
+
+    /// Nothing at every degree of freedom.
+    fn rest(&self) -> Vec<f64> {
+        vec![0.0; 2 * self.mesh.nodes().len()]
+    }
+
+    /// Degrees of freedom of a group along axes.
+    fn along(&self, group: &str, axes: &[usize]) -> Vec<usize> {
+        let nodes = self.mesh.node_group(group).expect("a group");
+        let of = |a: usize| axes.iter().map(move |axis| 2 * a + axis);
+        nodes.into_iter().flat_map(of).collect()
+    }
+
+    /// With its elastic stiffness.
+    fn system(&mut self, held: &[usize], memory: Option<u64>, pivot: Option<usize>) -> System {
+        let contacts = Contacts {
+            nodes: &[],
+            pivot,
+            tools: 0,
+            seam: Seam::Cheaper,
+            coupled: None,
+            turned: &[],
+        };
+        let fixed = (|dof: usize| held.contains(&dof), &Directions::default());
+        let system = System::new(&self.mesh, &self.blocks, fixed, &contacts, (memory, None));
+        let mut system = system.expect("held");
+        let rest = self.rest();
+        system.assemble_elastic(&mut self.blocks, &rest, true);
+        system
+    }
+}
+
+fn steel() -> Elastic {
+    Elastic::new(210e3, 0.3).expect("valid")
+}
 
 /// A block held at its left side and pulled at the other, factorised, with its load.
 fn pulled(memory: Option<u64>) -> (System, Vec<f64>) {
@@ -19,28 +84,14 @@ fn pulled(memory: Option<u64>) -> (System, Vec<f64>) {
 
 /// With a node on the interface, if one is given.
 fn pulled_about(memory: Option<u64>, pivot: Option<usize>) -> (System, Vec<f64>) {
-    let (x, y) = (uniform(0.0, 10.0, 6), uniform(0.0, 5.0, 3));
-    let mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
-    let model = Model::new(mesh, PlaneStrain::default())
-        .material(
-            "block",
-            Elastic::new(210e3, 0.3).expect("valid"),
-            Integration::Reduced,
-        )
-        .expect("valid");
-    let settings = Settings {
-        memory,
-        ..Settings::default()
-    };
-    let mut driver = Driver::new(model, settings).expect("valid");
-    let step = Step::new("pull")
-        .fix("block.left", &[Axis::X, Axis::Y])
-        .pressure("block.right", -100.0);
-    let end = driver.loading(&step).expect("valid");
-    let mut system = driver.prepare(&end, pivot).expect("held");
+    let mut body = Body::block([6, 3], steel());
+    let held = body.along("block.left", &[0, 1]);
+    let mut system = body.system(&held, memory, pivot);
     system.factorise(true).expect("definite");
-    let mut load = vec![0.0; 2 * driver.mesh.nodes().len()];
-    end.force.add_to(&mut load, 1.0);
+    let mut load = body.rest();
+    for dof in body.along("block.right", &[0]) {
+        load[dof] = 70.0;
+    }
     (system, load)
 }
 
@@ -185,20 +236,13 @@ fn the_stiffness_is_the_sum_of_those_of_the_cells() {
         .expect("valid")
         .map(|[x, y]| [x + 0.05 * y * y, y + 0.02 * x * y])
         .expect("valid");
-    let steel = Elastic::new(210e3, 0.3).expect("valid");
-    let model = Model::new(mesh, PlaneStrain::default())
-        .material("block", steel, Integration::Reduced)
-        .expect("valid");
-    let mut driver = Driver::new(model, Settings::default()).expect("valid");
-    let step = Step::new("hold")
-        .fix("block.left", &[Axis::X, Axis::Y])
-        .fix("block.bottom", &[Axis::Y])
-        .fix("block.right", &[Axis::X]);
-    let end = driver.loading(&step).expect("valid");
-    let system = driver.prepare(&end, None).expect("held");
-    let dofs = 2 * driver.mesh.nodes().len();
+    let mut body = Body::new(mesh, steel());
+    let held = [("left", &[0, 1][..]), ("bottom", &[1]), ("right", &[0])];
+    let held = held.map(|(side, axes)| body.along(&format!("block.{side}"), axes));
+    let system = body.system(&held.concat(), None, None);
+    let dofs = body.rest().len();
     let mut sum: DMatrix<f64> = DMatrix::zeros(dofs, dofs);
-    for block in &mut driver.blocks {
+    for block in &mut body.blocks {
         let rest = vec![0.0; dofs];
         let rest = Motion::new(&rest, &rest);
         block.evaluate(rest, Stiffness::Total(0.0), &mut |cell| {
@@ -240,25 +284,19 @@ fn the_stiffness_is_the_sum_of_those_of_the_cells() {
 /// Whether the elastic stiffness is kept or assembled anew.
 #[test]
 fn the_stiffness_is_the_same_whatever_is_kept() {
-    let steel = VonMises::new(210e3, 0.3, 300.0).expect("valid");
-    let (x, y) = (uniform(0.0, 10.0, 6), uniform(0.0, 5.0, 3));
-    let mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
-    let model = Model::new(mesh, PlaneStrain::default())
-        .material("block", steel, Integration::Reduced)
-        .expect("valid");
-    let mut driver = Driver::new(model, Settings::default()).expect("valid");
-    let step = Step::new("pull")
-        .fix("block.left", &[Axis::X, Axis::Y])
-        .displace("block.right", Axis::X, 0.05);
-    let end = driver.loading(&step).expect("valid");
-    let mut system = driver.prepare(&end, None).expect("held");
-    let nodes = driver.mesh.nodes().iter();
+    let mut body = Body::block([6, 3], VonMises::new(210e3, 0.3, 300.0).expect("valid"));
+    let (left, right) = (
+        body.along("block.left", &[0, 1]),
+        body.along("block.right", &[0]),
+    );
+    let mut system = body.system(&[left, right.clone()].concat(), None, None);
     let stretched = |x: &[f64; 2]| [1e-3 * x[0] * x[1], -1e-3 * x[1]];
-    let d_u: Vec<f64> = nodes.flat_map(stretched).collect();
-    let missing = end.displacement.iter().map(|(&dof, &u)| (dof, u)).collect();
+    let d_u: Vec<f64> = body.mesh.nodes().iter().flat_map(stretched).collect();
+    let missing = right.into_iter().map(|dof| (dof, 0.05)).collect();
+    let rest = body.rest();
     let mut assembled = |system: &mut System, part: f64| {
-        let stiffness = Stiffness::Plastic(part);
-        let assembly = driver.assemble(system, &end, (&d_u, &missing), stiffness);
+        let (motion, stiffness) = (Motion::new(&rest, &d_u), Stiffness::Plastic(part));
+        let assembly = system.assemble(&mut body.blocks, motion, &missing, stiffness);
         assert!(assembly.flows);
         (system.matrix.values().to_vec(), assembly)
     };
@@ -353,33 +391,37 @@ fn a_load_of_unknown_factor_is_solved_for_as_by_dense_algebra() {
 /// In an elastic body the forces of the tangent on what is missing are those that its motion makes.
 #[test]
 fn missing_displacements_are_out_of_balance_by_the_forces_that_they_make() {
-    let (x, y) = (uniform(0.0, 10.0, 6), uniform(0.0, 5.0, 3));
-    let mesh = block2("block", CellKind::Quad8, &x, &y).expect("valid");
-    let model = Model::new(mesh, PlaneStrain::default())
-        .material(
-            "block",
-            Elastic::new(210e3, 0.3).expect("valid"),
-            Integration::Reduced,
-        )
-        .expect("valid");
-    let mut driver = Driver::new(model, Settings::default()).expect("valid");
     // Pulled up by a force and to the side by a displacement.
-    let step = Step::new("pull")
-        .fix("block.left", &[Axis::X, Axis::Y])
-        .displace("block.right", Axis::X, 0.01)
-        .traction("block.right", [0.0, 2e3]);
-    let end = driver.loading(&step).expect("valid");
-    let start = driver.start_of(&end);
-    let mut system = driver.prepare(&end, None).expect("held");
-    let at_rest = vec![0.0; 2 * driver.mesh.nodes().len()];
-    let first = driver.begin_increment(&mut system, (&start, &end), at_rest.clone(), None);
-    let residual = first.iterate.residual(&end, system.prescribed());
-    let found = first.iterate.once_arrived(&residual);
-    let mut moved = at_rest;
-    first.missing.add_to(&mut moved, 1.0);
-    let arrived = driver.begin_increment(&mut system, (&start, &end), moved, None);
-    assert!(arrived.missing.is_zero());
-    let left = arrived.iterate.residual(&end, system.prescribed());
+    let mut body = Body::block([6, 3], steel());
+    let (left, right) = (
+        body.along("block.left", &[0, 1]),
+        body.along("block.right", &[0]),
+    );
+    let mut system = body.system(&[left, right.clone()].concat(), None, None);
+    let missing: SparseVector = right.into_iter().map(|dof| (dof, 0.01)).collect();
+    let mut end = Loading::<2>::default();
+    for dof in body.along("block.right", &[1]) {
+        end.force.add(dof, 1.5e3);
+    }
+    let rest = body.rest();
+    let mut at = |d_u: Vec<f64>, missing: &SparseVector| {
+        let motion = Motion::new(&rest, &d_u);
+        let stiffness = Stiffness::Plastic(1.0);
+        Iterate {
+            assembly: system.assemble(&mut body.blocks, motion, missing, stiffness),
+            d_u,
+            contact: SparseVector::default(),
+            heated: 0.0,
+            part: 0.0,
+        }
+    };
+    let first = at(rest.clone(), &missing);
+    let mut moved = rest.clone();
+    missing.add_to(&mut moved, 1.0);
+    let arrived = at(moved, &SparseVector::default());
+    let residual = first.residual(&end, system.prescribed());
+    let found = first.once_arrived(&residual);
+    let left = arrived.residual(&end, system.prescribed());
     let exact = largest(left.into_iter());
     assert!((found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
     assert!(exact > 1.01 * largest(residual.into_iter()));
