@@ -129,8 +129,8 @@ fn slab(kind: CellKind, rule: Integration, n: usize) -> Fallible<(f64, f64)> {
         .fix("body.bottom", &[Axis::Y])
         .fix("body", &[Axis::Z])
         .displace("plate.top", Axis::Y, 200.0 * YIELD / E);
-    let curve = load_curve(&mut driver, &step, 30, |driver| {
+    let curve = load_curve(&mut driver, &step, 16, |driver| {
         driver.reaction("plate.top").map_or(f64::NAN, |f| f[1]) / (5.0 * YIELD)
     })?;
-    Ok((curve[29] * 3f64.sqrt(), final_slope(&curve)))
+    Ok((curve[15] * 3f64.sqrt(), final_slope(&curve)))
 }

@@ -251,7 +251,7 @@ fn a_shallow_arch_under_a_roll_snaps_away() -> Fallible {
     let peak = (1..=80)
         .map(|k| arch_load(0.02 * f64::from(k), &mut guess))
         .fold(0.0, f64::max);
-    for (seam, increments) in [(Seam::Condensed, 20), (Seam::Tied, 3)] {
+    for (seam, increments) in [(Seam::Condensed, 8), (Seam::Tied, 3)] {
         let radius = 2.0;
         let roll = Ball::new([span, rise + 0.5 * height + radius], radius)?;
         let model = arch()?

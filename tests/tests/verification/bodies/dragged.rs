@@ -10,7 +10,7 @@ const LENGTH: f64 = 8.0;
 const WAY: f64 = 3.0 * LENGTH;
 const PRESSED: f64 = 0.2;
 const MU: f64 = 0.3;
-const STEPS: usize = 32;
+const STEPS: usize = 24;
 
 /// Cells along the base for every eight and a quarter of the block's, at a distance from its ends.
 fn dragged(kinds: [Cells; 2], finer: usize) -> Fallible<Driver<2>> {
