@@ -3,6 +3,7 @@
 
 mod arc;
 mod groups;
+mod inside;
 mod integrals;
 mod placed;
 mod positive;
@@ -218,7 +219,7 @@ impl<const D: usize> Mesh<D> {
     }
 
     /// Coordinates of the nodes of a cell, in its order.
-    fn cell_positions(&self, cell: usize) -> Vec<[f64; D]> {
+    pub(crate) fn cell_positions(&self, cell: usize) -> Vec<[f64; D]> {
         self.cell_nodes(cell)
             .iter()
             .map(|&node| self.nodes[node])

@@ -21,6 +21,15 @@ impl<const D: usize> Sample<D> {
         interpolate(&self.shape, nodes)
     }
 
+    /// The change of reference coordinates that the map of a cell, linearised here, makes of a way \[mm\]; not finite
+    /// where the cell has no volume.
+    pub(crate) fn pulled_back(&self, way: &[f64; D], nodes: &[[f64; D]]) -> [f64; D] {
+        let g = basis(&self.gradient, nodes);
+        let c = cofactors(&g);
+        let det = dot(&g[0], &c[0]);
+        std::array::from_fn(|j| dot(&c[j], way) / det)
+    }
+
     /// Jacobian determinant of a cell.
     pub(crate) fn det(&self, nodes: &[[f64; D]]) -> f64 {
         let g = basis(&self.gradient, nodes);
@@ -81,18 +90,23 @@ impl<const D: usize> Sample<D> {
     }
 }
 
-fn tabulate<const D: usize, const M: usize, const N: usize, E: Element<M, N>>(
-    points: impl IntoIterator<Item = Point<M>>,
-) -> Vec<Sample<D>> {
-    let sample = |p: Point<M>| Sample {
+fn sample<const D: usize, const M: usize, const N: usize, E: Element<M, N>>(
+    p: Point<M>,
+) -> Sample<D> {
+    Sample {
         weight: p.weight,
         shape: E::shape(p.xi).to_vec(),
         gradient: E::shape_gradient(p.xi)
             .iter()
             .map(|g| std::array::from_fn(|i| if i < D - M { 0.0 } else { g[i + M - D] }))
             .collect(),
-    };
-    points.into_iter().map(sample).collect()
+    }
+}
+
+fn tabulate<const D: usize, const M: usize, const N: usize, E: Element<M, N>>(
+    points: impl IntoIterator<Item = Point<M>>,
+) -> Vec<Sample<D>> {
+    points.into_iter().map(sample::<D, M, N, E>).collect()
 }
 
 fn tabulate_facet<const D: usize, const M: usize, const N: usize, E: Element<M, N>>()
@@ -145,6 +159,28 @@ pub(crate) fn cell_samples<const D: usize>(kind: CellKind) -> CellSamples<D> {
         CellKind::Hex8 => tabulate_cell::<D, 8, 3, Hex8>(Hex8::rule(full)),
         CellKind::Hex20 => tabulate_cell::<D, 20, 3, Hex20>(Hex20::rule(full)),
         CellKind::Hex27 => tabulate_cell::<D, 27, 3, Hex27>(Hex27::rule(full)),
+    }
+}
+
+/// The sample of a kind of cell of dimension D at one point of the reference cell, with weight 0.
+pub(crate) fn cell_sample<const D: usize>(kind: CellKind, xi: &[f64; D]) -> Sample<D> {
+    fn at<const D: usize, const N: usize, const M: usize, E: Element<M, N>>(
+        xi: &[f64; D],
+    ) -> Sample<D> {
+        let xi = std::array::from_fn(|i| xi[i]);
+        sample::<D, M, N, E>(Point { xi, weight: 0.0 })
+    }
+    match kind {
+        CellKind::Tri3 => at::<D, 3, 2, Tri3>(xi),
+        CellKind::Tri6 => at::<D, 6, 2, Tri6>(xi),
+        CellKind::Quad4 => at::<D, 4, 2, Quad4>(xi),
+        CellKind::Quad8 => at::<D, 8, 2, Quad8>(xi),
+        CellKind::Quad9 => at::<D, 9, 2, Quad9>(xi),
+        CellKind::Tet4 => at::<D, 4, 3, Tet4>(xi),
+        CellKind::Tet10 => at::<D, 10, 3, Tet10>(xi),
+        CellKind::Hex8 => at::<D, 8, 3, Hex8>(xi),
+        CellKind::Hex20 => at::<D, 20, 3, Hex20>(xi),
+        CellKind::Hex27 => at::<D, 27, 3, Hex27>(xi),
     }
 }
 

@@ -102,17 +102,20 @@ impl<const D: usize> Mesh<D> {
         found
     }
 
-    /// Pairs of cells that share volume: the middle of the first is within the second.
+    /// Pairs of cells that share volume: the middle of the first is within the second, or on its sides, which are as curved
+    /// as they are.
     pub fn shared_volume(&self) -> Vec<[usize; 2]> {
-        let cells = Cells::new(self, self.nodes(), (0..self.cell_count()).collect());
-        let all = (0..self.cell_count()).filter_map(|cell| {
-            let corners = &self.cell_nodes(cell)[..self.kind(cell).corner_count()];
-            let sum = |i: usize| corners.iter().map(|&a| self.nodes()[a][i]).sum::<f64>();
-            let middle = std::array::from_fn(|i| sum(i) / corners.len() as f64);
-            let other = cells.around(&middle, |other| other != cell)?;
+        let all = 0..self.cell_count();
+        let around = |cell| face::hull(self.cell_positions(cell).into_iter(), 0.0);
+        let tree = Tree::new(all.clone().map(around).collect());
+        let shared = all.filter_map(|cell| {
+            let middle = self.middle(cell);
+            let others = tree.within(&(middle, middle)).into_iter();
+            let mut others = others.filter(|&other| other != cell);
+            let other = others.find(|&other| self.is_in(&middle, other))?;
             Some([cell, other])
         });
-        all.collect()
+        shared.collect()
     }
 
     /// A facet of which the multipliers do not matter.

@@ -9,6 +9,7 @@ mod gmsh;
 mod gmsh_by_hand;
 mod groups;
 mod hypotheses;
+mod inside;
 mod integrals;
 mod losses;
 mod pairing;
