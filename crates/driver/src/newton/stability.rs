@@ -42,21 +42,20 @@ impl<const D: usize> Driver<D> {
         if !self.has_large_strains() {
             return 0;
         }
-        if system.is_tied() {
-            let holds = held.factor.holds_just(status)
-                || self.hold_statuses(system, (kinematics, status), held);
-            return match holds {
-                true => {
-                    let negative = system.negative();
-                    self.not_spinning(system, (kinematics, status), None, negative)
-                }
-                false => 0,
-            };
-        }
-        let free = self.free(system, kinematics, status);
         let moves_rigidly = system.floats && !self.is_held(loading, status);
-        let none = NONE[usize::from(moves_rigidly)];
-        let negative = system.negative() + free.as_ref().map_or(0, |free| free.negative(none));
+        let (free, negative) = match system.is_tied() {
+            true => {
+                let holds = held.factor.holds_just(status)
+                    || self.hold_statuses(system, (kinematics, status), held);
+                (None, if holds { system.negative() } else { 0 })
+            }
+            false => {
+                let free = self.free(system, kinematics, status);
+                let none = NONE[usize::from(moves_rigidly)];
+                let own = free.as_ref().map_or(0, |free| free.negative(none));
+                (free, system.negative() + own)
+            }
+        };
         let negative = match moves_rigidly {
             true => self.not_rigid(system, free.as_ref(), negative),
             false => negative,
@@ -66,7 +65,8 @@ impl<const D: usize> Driver<D> {
 
     /// Negative eigenvalues of so many that are left where no body moves as a rigid one without stiffness: less those of
     /// rᵢ·K⁻¹ rⱼ, r the rigid motions, that are of rounding, by Haynsworth's law. What nothing resists is neutral, and of a
-    /// body that is thin and bent its stiffness rounds to more than the least of those that are.
+    /// body that is thin and bent its stiffness rounds to more than the least of those that are; in the factor that ties
+    /// contacts it may round to just more than what counts as none.
     fn not_rigid(&self, system: &mut System, free: Option<&Free>, negative: usize) -> usize {
         let rows = match negative {
             0 => Vec::new(),

@@ -356,3 +356,59 @@ tools = [{ name = "hold", move = [0, 5] }, { name = "punch", move = [0, 5] }]
         outcome.warnings
     );
 }
+
+/// A sheet is bent between two rods and let go, and lies free between them. Its contacts are tied in the factor, whose pivot of
+/// the motion that nothing resists is rounding, -2e-14 of the stiffness, and just more than what counts as none.
+#[test]
+fn a_sheet_that_lies_free_between_tools_is_not_unstable() {
+    let freed = finish(simulation(
+        r#"units = "mm-N-MPa"
+analysis = "plane-strain"
+strain = "finite"
+[[mesh.block]]
+name = "s"
+element = "quad8"
+x = [0, 20]
+y = [0, 1]
+cells = [40, 2]
+[[material]]
+on = "s"
+young = 70000
+poisson = 0.3
+yield-stress = 200
+hardening = { linear = 0.0 }
+[[tool]]
+name = "punch"
+cylinder = { center = [0, 6], radius = 5 }
+[[tool]]
+name = "die"
+cylinder = { center = [10, -3], radius = 3 }
+[[contact]]
+surface = "s.top"
+against = "punch"
+friction = 0.1
+[[contact]]
+surface = "s.bottom"
+against = "die"
+friction = 0.1
+[[step]]
+name = "press"
+increments = 40
+fix = [{ on = "s.left", u = ["x"] }]
+tools = [{ name = "punch", move = [0, -8] }]
+[[step]]
+name = "release"
+increments = 40
+fix = [{ on = "s.left", u = ["x"] }]
+tools = [{ name = "punch", move = [0, 0] }]
+"#,
+    ));
+    let outcome = freed.outcome();
+    assert!(freed.history().numbers("force.die.y").last() == Some(&0.0));
+    let told = |what: &str| outcome.warnings.iter().any(|w| w.contains(what));
+    assert!(
+        told("1 rigid motions are free") && !told("unstable"),
+        "{:?}",
+        outcome.warnings
+    );
+}
