@@ -183,6 +183,12 @@ impl CellKind {
         matches!(self, Self::Quad8 | Self::Hex20) && matches!(integration, Integration::Reduced)
     }
 
+    /// Whether cells of this kind and rule are too stiff where plastic flow dilates: with its shear the dilatation that a flow
+    /// asks for varies within a cell, which has the mean alone.
+    pub const fn stiff_if_dilating(self, integration: Integration) -> bool {
+        matches!(self, Self::Quad4 | Self::Hex8) && matches!(integration, Integration::BBar)
+    }
+
     /// Values at a node of the shape functions of the linear cell with the same corners \[–\]: what a
     /// linear field has there of every corner.
     pub fn corner_shape(self, node: usize) -> Vec<f64> {

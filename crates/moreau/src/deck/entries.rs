@@ -299,6 +299,12 @@ impl MaterialEntry {
         let soil = self.soil.as_ref().map(|s| &s.cohesion.span);
         self.yield_stress.as_ref().map(|y| &y.span).or(soil)
     }
+
+    /// Where it is said that plastic flow of the material dilates; none: it keeps volumes.
+    pub fn dilates(&self) -> Option<&Range<usize>> {
+        let angle = self.soil.as_ref().map(|s| &s.dilatancy_angle);
+        angle.filter(|a| a.value > 0.0).map(|a| &a.span)
+    }
 }
 
 /// Surface of a tool.

@@ -524,3 +524,53 @@ fn a_material_may_be_on_several_groups() {
     let text = with("[\"block\", \"second\"]").replace("0.3", "0.7");
     assert_eq!(open(&text).2.errors(), 1);
 }
+
+/// One dilatation a cell is too stiff where flow dilates, and no remedy there for the full rule.
+#[test]
+fn the_mean_dilatation_of_what_dilates_is_told() {
+    let told = |element: &str, rule: &str, strength: &str| -> Vec<String> {
+        let text = DECK
+            .replace("quad8", element)
+            .replace("yield-stress = 300.0", &format!("{strength}\n{rule}"));
+        let (_, problem, findings) = open(&text);
+        let shown = findings.render("deck.toml", &text, false);
+        assert!(problem.is_some(), "{shown}");
+        findings.iter().map(|f| f.message.clone()).collect()
+    };
+    let soil = "cohesion = 1\nfriction-angle = 30";
+    let still = format!("{soil}\ndilatancy-angle = 0");
+    let little = format!("{soil}\ndilatancy-angle = 1");
+    for (rule, strength) in [("", soil), ("quadrature = \"b-bar\"", &little)] {
+        let said = told("quad4", rule, strength);
+        let [said] = said.as_slice() else {
+            panic!("{said:?}")
+        };
+        let words = "quad4 with quadrature = \"b-bar\" is too stiff where plastic flow dilates";
+        assert!(
+            said.contains(words) && said.contains("use a quadratic element"),
+            "{said}"
+        );
+    }
+    for (element, strength) in [
+        ("quad4", still.as_str()),
+        ("quad4", "yield-stress = 300.0"),
+        ("quad8", soil),
+        ("quad9", soil),
+        ("tri6", soil),
+    ] {
+        let said = told(element, "", strength);
+        assert!(said.is_empty(), "{element}, {strength}: {said:?}");
+    }
+    let full = "quadrature = \"full\"";
+    for (strength, remedy) in [
+        (soil, "use a quadratic element"),
+        (still.as_str(), "use quadrature = \"b-bar\""),
+    ] {
+        let said = told("quad4", full, strength);
+        let words = "quad4 with full quadrature locks in plastic flow";
+        let [said] = said.as_slice() else {
+            panic!("{said:?}")
+        };
+        assert!(said.contains(words) && said.contains(remedy), "{said}");
+    }
+}

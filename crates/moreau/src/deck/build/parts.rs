@@ -227,19 +227,33 @@ fn locking(material: &MaterialEntry, analysis: Hypothesis, findings: &mut Findin
     let Some(yields) = material.yields() else {
         return;
     };
+    let (dilates, why) = match material.dilates() {
+        Some(said) => (Some(said), "plastic flow dilates"),
+        None => (None, "plastic flow keeps volumes"),
+    };
     for &kind in &material.kinds {
-        if kind.locks(quadrature(kind, material, analysis)) {
-            let (rule, remedy) = match kind.locks(kind.integration()) {
-                true => ("", "a quadratic element"),
-                false => (" with full quadrature", "quadrature = \"b-bar\""),
+        let rule = quadrature(kind, material, analysis);
+        if kind.locks(rule) {
+            let full = match kind.locks(kind.integration()) {
+                true => "",
+                false => " with full quadrature",
             };
-            findings.warning(
-                yields,
-                format!(
-                    "{kind}{rule} locks in plastic flow: loads come out too high; use {remedy}"
-                ),
-                "plastic flow keeps volumes",
+            let remedy = match full.is_empty() || dilates.is_some() {
+                true => "a quadratic element",
+                false => "quadrature = \"b-bar\"",
+            };
+            let message = format!(
+                "{kind}{full} locks in plastic flow: loads come out too high; use {remedy}"
             );
+            findings.warning(yields, message, why);
+        }
+        if let Some(said) = dilates.filter(|_| kind.stiff_if_dilating(rule)) {
+            let message = format!(
+                "{kind} with quadrature = \"b-bar\" is too stiff where plastic flow dilates, which one dilatation a cell does \
+                 not follow: at 20° a strip footing on quad4 bears 39 % too much, 19 % on cells of half the size, 2 % on \
+                 quad8; use a quadratic element"
+            );
+            findings.warning(said, message, why);
         }
     }
 }
