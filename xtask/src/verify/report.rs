@@ -69,7 +69,8 @@ struct Grid<'a> {
     title: &'a str,
     header: Vec<Cell<'a>>,
     rows: Vec<Vec<Cell<'a>>>,
-    folded: bool,
+    /// The number of its rows, where it is folded.
+    folded: Option<usize>,
 }
 
 #[derive(Serialize)]
@@ -172,7 +173,7 @@ fn grid(table: &Table) -> Grid<'_> {
         title: &table.title,
         header: dressed(&table.header),
         rows: table.rows.iter().map(|row| dressed(row)).collect(),
-        folded: table.rows.len() > LONG,
+        folded: Some(table.rows.len()).filter(|&rows| rows > LONG),
     }
 }
 
@@ -251,6 +252,7 @@ mod tests {
             "closed form [12]",
             "<svg ",
             "Force against displacement",
+            "(17 rows)",
             "12 iterations were not enough",
             "4 checks passed, 2 failed, 2 cases erred",
             "2 threads",

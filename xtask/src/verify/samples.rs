@@ -51,15 +51,23 @@ fn sound(options: &Options<'_>) -> Result<Outcome, Box<dyn Error>> {
                 "equilibrium",
             ),
         ],
-        tables: vec![Table {
-            name: "curve".into(),
-            title: "Force against displacement".into(),
-            header: vec!["u [mm]".into(), "state, \"local\"".into()],
-            rows: vec![
-                vec!["0.1".into(), "stick".into()],
-                vec!["-2e-3".into(), "slip, a".into()],
-            ],
-        }],
+        tables: vec![
+            Table {
+                name: "curve".into(),
+                title: "Force against displacement".into(),
+                header: vec!["u [mm]".into(), "state, \"local\"".into()],
+                rows: vec![
+                    vec!["0.1".into(), "stick".into()],
+                    vec!["-2e-3".into(), "slip, a".into()],
+                ],
+            },
+            Table {
+                name: "long".into(),
+                title: "Forces of all nodes".into(),
+                header: vec!["node".into()],
+                rows: (0..17).map(|k| vec![k.to_string()]).collect(),
+            },
+        ],
         figures: vec![Figure {
             name: "curve".into(),
             caption: "Force against displacement".into(),
