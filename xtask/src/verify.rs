@@ -207,7 +207,10 @@ mod tests {
             ["figures", "report.html", "summary.json", "tables"]
         );
         assert_eq!(listing(&out.path().join("figures")), ["curve.svg"]);
-        assert_eq!(listing(&out.path().join("tables")), ["curve.csv", "long.csv"]);
+        assert_eq!(
+            listing(&out.path().join("tables")),
+            ["curve.csv", "long.csv"]
+        );
         assert!(text.contains("3 checks passed"), "{text}");
         assert!(text.contains("report.html"), "{text}");
     }
