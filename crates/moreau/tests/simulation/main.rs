@@ -9,6 +9,7 @@ mod beyond;
 mod causes;
 mod coarse;
 mod cornered;
+mod dilating;
 mod driven;
 mod edges;
 mod flat;
